@@ -1,0 +1,43 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/frontend/window.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/geometry/similarity.h"
+#include "engine/initializers/initialization.h"
+
+namespace gpo {
+
+/// The truth over one window, in the truth's own world.
+struct WindowTruth {
+  std::string source;
+  std::vector<std::optional<Pose>> cameras;  ///< one a frame of the window [m]
+  std::optional<Plane> plane;                ///< [m]
+};
+
+/// What is unknown is empty: ATE, scale and PDE where the true path is a point, the aligned PNE also
+/// where it is a line; all plane errors where the true plane or the reference pose is unknown.
+struct Evaluation {
+  Alignment alignment = Alignment::ok;  ///< of the true camera path
+  std::optional<Similarity> T_true_est; ///< estimate -> truth's world
+  std::optional<double> scale;          ///< meters per unit of the estimate
+  std::optional<double> ate_m;
+  std::optional<double> pne_deg;
+  std::optional<double> pne_aligned_deg;
+  std::optional<double> pde_m;
+  std::optional<double> pne_bound_deg;
+};
+
+/// Measures an initialization that is `ok`; method.md, "Metrics". `seed` drives the plane RANSAC.
+Evaluation evaluate(const Initialization& initialization,
+                    const Window& window,
+                    const WindowTruth& truth,
+                    std::uint64_t seed);
+
+}  // namespace gpo

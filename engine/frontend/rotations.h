@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/recording/recording.h"
+
+namespace gpo {
+
+enum class RotationSource { automatic, gyro, averaging, truth };
+
+/// Keys of the sources on the command line and in files, in the order of the enumeration.
+std::span<const std::string> rotation_source_keys();
+const std::string& to_string(RotationSource source);
+
+/// R_wc at each of the times, world = camera at the first: mid-point integration of (w - bias) on
+/// SO(3), interpolated at the frame times (method.md, "Pipeline", step 3). Throws InputError where
+/// the samples do not cover the times or leave a gap of more than five sample periods between them.
+std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
+                                            std::span<const std::int64_t> frame_times_ns);
+
+}  // namespace gpo

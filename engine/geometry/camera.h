@@ -1,0 +1,46 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace gpo {
+
+enum class Distortion { none, radial_tangential, equidistant };
+
+/// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
+/// is (0, 0), as in OpenCV. "Raw" pixels are those of the picture, "undistorted" ones those of the
+/// ideal pinhole camera with the same intrinsics.
+struct Camera {
+  int width = 0;   ///< [px]
+  int height = 0;  ///< [px]
+  double fx = 0;   ///< [px]
+  double fy = 0;   ///< [px]
+  double cx = 0;   ///< [px]
+  double cy = 0;   ///< [px]
+  Distortion distortion = Distortion::none;
+  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6]] (Brown, as OpenCV orders them);
+  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt); none: empty. Missing ones are zero.
+  std::vector<double> coefficients;
+
+  bool operator==(const Camera&) const = default;
+};
+
+/// K, 3x3, of the undistorted image [px].
+Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
+
+/// Undistorted pixel of a point in the camera frame (z > 0).
+Eigen::Vector2d project_undistorted(const Camera& camera, const Eigen::Vector3d& point_c);
+
+/// Raw pixel of a point in the camera frame (z > 0).
+Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
+
+/// Raw pixel where the undistorted pixel appears in the picture.
+Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted_px);
+
+/// Undistorted pixel of a raw one; the inverse of `distort`, by Newton's method to 1e-10 px. NaN
+/// where the model has no inverse (far outside of what was calibrated).
+Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
+
+}  // namespace gpo

@@ -1,0 +1,43 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+
+namespace gpo {
+
+struct MapPoint {
+  int track;                 ///< column in the window
+  Eigen::Vector3d position;  ///< in the world, on or near the plane
+};
+
+struct SolverReport {
+  int iterations = 0;
+  double initial_cost = 0;  ///< half the summed squares [px^2]
+  double final_cost = 0;    ///< half the summed squares [px^2]
+  int unknowns = 0;
+  int residuals = 0;
+  std::string termination = "none";  ///< convergence | no_convergence | failure | none
+  double milliseconds = 0;
+};
+
+/// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
+/// false, `reason` says why and no poses, points or plane are delivered.
+struct Initialization {
+  bool ok = false;
+  std::string reason;
+  Plane plane;
+  std::vector<Pose> cameras;     ///< one a frame
+  std::vector<MapPoint> points;  ///< inlier tracks
+  SolverReport solver;
+  double rms_px = 0;  ///< root mean square reprojection error over inlier observations
+};
+
+Initialization failed(std::string reason, SolverReport solver = {});
+
+}  // namespace gpo

@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <string>
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+
+namespace gpo {
+
+/// A method is one file and one row of this table: the command line's choices, the combo box, the
+/// legends and the tests read it.
+struct Method {
+  std::string key;    ///< on the command line, in files
+  std::string title;  ///< for people
+  std::uint32_t rgb;  ///< 0xRRGGBB, Okabe-Ito
+  Initialization (*initialize)(const Window& window, std::stop_token stop);
+};
+
+std::span<const Method> methods();
+
+/// The row named `key`. Throws InputError that names the known ones and the nearest.
+const Method& find_method(const std::string& key);
+
+}  // namespace gpo

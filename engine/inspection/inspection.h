@@ -1,0 +1,61 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "engine/evaluation/evaluation.h"
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+#include "engine/inspection/cube.h"
+#include "engine/inspection/settings.h"
+#include "engine/recording/recording.h"
+
+namespace gpo {
+
+/// Milliseconds a stage took when it was computed.
+struct Timing {
+  double track = 0, ransac = 0, rotations = 0, initialize = 0, optimize = 0, total = 0;
+};
+
+/// One finished inspection: the chain of results for one recording and settings. Immutable; shared
+/// with the views by shared_ptr<const>.
+struct Inspection {
+  std::shared_ptr<const Recording> recording;
+  Settings settings;
+  RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
+  std::shared_ptr<const Tracks> tracks;
+  std::shared_ptr<const Window> window;
+  std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
+  std::shared_ptr<const Initialization> initialization;
+  std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
+  CubeAnchor cube;
+  std::optional<CubeAnchor> true_cube;  ///< in the truth's world, same place on the true plane
+  Timing timing;
+};
+
+/// "tracking 41/60": a stage's name, what is done, of how many (0: unknown).
+using Progress = std::function<void(const std::string& stage, int done, int of)>;
+
+/// Computes inspections; keeps each stage (tracks, truth, inliers, rotations) until its own inputs
+/// change. One thread at a time.
+class Inspector {
+ public:
+  explicit Inspector(std::shared_ptr<const Recording> recording);
+  ~Inspector();
+  /// The whole chain. Null where it was stopped (within 50 ms). Throws InputError, e.g. for a
+  /// window that does not fit or an unknown method.
+  std::shared_ptr<const Inspection> inspect(const Settings& settings,
+                                            std::stop_token stop = {},
+                                            const Progress& progress = {});
+
+ private:
+  struct Stages;
+  std::unique_ptr<Stages> stages_;
+};
+
+}  // namespace gpo

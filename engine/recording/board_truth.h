@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "engine/recording/recording.h"
+
+namespace gpo {
+
+/// The chessboard as seen in one picture: corners row by row [raw px], sub-pixel, rows x columns of
+/// them, ordered so that (along a row) x (along a column) points away from the camera. A board whose
+/// corner counts are both even or both odd looks the same upside down: `previous` (the corners of
+/// an earlier frame, may be empty) decides which end is first. Empty where no board is found.
+std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray,
+                                        const Board& board,
+                                        const std::vector<Eigen::Vector2d>& previous = {});
+
+/// Corners on the board's plane z = 0 [m], in the order of `find_board`: x along a row, y along a
+/// column, so z points into the board, away from the camera.
+std::vector<Eigen::Vector3d> board_points(const Board& board);
+
+/// Camera pose in the board's frame by PnP on the corners (IPPE start, refined), and the root mean
+/// square of the reprojection error [px].
+struct BoardPose {
+  Pose pose;
+  double rms_px = 0;
+};
+std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
+                                    const Board& board,
+                                    const Camera& camera);
+
+}  // namespace gpo

@@ -1,0 +1,45 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <opencv2/core.hpp>
+#include <unordered_map>
+
+namespace gpo {
+
+/// Pictures decoded on demand; the most recently used ones are kept within a byte limit, never all
+/// at once. Safe to share between threads (the worker and the window).
+class FrameCache {
+ public:
+  static constexpr std::size_t kDefaultByteLimit = std::size_t{512} << 20;
+  /// Decodes picture `index` (0-based): BGR, 8 bits. Throws InputError. Called under a lock.
+  using Decode = std::function<cv::Mat(int index)>;
+
+  FrameCache(int count, Decode decode, std::size_t byte_limit = kDefaultByteLimit);
+
+  int count() const { return count_; }
+  /// Picture `index`, CV_8UC3; shared with the cache, not to be written to.
+  cv::Mat bgr(int index) const;
+  /// The same in gray, CV_8UC1; converted anew at every call.
+  cv::Mat gray(int index) const;
+  std::size_t bytes() const;
+
+ private:
+  struct Entry {
+    int index;
+    cv::Mat picture;
+  };
+  int count_;
+  Decode decode_;
+  std::size_t byte_limit_;
+  mutable std::mutex mutex_;
+  mutable std::size_t bytes_ = 0;
+  mutable std::list<Entry> recent_;  ///< most recently used first
+  mutable std::unordered_map<int, std::list<Entry>::iterator> by_index_;
+};
+
+}  // namespace gpo

@@ -1,0 +1,82 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/frame_cache.h"
+
+namespace gpo {
+
+enum class Layout { euroc, pictures, tracks };  ///< contract.md's layouts 1, 3 and 4
+
+/// A gyroscope's samples, strictly ascending in time, all finite.
+struct Gyroscope {
+  std::filesystem::path file;
+  std::vector<std::int64_t> timestamps_ns;
+  std::vector<int> lines;  ///< of each sample in `file`, for messages about a gap
+  std::vector<Eigen::Vector3d> rates_rad_s;  ///< in the gyroscope's own axes
+  Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
+  std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  std::string bias_source = "none: zero";  ///< where the bias comes from, for people
+};
+
+/// True camera poses, one entry a frame; nothing where a frame has none.
+struct GroundTruth {
+  std::string source;                      ///< file name, for people
+  std::vector<std::optional<Pose>> poses;  ///< in the truth's world [m]
+};
+
+/// A chessboard on the true plane.
+struct Board {
+  int columns = 0;      ///< inner corners along a row
+  int rows = 0;         ///< inner corners along a column
+  double square_m = 0;  ///< side of a square
+};
+
+/// One observation of a track that somebody else's front end made.
+struct TrackObservation {
+  int frame;  ///< counts in the recording
+  std::int64_t track;
+  Eigen::Vector2d raw_px;
+};
+
+/// What was recorded, immutable once opened. Shared between threads by shared_ptr<const>.
+struct Recording {
+  std::filesystem::path path;
+  std::string name;  ///< last component of the path
+  Layout layout = Layout::euroc;
+  Camera camera;
+  std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
+  std::shared_ptr<const FrameCache> pictures;  ///< null where there are none
+  std::optional<Gyroscope> gyroscope;
+  std::optional<GroundTruth> truth;  ///< from a file; truth from the board is computed on demand
+  std::optional<Plane> plane;        ///< true plane, in the truth's world
+  std::optional<Board> board;
+  std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use our tracker
+  std::vector<std::string> notes;        ///< "no gyroscope: ...", each said once to the user
+
+  int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
+};
+
+struct OpenOptions {
+  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
+  std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
+};
+
+/// Opens a folder or a file; finds out which layout it is. Pictures are not decoded yet, but each
+/// is known to exist. Throws InputError.
+std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
+                                                const OpenOptions& options = {});
+
+}  // namespace gpo
