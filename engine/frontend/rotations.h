@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/recording/recording.h"
+
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "engine/recording/recording.h"
+#include <Eigen/Core>
 
 namespace gpo {
 

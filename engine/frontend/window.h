@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
 /// Tracks that start in the reference frame, as they were followed through the window: what the
 /// picture shows. Column j of every matrix is track j; NaN from the frame on in which it is lost.
 struct Tracks {
-  int start = 0;                        ///< reference frame, counts in the recording
-  std::vector<std::int64_t> ids;        ///< one a track
-  std::vector<Eigen::Matrix2Xd> raw_px; ///< one a frame, 2 x tracks, raw pixels
+  int start = 0;                         ///< reference frame, counts in the recording
+  std::vector<std::int64_t> ids;         ///< one a track
+  std::vector<Eigen::Matrix2Xd> raw_px;  ///< one a frame, 2 x tracks, raw pixels
 
   int frame_count() const { return static_cast<int>(raw_px.size()); }
   int track_count() const { return static_cast<int>(ids.size()); }
@@ -23,13 +24,13 @@ struct Tracks {
 /// A window: all that an initializer may know. Frame 0 of it is the reference frame (frame 1 of the
 /// paper), whose camera is the world. Immutable once made.
 struct Window {
-  int start = 0;                             ///< reference frame, counts in the recording
-  Eigen::Matrix3d K;                         ///< of the undistorted image [px]
-  std::vector<std::int64_t> timestamps_ns;   ///< one a frame
-  std::vector<Eigen::Matrix2Xd> points_px;   ///< one a frame, 2 x tracks, undistorted; NaN: not seen
-  std::vector<std::vector<bool>> inlier;     ///< one a frame and track: seen, and agrees with H_i1
-  std::vector<Eigen::Matrix3d> H_i1;         ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
-  std::vector<Eigen::Matrix3d> R_wc;         ///< given rotations, R_wc of frame 0 is I
+  int start = 0;                            ///< reference frame, counts in the recording
+  Eigen::Matrix3d K;                        ///< of the undistorted image [px]
+  std::vector<std::int64_t> timestamps_ns;  ///< one a frame
+  std::vector<Eigen::Matrix2Xd> points_px;  ///< one a frame, 2 x tracks, undistorted; NaN: not seen
+  std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
+  std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
+  std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+
 #include <cstdint>
 #include <span>
 #include <stop_token>
 #include <string>
-
-#include "engine/frontend/window.h"
-#include "engine/initializers/initialization.h"
 
 namespace gpo {
 
