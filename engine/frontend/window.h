@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/homography_ransac.h"
+#include "engine/geometry/camera.h"
+
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
