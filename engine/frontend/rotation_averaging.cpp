@@ -23,6 +23,7 @@ constexpr int kLeastPairTracks = 12;
 constexpr int kLongestPair = 20;  // frames apart; pairs with the reference frame are all taken
 constexpr double kNormalCapDeg =
     10;  // a candidate farther from the common normal is the false twin
+constexpr double kSmallestRad = 1e-4;   // keeps the weight of a perfect pair finite
 constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
 
 struct Pair {
@@ -137,10 +138,9 @@ void average(std::span<const RelativeRotation> relative,
 
 std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                         std::vector<Matrix3d> R_wc) {
-  constexpr double kSmallest = 1e-4;  // [rad] keeps the weight of a perfect pair finite
-  average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallest); });
+  average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallestRad); });
   // The l_1/2 weights of Chatterjee & Govindu 2018, whose estimate tolerates more outliers.
-  average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallest), -1.5); });
+  average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallestRad), -1.5); });
   return R_wc;
 }
 
