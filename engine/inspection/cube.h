@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/geometry/plane.h"
+
 #include <array>
 #include <optional>
 
-#include "engine/geometry/plane.h"
+#include <Eigen/Core>
 
 namespace gpo {
 
-/// Where the virtual cube stands (method.md, "The virtual cube"). Base edges along the columns x and
-/// y of `axes`, which lie on the plane; column z is the plane's normal, towards the camera.
+/// Where the virtual cube stands (method.md, "The virtual cube"). Base edges along the columns x
+/// and y of `axes`, which lie on the plane; column z is the plane's normal, towards the camera.
 struct CubeAnchor {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< on the plane
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <stop_token>
-#include <string>
-
 #include "engine/evaluation/evaluation.h"
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/settings.h"
 #include "engine/recording/recording.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
 
 namespace gpo {
 
