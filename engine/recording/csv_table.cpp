@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/csv_table.h"
 
-#include <cctype>
-#include <numeric>
-#include <optional>
-
 #include "engine/error.h"
 #include "engine/recording/text_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include <fmt/format.h>
 
 namespace gpo {
 
@@ -33,10 +35,9 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  if (text.size() > kLongest) return "\"" + std::string(text.substr(0, kLongest)) + "...\"";
-  return "\"" + std::string(text) + "\"";
+  return fmt::format("\"{}{}\"", text.substr(0, kLongest), text.size() > kLongest ? "..." : "");
 }
 
 /// "W_RS_S_x [rad s^-1]" -> "w_rs_s_x".
@@ -58,8 +59,8 @@ void check_header(const CsvTable& table, int line, const std::vector<std::string
     if (!same_name(table.header[i], names[i])) {
       csv_fail(table,
                line,
-               "column " + std::to_string(i + 1) + " named " + quoted(table.header[i]),
-               quoted(names[i]) + " (columns " + joined(names) + ")");
+               "column " + std::to_string(i + 1) + " named " + in_quotes(table.header[i]),
+               in_quotes(names[i]) + " (columns " + joined(names) + ")");
     }
   }
 }
@@ -101,7 +102,8 @@ void take_header(CsvTable& table,
   }
 }
 
-std::optional<TimeUnit> unit_in_name(const CsvTable& table, bool& seconds) {
+/// Whether the time stamps are in seconds (true) or nanoseconds, where the header tells.
+std::optional<bool> header_says_seconds(const CsvTable& table) {
   if (table.header.empty()) return std::nullopt;
   std::string token;
   for (const char c : lower_case(table.header[0]) + " ") {
@@ -109,12 +111,10 @@ std::optional<TimeUnit> unit_in_name(const CsvTable& table, bool& seconds) {
       token += c;
       continue;
     }
-    seconds = token == "s" || token == "sec" || token == "seconds";
-    if (seconds || token == "ns" || token == "nsec" || token == "nanoseconds") {
-      return TimeUnit::nanoseconds;
-    }
+    if (token == "s" || token == "sec" || token == "seconds") return true;
+    if (token == "ns" || token == "nsec" || token == "nanoseconds") return false;
     if (token == "ms" || token == "us" || token == "msec" || token == "usec") {
-      throw InputError(table.file.string() + ": found time stamps in " + quoted(token) +
+      throw InputError(table.file.string() + ": found time stamps in " + in_quotes(token) +
                        ", expected ns or s");
     }
     token.clear();
@@ -167,27 +167,26 @@ CsvTable read_csv(const std::filesystem::path& file,
 
 double csv_number(const CsvTable& table, const CsvRow& row, int column) {
   const auto value = parse_number(row.cells[column]);
-  if (!value) csv_fail(table, row.line, quoted(row.cells[column]), "a finite number");
+  if (!value) csv_fail(table, row.line, in_quotes(row.cells[column]), "a finite number");
   return *value;
 }
 
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column) {
   const auto value = parse_integer(row.cells[column]);
-  if (!value) csv_fail(table, row.line, quoted(row.cells[column]), "an integer");
+  if (!value) csv_fail(table, row.line, in_quotes(row.cells[column]), "an integer");
   return *value;
 }
 
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise) {
-  bool seconds = false;
-  if (!unit_in_name(table, seconds)) {
-    const auto first = parse_integer(table.rows[0].cells[0]);
-    seconds = otherwise == TimeUnit::by_value && !(first && *first > kLeastNanoseconds);
-  }
+  const auto first = parse_integer(table.rows[0].cells[0]);
+  const bool large = first && *first > kLeastNanoseconds;
+  const bool seconds =
+      header_says_seconds(table).value_or(otherwise == TimeUnit::by_value && !large);
   std::vector<std::int64_t> times;
   times.reserve(table.rows.size());
   for (const auto& row : table.rows) {
     const auto time = parse_decimal(row.cells[0], seconds ? 9 : 0);
-    if (!time) csv_fail(table, row.line, quoted(row.cells[0]), "a time stamp");
+    if (!time) csv_fail(table, row.line, in_quotes(row.cells[0]), "a time stamp");
     if (!times.empty() && *time <= times.back()) {
       csv_fail(table,
                row.line,

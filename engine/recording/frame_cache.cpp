@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/frame_cache.h"
 
-#include <opencv2/imgproc.hpp>
 #include <utility>
+
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 

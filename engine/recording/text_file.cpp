@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/text_file.h"
 
+#include "engine/error.h"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -9,8 +11,6 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
-
-#include "engine/error.h"
 
 namespace gpo {
 
