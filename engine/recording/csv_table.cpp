@@ -98,6 +98,12 @@ void take_header(CsvTable& table,
     // A remark above a single column of numbers has as many cells as a header.
     if (comment && names.size() == 1 && !same_name(std::string(cells[0]), names[0])) continue;
     table.header.assign(cells.begin(), cells.end());
+    if (cells.size() != table.rows[0].cells.size()) {
+      csv_fail(table,
+               line,
+               std::to_string(cells.size()) + " names of columns",
+               std::to_string(table.rows[0].cells.size()) + ", as many as the rows have");
+    }
     return check_header(table, line, names);
   }
 }
@@ -156,8 +162,8 @@ CsvTable read_csv(const std::filesystem::path& file,
       continue;
     }
     check_count(table, row, names, columns, last);
-    if (table.rows.empty()) take_header(table, above, names);
     table.rows.push_back(std::move(row));
+    if (table.rows.size() == 1) take_header(table, above, names);
   }
   if (table.rows.empty()) {
     throw InputError(file.string() + ": found no rows, expected " + joined(names));
