@@ -63,6 +63,9 @@ TEST(Camera, UndistortIsTheInverseOfDistort) {
     for (int u = 0; u < camera.width; u += 40) {
       for (int v = 0; v < camera.height; v += 40) {
         const Eigen::Vector2d raw(u, v);
+        const bool behind = camera.distortion == Distortion::equidistant &&
+                            (raw - Eigen::Vector2d(camera.cx, camera.cy)).norm() > 1.5 * camera.fx;
+        if (behind) continue;  // more than 90 degrees from the axis: no pinhole camera sees it
         EXPECT_LT((distort(camera, undistort(camera, raw)) - raw).norm(), 1e-8) << u << " " << v;
       }
     }
