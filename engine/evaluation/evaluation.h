@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "engine/frontend/window.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/similarity.h"
 #include "engine/initializers/initialization.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -21,12 +22,12 @@ struct WindowTruth {
   std::optional<Plane> plane;                ///< [m]
 };
 
-/// What is unknown is empty: ATE, scale and PDE where the true path is a point, the aligned PNE also
-/// where it is a line; all plane errors where the true plane or the reference pose is unknown.
+/// What is unknown is empty: ATE, scale and PDE where the true path is a point, the aligned PNE
+/// also where it is a line; all plane errors where the true plane or the reference pose is unknown.
 struct Evaluation {
-  Alignment alignment = Alignment::ok;  ///< of the true camera path
-  std::optional<Similarity> T_true_est; ///< estimate -> truth's world
-  std::optional<double> scale;          ///< meters per unit of the estimate
+  Alignment alignment = Alignment::ok;   ///< of the true camera path
+  std::optional<Similarity> T_true_est;  ///< estimate -> truth's world
+  std::optional<double> scale;           ///< meters per unit of the estimate
   std::optional<double> ate_m;
   std::optional<double> pne_deg;
   std::optional<double> pne_aligned_deg;

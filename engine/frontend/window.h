@@ -2,18 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/frontend/homography_ransac.h"
+#include "engine/geometry/camera.h"
+
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
 /// Tracks that start in the reference frame, as they were followed through the window: what the
-/// picture shows. Column j of every matrix is track j; NaN from the frame on in which it is lost.
+/// picture shows. Column j of every matrix is track j; NaN where it is not seen.
 struct Tracks {
-  int start = 0;                        ///< reference frame, counts in the recording
-  std::vector<std::int64_t> ids;        ///< one a track
-  std::vector<Eigen::Matrix2Xd> raw_px; ///< one a frame, 2 x tracks, raw pixels
+  int start = 0;                         ///< reference frame, counts in the recording
+  std::vector<std::int64_t> ids;         ///< one a track
+  std::vector<Eigen::Matrix2Xd> raw_px;  ///< one a frame, 2 x tracks, raw pixels
 
   int frame_count() const { return static_cast<int>(raw_px.size()); }
   int track_count() const { return static_cast<int>(ids.size()); }
@@ -23,13 +28,13 @@ struct Tracks {
 /// A window: all that an initializer may know. Frame 0 of it is the reference frame (frame 1 of the
 /// paper), whose camera is the world. Immutable once made.
 struct Window {
-  int start = 0;                             ///< reference frame, counts in the recording
-  Eigen::Matrix3d K;                         ///< of the undistorted image [px]
-  std::vector<std::int64_t> timestamps_ns;   ///< one a frame
-  std::vector<Eigen::Matrix2Xd> points_px;   ///< one a frame, 2 x tracks, undistorted; NaN: not seen
-  std::vector<std::vector<bool>> inlier;     ///< one a frame and track: seen, and agrees with H_i1
-  std::vector<Eigen::Matrix3d> H_i1;         ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
-  std::vector<Eigen::Matrix3d> R_wc;         ///< given rotations, R_wc of frame 0 is I
+  int start = 0;                            ///< reference frame, counts in the recording
+  Eigen::Matrix3d K;                        ///< of the undistorted image [px]
+  std::vector<std::int64_t> timestamps_ns;  ///< one a frame
+  std::vector<Eigen::Matrix2Xd> points_px;  ///< one a frame, 2 x tracks, undistorted; NaN: not seen
+  std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
+  std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
+  std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
@@ -39,5 +44,13 @@ struct Window {
   /// deliver.
   bool is_inlier_track(int track) const;
 };
+
+/// Undistorts the tracks once and rejects outliers between the reference frame and each other
+/// frame. Rotations are left at the identity. `recording_timestamps_ns` are those of all frames of
+/// the recording.
+Window make_window(const Tracks& tracks,
+                   const Camera& camera,
+                   std::span<const std::int64_t> recording_timestamps_ns,
+                   const RansacOptions& ransac);
 
 }  // namespace gpo

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/geometry/pose.h"
+
 #include <optional>
 
-#include "engine/geometry/pose.h"
+#include <Eigen/Core>
 
 namespace gpo {
 

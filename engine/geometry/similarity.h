@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -25,7 +26,8 @@ enum class Alignment { ok, line, point };
 Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// Extent of a path, judged by the standard deviations s1 >= s2 along its principal axes: a point
-/// where s1 < 1e-4 of `reference_length` (say the distance of the plane), a line where s2 < 2 % of s1.
+/// where s1 < 1e-3 of `reference_length` (say the distance of the plane), a line where s2 < 2 % of
+/// s1.
 Alignment determined_alignment(const Eigen::Matrix3Xd& path, double reference_length);
 
 }  // namespace gpo

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+
 #include <string>
 #include <vector>
 
-#include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
+#include <Eigen/Core>
 
 namespace gpo {
 

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+
 #include <cstdint>
 #include <span>
 #include <stop_token>
 #include <string>
-
-#include "engine/frontend/window.h"
-#include "engine/initializers/initialization.h"
 
 namespace gpo {
 
@@ -23,7 +23,7 @@ struct Method {
 
 std::span<const Method> methods();
 
-/// The row named `key`. Throws InputError that names the known ones and the nearest.
+/// The row named `key`. Throws InputError that names the known ones.
 const Method& find_method(const std::string& key);
 
 }  // namespace gpo

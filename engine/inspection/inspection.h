@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <stop_token>
-#include <string>
-
 #include "engine/evaluation/evaluation.h"
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/settings.h"
 #include "engine/recording/recording.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
 
 namespace gpo {
 
@@ -33,8 +33,10 @@ struct Inspection {
   std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
   std::shared_ptr<const Initialization> initialization;
   std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
-  CubeAnchor cube;
-  std::optional<CubeAnchor> true_cube;  ///< in the truth's world, same place on the true plane
+  std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
+  std::optional<CubeAnchor>
+      true_cube;  ///< the same place on the true plane, in the truth's world;
+                  ///< its side is that of `cube` times true_cube.unit / cube.unit
   Timing timing;
 };
 

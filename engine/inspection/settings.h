@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/rotations.h"
+
 #include <cstdint>
 #include <string>
-
-#include "engine/frontend/rotations.h"
 
 namespace gpo {
 
 /// Everything that a result depends on beside the recording. Immutable in use.
 struct Settings {
-  int start = 0;                                         ///< reference frame, counts in the recording
-  int frames = 30;                                       ///< length of the window
-  std::string method = "gpo";                            ///< key in `methods()`
+  int start = 0;               ///< reference frame, counts in the recording
+  int frames = 30;             ///< length of the window
+  std::string method = "gpo";  ///< key in `methods()`
   RotationSource rotations = RotationSource::automatic;  ///< gyroscope, else averaging
   bool ransac = true;                                    ///< reject outliers by homography RANSAC
   double ransac_threshold_px = 2.0;                      ///< transfer error of an inlier, one-sided
@@ -36,16 +36,22 @@ struct SettingInfo {
 /// it with `visit(SettingInfo, value&)`.
 template <class S, class Visitor>
 void visit_settings(S& settings, Visitor&& visit) {
-  visit(SettingInfo{"start", "Start", "frame", "First frame of the window, its reference frame", 0, 1e9},
-        settings.start);
+  visit(
+      SettingInfo{
+          "start", "Start", "frame", "First frame of the window, its reference frame", 0, 1e9},
+      settings.start);
   visit(SettingInfo{"frames", "Frames", "", "Length of the window", 2, 1000}, settings.frames);
   visit(SettingInfo{"method", "Method", "", "Initializer"}, settings.method);
   visit(SettingInfo{"rotations", "Rotations", "", "Where the camera rotations come from"},
         settings.rotations);
-  visit(SettingInfo{"ransac", "RANSAC", "", "Reject outliers by a homography from the reference frame"},
-        settings.ransac);
-  visit(SettingInfo{"ransac_threshold_px", "Threshold", "px", "Largest transfer error of an inlier", 0.1, 50},
-        settings.ransac_threshold_px);
+  visit(
+      SettingInfo{
+          "ransac", "RANSAC", "", "Reject outliers by a homography from the reference frame"},
+      settings.ransac);
+  visit(
+      SettingInfo{
+          "ransac_threshold_px", "Threshold", "px", "Largest transfer error of an inlier", 0.1, 50},
+      settings.ransac_threshold_px);
   visit(SettingInfo{"seed", "Seed", "", "Seed of every random choice", 0, 1e9}, settings.seed);
 }
 

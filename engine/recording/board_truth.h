@@ -2,19 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/recording/recording.h"
+
 #include <optional>
-#include <opencv2/core.hpp>
 #include <vector>
 
-#include "engine/recording/recording.h"
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace gpo {
 
 /// The chessboard as seen in one picture: corners row by row [raw px], sub-pixel, rows x columns of
-/// them, ordered so that (along a row) x (along a column) points away from the camera. A board whose
-/// corner counts are both even or both odd looks the same upside down: `previous` (the corners of
-/// an earlier frame, may be empty) decides which end is first. Empty where no board is found.
+/// them, ordered so that (along a row) x (along a column) points away from the camera. A board
+/// whose corner counts are both even or both odd looks the same upside down: `previous` (the
+/// corners of an earlier frame, may be empty) decides which end is first. Empty where no board is
+/// found.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray,
                                         const Board& board,
                                         const std::vector<Eigen::Vector2d>& previous = {});

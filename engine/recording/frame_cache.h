@@ -6,8 +6,9 @@
 #include <functional>
 #include <list>
 #include <mutex>
-#include <opencv2/core.hpp>
 #include <unordered_map>
+
+#include <opencv2/core.hpp>
 
 namespace gpo {
 

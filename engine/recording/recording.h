@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "engine/geometry/camera.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/frame_cache.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,10 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/geometry/camera.h"
-#include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
-#include "engine/recording/frame_cache.h"
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -23,7 +24,7 @@ enum class Layout { euroc, pictures, tracks };  ///< contract.md's layouts 1, 3 
 struct Gyroscope {
   std::filesystem::path file;
   std::vector<std::int64_t> timestamps_ns;
-  std::vector<int> lines;  ///< of each sample in `file`, for messages about a gap
+  std::vector<int> lines;                    ///< of each sample in `file`, for messages about a gap
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< in the gyroscope's own axes
   Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset

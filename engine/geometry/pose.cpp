@@ -1,0 +1,52 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/pose.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+
+Pose operator*(const Pose& T_ab, const Pose& T_bc) {
+  return {T_ab.R_wc * T_bc.R_wc, T_ab.R_wc * T_bc.p_wc + T_ab.p_wc};
+}
+
+Pose inverse(const Pose& pose) {
+  return {pose.R_wc.transpose(), -(pose.R_wc.transpose() * pose.p_wc)};
+}
+
+Eigen::Vector3d to_world(const Pose& pose, const Eigen::Vector3d& point_c) {
+  return pose.R_wc * point_c + pose.p_wc;
+}
+
+Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w) {
+  return pose.R_wc.transpose() * (point_w - pose.p_wc);
+}
+
+Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + skew(rotation_rad);
+  return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
+}
+
+Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd angle_axis{Eigen::Quaterniond(rotation).normalized()};
+  return angle_axis.angle() * angle_axis.axis();
+}
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return degrees(std::atan2(a.cross(b).norm(), a.dot(b)));
+}
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+}  // namespace gpo
