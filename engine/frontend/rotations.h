@@ -16,8 +16,10 @@ namespace gpo {
 enum class RotationSource { automatic, gyro, averaging, truth };
 
 /// Keys of the sources on the command line and in files, in the order of the enumeration.
-std::span<const std::string> rotation_source_keys();
-const std::string& to_string(RotationSource source);
+std::span<const char* const> rotation_source_keys();
+const char* to_string(RotationSource source);
+/// Throws InputError that names the known ones.
+RotationSource rotation_source(const std::string& key);
 
 /// R_wc at each of the times, world = camera at the first: mid-point integration of (w - bias) on
 /// SO(3), interpolated at the frame times (method.md, "Pipeline", step 3). Throws InputError where

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/homography_ransac.h"
+#include "engine/geometry/camera.h"
+
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,7 +14,7 @@
 namespace gpo {
 
 /// Tracks that start in the reference frame, as they were followed through the window: what the
-/// picture shows. Column j of every matrix is track j; NaN from the frame on in which it is lost.
+/// picture shows. Column j of every matrix is track j; NaN where it is not seen.
 struct Tracks {
   int start = 0;                         ///< reference frame, counts in the recording
   std::vector<std::int64_t> ids;         ///< one a track
@@ -40,5 +44,13 @@ struct Window {
   /// deliver.
   bool is_inlier_track(int track) const;
 };
+
+/// Undistorts the tracks once and rejects outliers between the reference frame and each other
+/// frame. Rotations are left at the identity. `recording_timestamps_ns` are those of all frames of
+/// the recording.
+Window make_window(const Tracks& tracks,
+                   const Camera& camera,
+                   std::span<const std::int64_t> recording_timestamps_ns,
+                   const RansacOptions& ransac);
 
 }  // namespace gpo

@@ -23,7 +23,7 @@ struct Method {
 
 std::span<const Method> methods();
 
-/// The row named `key`. Throws InputError that names the known ones and the nearest.
+/// The row named `key`. Throws InputError that names the known ones.
 const Method& find_method(const std::string& key);
 
 }  // namespace gpo

@@ -1,0 +1,174 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/rotation_averaging.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/geometry/pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kLeastPairTracks = 12;
+constexpr int kLongestPair = 20;  // frames apart; pairs with the reference frame are all taken
+constexpr double kNormalCapDeg =
+    10;  // a candidate farther from the common normal is the false twin
+constexpr double kSmallestRad = 1e-4;   // keeps the weight of a perfect pair finite
+constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
+
+struct Pair {
+  int i;
+  int j;
+  std::vector<HomographyMotion> motions;  // from i to j
+};
+
+/// Candidates from the tracks that both frames see as inliers.
+std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
+  std::vector<int> common;
+  for (int k = 0; k < window.track_count(); ++k) {
+    const bool in_i = i == 0 ? window.points_px[0].col(k).allFinite() : bool{window.inlier[i][k]};
+    if (in_i && window.inlier[j][k]) common.push_back(k);
+  }
+  if (static_cast<int>(common.size()) < kLeastPairTracks) return std::nullopt;
+  const Matrix2Xd from = window.points_px[i](Eigen::all, common);
+  const Matrix2Xd to = window.points_px[j](Eigen::all, common);
+  const auto H = fit_homography(from, to);
+  if (!H) return std::nullopt;
+  Pair pair{i, j, decompose_homography(refine_homography(*H, from, to), window.K, from)};
+  return pair.motions.empty() ? std::nullopt : std::optional(std::move(pair));
+}
+
+double weight_of(const HomographyMotion& motion) {
+  const double parallax = std::min(motion.tau.norm() / kFullParallax, 1.0);
+  return parallax * parallax;
+}
+
+const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
+                                const Vector3d& normal) {
+  return *std::ranges::max_element(
+      motions, {}, [&](const auto& m) { return m.normal.dot(normal); });
+}
+
+/// The plane's normal in the reference frame on which most decompositions agree. The false twin of
+/// each decomposition moves with the translation, the true one does not.
+std::optional<Vector3d> common_normal(std::span<const Pair> reference_pairs) {
+  std::optional<Vector3d> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pair& seed_pair : reference_pairs) {
+    for (const HomographyMotion& seed : seed_pair.motions) {
+      Vector3d normal = seed.normal;
+      double cost = 0;
+      for (int round = 0; round < 10; ++round) {
+        Vector3d sum = Vector3d::Zero();
+        cost = 0;
+        for (const Pair& pair : reference_pairs) {
+          const HomographyMotion& motion = nearest(pair.motions, normal);
+          const double angle = angle_deg(motion.normal, normal);
+          cost += weight_of(motion) * std::min(angle * angle, kNormalCapDeg * kNormalCapDeg);
+          if (angle < kNormalCapDeg) sum += weight_of(motion) * motion.normal;
+        }
+        if (sum.norm() < 1e-12) break;
+        normal = sum.normalized();
+      }
+      if (cost < least) {
+        least = cost;
+        best = normal;
+      }
+    }
+  }
+  return best;
+}
+
+/// One step of averaging: x of length frames x 3 that minimizes sum w |x_j - x_i - r|^2, x_0 = 0.
+Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
+                            const std::vector<Vector3d>& residuals,
+                            const std::vector<double>& weights,
+                            Eigen::Index frames) {
+  Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(frames, frames);
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(frames, 3);
+  for (std::size_t k = 0; k < relative.size(); ++k) {
+    const auto& [i, j, R_ij, unused] = relative[k];
+    const double w = weights[k];
+    laplacian(i, i) += w;
+    laplacian(j, j) += w;
+    laplacian(i, j) -= w;
+    laplacian(j, i) -= w;
+    right.row(j) += w * residuals[k].transpose();
+    right.row(i) -= w * residuals[k].transpose();
+  }
+  Eigen::MatrixX3d x = Eigen::MatrixX3d::Zero(frames, 3);
+  x.bottomRows(frames - 1) = laplacian.bottomRightCorner(frames - 1, frames - 1)
+                                 .ldlt()
+                                 .solve(right.bottomRows(frames - 1));
+  return x;
+}
+
+/// Lie-algebraic averaging with the weight function w(|residual| in rad).
+void average(std::span<const RelativeRotation> relative,
+             std::vector<Matrix3d>& R_wc,
+             int rounds,
+             const std::function<double(double)>& weight) {
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Vector3d> residuals;
+    std::vector<double> weights;
+    for (const auto& [i, j, R_ij, w] : relative) {
+      // With R_wc <- exp(x) R_wc the residual log(R_wi R_ij R_wj^T) becomes r + x_i - x_j.
+      residuals.push_back(so3_log(R_wc[i] * R_ij * R_wc[j].transpose()));
+      weights.push_back(w * weight(residuals.back().norm()));
+    }
+    const auto frames = static_cast<Eigen::Index>(R_wc.size());
+    const Eigen::MatrixX3d x = solve_step(relative, residuals, weights, frames);
+    if (!x.allFinite()) return;
+    for (Eigen::Index i = 1; i < frames; ++i) R_wc[i] = so3_exp(x.row(i).transpose()) * R_wc[i];
+    if (x.rowwise().norm().maxCoeff() < 1e-10) return;
+  }
+}
+
+}  // namespace
+
+std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
+                                        std::vector<Matrix3d> R_wc) {
+  average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallestRad); });
+  // The l_1/2 weights of Chatterjee & Govindu 2018, whose estimate tolerates more outliers.
+  average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallestRad), -1.5); });
+  return R_wc;
+}
+
+std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window) {
+  std::vector<Pair> reference_pairs;
+  for (int j = 1; j < window.frame_count(); ++j) {
+    if (auto pair = decompose_pair(window, 0, j)) reference_pairs.push_back(std::move(*pair));
+  }
+  const auto normal = common_normal(reference_pairs);
+  if (!normal || static_cast<int>(reference_pairs.size()) + 1 < window.frame_count())
+    return std::nullopt;
+  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
+  std::vector<RelativeRotation> relative;
+  const auto add = [&](const Pair& pair, const Vector3d& expected_normal) {
+    const HomographyMotion& motion = nearest(pair.motions, expected_normal);
+    if (angle_deg(motion.normal, expected_normal) > 3 * kNormalCapDeg) return;
+    relative.push_back({pair.i, pair.j, motion.R_21.transpose(), 1});
+  };
+  for (const Pair& pair : reference_pairs) {
+    R_wc.push_back(nearest(pair.motions, *normal).R_21.transpose());
+    add(pair, *normal);
+  }
+  for (int i = 1; i < window.frame_count(); ++i) {
+    for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
+      if (const auto pair = decompose_pair(window, i, j)) add(*pair, R_wc[i].transpose() * *normal);
+    }
+  }
+  return average_rotations(relative, std::move(R_wc));
+}
+
+}  // namespace gpo

@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// A measured rotation between two frames: x_i = R_ij x_j for directions.
+struct RelativeRotation {
+  int i;
+  int j;
+  Eigen::Matrix3d R_ij;
+  double weight = 1;  ///< inverse variance, any unit
+};
+
+/// Robust rotation averaging (Chatterjee & Govindu, ICCV 2013): starting from `R_wc`, least
+/// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
+std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
+                                               std::vector<Eigen::Matrix3d> R_wc);
+
+/// Rotations of a window's cameras from its pictures alone, R_wc of frame 0 is I: homographies
+/// between pairs of frames are decomposed, the candidates whose plane normal agrees over the window
+/// are kept, and their rotations averaged. On a plane these are far better than five-point
+/// rotations
+/// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Nothing where the
+/// homographies allow no consistent choice.
+std::optional<std::vector<Eigen::Matrix3d>> averaged_rotations(const Window& window);
+
+}  // namespace gpo

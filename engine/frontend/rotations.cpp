@@ -1,0 +1,135 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/rotations.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+constexpr std::array<const char*, 4> kKeys{"automatic", "gyro", "averaging", "truth"};
+constexpr double kGapPeriods = 5;
+constexpr double kMarginPeriods = 1.5;  // beyond the first and the last sample the rate is held
+
+double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+std::int64_t median_period_ns(const Gyroscope& gyroscope) {
+  std::vector<std::int64_t> periods;
+  for (std::size_t k = 1; k < gyroscope.timestamps_ns.size(); ++k) {
+    periods.push_back(gyroscope.timestamps_ns[k] - gyroscope.timestamps_ns[k - 1]);
+  }
+  std::ranges::nth_element(periods,
+                           periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2));
+  return periods[periods.size() / 2];
+}
+
+/// Refuses a window whose times the samples do not cover closely. Times on the gyroscope's clock.
+void check_coverage(const Gyroscope& gyroscope, std::int64_t first_ns, std::int64_t last_ns) {
+  const auto& t = gyroscope.timestamps_ns;
+  const std::string file = gyroscope.file.string();
+  if (t.size() < 2)
+    throw InputError(fmt::format("{}: {} samples, expected at least 2", file, t.size()));
+  const auto period_ns = static_cast<double>(median_period_ns(gyroscope));
+  const double margin_ns = kMarginPeriods * period_ns;
+  if (static_cast<double>(t.front() - first_ns) > margin_ns) {
+    throw InputError(
+        fmt::format("{}:{}: the gyroscope starts at {} ns, {:.3f} s after the window's first frame",
+                    file,
+                    gyroscope.lines.front(),
+                    t.front(),
+                    seconds(t.front() - first_ns)));
+  }
+  if (static_cast<double>(last_ns - t.back()) > margin_ns) {
+    throw InputError(
+        fmt::format("{}:{}: the gyroscope ends at {} ns, {:.3f} s before the window's last frame",
+                    file,
+                    gyroscope.lines.back(),
+                    t.back(),
+                    seconds(last_ns - t.back())));
+  }
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    const std::int64_t dt_ns = t[k] - t[k - 1];
+    const bool inside = t[k] > first_ns && t[k - 1] < last_ns;
+    if (inside && dt_ns <= 0) {
+      throw InputError(fmt::format(
+          "{}:{}: time stamp {} does not come after {}", file, gyroscope.lines[k], t[k], t[k - 1]));
+    }
+    if (inside && static_cast<double>(dt_ns) > kGapPeriods * period_ns) {
+      throw InputError(
+          fmt::format("{}:{}: gap of {:.3f} s in the gyroscope's samples before {} ns, inside the "
+                      "window; expected about {:.4f} s",
+                      file,
+                      gyroscope.lines[k],
+                      seconds(dt_ns),
+                      t[k],
+                      period_ns * 1e-9));
+    }
+  }
+}
+
+/// The rate at a time, linear between samples, held beyond them.
+Eigen::Vector3d rate_at(const Gyroscope& gyroscope, std::int64_t t_ns) {
+  const auto& t = gyroscope.timestamps_ns;
+  const auto after = std::ranges::upper_bound(t, t_ns);
+  if (after == t.begin()) return gyroscope.rates_rad_s.front();
+  if (after == t.end()) return gyroscope.rates_rad_s.back();
+  const auto k = static_cast<std::size_t>(after - t.begin());
+  const double u = static_cast<double>(t_ns - t[k - 1]) / static_cast<double>(t[k] - t[k - 1]);
+  return (1 - u) * gyroscope.rates_rad_s[k - 1] + u * gyroscope.rates_rad_s[k];
+}
+
+/// Rotation from the axes at `to_ns` to those at `from_ns`: mid-point rule over the samples
+/// between.
+Eigen::Matrix3d integrate(const Gyroscope& gyroscope, std::int64_t from_ns, std::int64_t to_ns) {
+  const auto& t = gyroscope.timestamps_ns;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  std::int64_t now_ns = from_ns;
+  Eigen::Vector3d rate = rate_at(gyroscope, from_ns);
+  auto sample = static_cast<std::size_t>(std::ranges::upper_bound(t, from_ns) - t.begin());
+  while (now_ns < to_ns) {
+    const bool has_sample = sample < t.size() && t[sample] < to_ns;
+    const std::int64_t next_ns = has_sample ? t[sample] : to_ns;
+    const Eigen::Vector3d next_rate =
+        has_sample ? gyroscope.rates_rad_s[sample] : rate_at(gyroscope, to_ns);
+    R = R * so3_exp((0.5 * (rate + next_rate) - gyroscope.bias_rad_s) * seconds(next_ns - now_ns));
+    now_ns = next_ns;
+    rate = next_rate;
+    ++sample;
+  }
+  return R;
+}
+
+}  // namespace
+
+const char* to_string(RotationSource source) { return kKeys[static_cast<std::size_t>(source)]; }
+
+std::span<const char* const> rotation_source_keys() { return kKeys; }
+
+RotationSource rotation_source(const std::string& key) {
+  const auto it = std::ranges::find(kKeys, key);
+  if (it != kKeys.end()) return static_cast<RotationSource>(it - kKeys.begin());
+  throw InputError(fmt::format(
+      "--rotations: unknown source '{}', expected one of {}", key, fmt::join(kKeys, ", ")));
+}
+
+std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
+                                            std::span<const std::int64_t> frame_times_ns) {
+  std::vector<std::int64_t> times_ns(frame_times_ns.begin(), frame_times_ns.end());
+  for (std::int64_t& t : times_ns) t += gyroscope.time_offset_ns;
+  check_coverage(gyroscope, times_ns.front(), times_ns.back());
+  const Eigen::Matrix3d& R_gc = gyroscope.R_gyro_camera;
+  Eigen::Matrix3d R_first_now = Eigen::Matrix3d::Identity();  // of the gyroscope's axes
+  std::vector<Eigen::Matrix3d> R_wc{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 1; i < times_ns.size(); ++i) {
+    R_first_now = R_first_now * integrate(gyroscope, times_ns[i - 1], times_ns[i]);
+    R_wc.push_back(R_gc.transpose() * R_first_now * R_gc);
+  }
+  return R_wc;
+}
+
+}  // namespace gpo

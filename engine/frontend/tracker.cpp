@@ -1,0 +1,190 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracker.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace gpo {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
+  // FAST looks at a circle of radius 3 around each pixel: the cell is widened to not lose its rim.
+  const cv::Rect wide = cv::Rect(cell.x - 3, cell.y - 3, cell.width + 6, cell.height + 6) &
+                        cv::Rect(0, 0, gray.cols, gray.rows);
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(gray(wide), corners, threshold, true);
+  for (cv::KeyPoint& corner : corners) corner.pt += cv::Point2f(wide.tl());
+  std::erase_if(corners, [&](const cv::KeyPoint& k) { return !cell.contains(cv::Point(k.pt)); });
+  return corners;
+}
+
+std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray,
+                                          const cv::Rect& cell,
+                                          const DetectorOptions& options) {
+  std::vector<cv::KeyPoint> corners = fast_corners(gray, cell, options.threshold);
+  if (corners.empty()) corners = fast_corners(gray, cell, options.weak_threshold);
+  std::ranges::sort(corners, [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
+    return std::tuple(-a.response, a.pt.y, a.pt.x) < std::tuple(-b.response, b.pt.y, b.pt.x);
+  });
+  return corners;
+}
+
+Eigen::Matrix2Xd to_matrix(const std::vector<cv::Point2f>& points) {
+  Eigen::Matrix2Xd matrix(2, points.size());
+  for (std::size_t j = 0; j < points.size(); ++j) matrix.col(j) << points[j].x, points[j].y;
+  return matrix;
+}
+
+using Pyramid = std::vector<cv::Mat>;
+
+Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
+  Pyramid pyramid;
+  cv::buildOpticalFlowPyramid(
+      gray, pyramid, cv::Size(options.window_px, options.window_px), options.pyramid_levels);
+  return pyramid;
+}
+
+/// Where the points of one picture are in the other; NaN where KLT gives up or leaves the picture.
+std::vector<cv::Point2f> flow(const Pyramid& from,
+                              const Pyramid& to,
+                              const std::vector<cv::Point2f>& points,
+                              const TrackerOptions& options) {
+  std::vector<cv::Point2f> found;
+  std::vector<unsigned char> status;
+  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
+  cv::calcOpticalFlowPyrLK(from,
+                           to,
+                           points,
+                           found,
+                           status,
+                           cv::noArray(),
+                           cv::Size(options.window_px, options.window_px),
+                           options.pyramid_levels,
+                           until);
+  const cv::Size size = to.front().size();
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    // KLT reports success for some points outside of the picture (OpenCV issue 4799).
+    const bool inside = found[j].x >= 0 && found[j].y >= 0 &&
+                        found[j].x <= static_cast<float>(size.width - 1) &&
+                        found[j].y <= static_cast<float>(size.height - 1);
+    if (status[j] == 0 || !inside) found[j] = cv::Point2f(std::nanf(""), std::nanf(""));
+  }
+  return found;
+}
+
+/// Follows the living tracks into the next picture; returns 2 x tracks with NaN for the dead.
+Eigen::Matrix2Xd follow(const Pyramid& from,
+                        const Pyramid& to,
+                        const Eigen::Matrix2Xd& before,
+                        const TrackerOptions& options) {
+  std::vector<int> living;
+  std::vector<cv::Point2f> points;
+  for (int j = 0; j < before.cols(); ++j) {
+    if (!before.col(j).allFinite()) continue;
+    living.push_back(j);
+    points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
+  }
+  Eigen::Matrix2Xd after = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  if (living.empty()) return after;
+  const std::vector<cv::Point2f> forward = flow(from, to, points, options);
+  std::vector<cv::Point2f> safe = forward;  // KLT does not expect NaN
+  std::ranges::replace_if(
+      safe, [](const cv::Point2f& p) { return std::isnan(p.x); }, cv::Point2f(0, 0));
+  const std::vector<cv::Point2f> back = flow(to, from, safe, options);
+  for (std::size_t k = 0; k < living.size(); ++k) {
+    const double distance = cv::norm(back[k] - points[k]);
+    if (std::isnan(forward[k].x) || !(distance <= options.forward_backward_px)) continue;
+    after.col(living[k]) << forward[k].x, forward[k].y;
+  }
+  return after;
+}
+
+}  // namespace
+
+Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options) {
+  const double spacing_px = options.spacing * gray.cols;
+  std::vector<cv::Point2f> kept;
+  const auto is_free = [&](const cv::Point2f& p) {
+    return std::ranges::none_of(kept,
+                                [&](const cv::Point2f& q) { return cv::norm(p - q) < spacing_px; });
+  };
+  const int width = gray.cols - 2 * options.border_px;
+  const int height = gray.rows - 2 * options.border_px;
+  for (int row = 0; row < options.grid_rows; ++row) {
+    for (int column = 0; column < options.grid_columns; ++column) {
+      const cv::Point tl(options.border_px + width * column / options.grid_columns,
+                         options.border_px + height * row / options.grid_rows);
+      const cv::Point br(options.border_px + width * (column + 1) / options.grid_columns,
+                         options.border_px + height * (row + 1) / options.grid_rows);
+      int taken = 0;
+      for (const cv::KeyPoint& corner : corners_of_cell(gray, cv::Rect(tl, br), options)) {
+        if (taken == options.most_per_cell) break;
+        if (!is_free(corner.pt)) continue;
+        kept.push_back(corner.pt);
+        ++taken;
+      }
+    }
+  }
+  if (kept.empty()) return Eigen::Matrix2Xd(2, 0);
+  const int half = options.subpixel_half_px;
+  cv::cornerSubPix(gray,
+                   kept,
+                   cv::Size(half, half),
+                   cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.01));
+  return to_matrix(kept);
+}
+
+std::optional<Tracks> track_window(const FrameCache& pictures,
+                                   int start,
+                                   int frames,
+                                   const TrackerOptions& options,
+                                   std::stop_token stop,
+                                   const FrameProgress& progress) {
+  Tracks tracks;
+  tracks.start = start;
+  Pyramid before;
+  for (int i = 0; i < frames; ++i) {
+    if (stop.stop_requested()) return std::nullopt;
+    const cv::Mat gray = pictures.gray(start + i);
+    Pyramid now = build_pyramid(gray, options);
+    if (i == 0) {
+      tracks.raw_px.push_back(detect_corners(gray, options.detector));
+      for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
+    } else {
+      tracks.raw_px.push_back(follow(before, now, tracks.raw_px.back(), options));
+    }
+    before = std::move(now);
+    if (progress) progress(i + 1, frames);
+  }
+  return tracks;
+}
+
+Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames) {
+  Tracks tracks;
+  tracks.start = start;
+  std::map<std::int64_t, int> column;
+  for (const TrackObservation& o : observations) {
+    if (o.frame != start) continue;
+    column[o.track] = static_cast<int>(tracks.ids.size());
+    tracks.ids.push_back(o.track);
+  }
+  tracks.raw_px.assign(frames, Eigen::Matrix2Xd::Constant(2, tracks.track_count(), kNaN));
+  for (const TrackObservation& o : observations) {
+    const auto it = column.find(o.track);
+    if (o.frame < start || o.frame >= start + frames || it == column.end()) continue;
+    tracks.raw_px[o.frame - start].col(it->second) = o.raw_px;
+  }
+  return tracks;
+}
+
+}  // namespace gpo

@@ -1,0 +1,69 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/window.h"
+
+#include "engine/geometry/homography.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gpo {
+namespace {
+
+Eigen::Matrix2Xd undistort_all(const Camera& camera, const Eigen::Matrix2Xd& raw_px) {
+  Eigen::Matrix2Xd points(2, raw_px.cols());
+  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) points.col(j) = undistort(camera, raw_px.col(j));
+  return points;
+}
+
+void add_homography(Window& window, int frame, const RansacOptions& ransac) {
+  std::vector<int> seen;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.points_px[0].col(j).allFinite() && window.points_px[frame].col(j).allFinite())
+      seen.push_back(j);
+  }
+  const auto robust = homography_ransac(
+      window.points_px[0](Eigen::all, seen), window.points_px[frame](Eigen::all, seen), ransac);
+  window.inlier.emplace_back(window.track_count(), false);
+  window.H_i1.push_back(
+      robust ? robust->H : Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t k = 0; robust && k < seen.size(); ++k)
+    window.inlier[frame][seen[k]] = robust->inlier[k];
+}
+
+}  // namespace
+
+int Window::inlier_count(int frame) const {
+  return static_cast<int>(std::ranges::count(inlier[frame], true));
+}
+
+bool Window::is_inlier_track(int track) const {
+  int seen = 0;
+  int agreeing = 0;
+  for (int i = 1; i < frame_count(); ++i) {
+    seen += points_px[i].col(track).allFinite() ? 1 : 0;
+    agreeing += inlier[i][track] ? 1 : 0;
+  }
+  return agreeing > 0 && 2 * agreeing >= seen;
+}
+
+Window make_window(const Tracks& tracks,
+                   const Camera& camera,
+                   std::span<const std::int64_t> recording_timestamps_ns,
+                   const RansacOptions& ransac) {
+  Window window;
+  window.start = tracks.start;
+  window.K = intrinsic_matrix(camera);
+  for (int i = 0; i < tracks.frame_count(); ++i) {
+    window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
+    window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
+  }
+  window.H_i1.push_back(Eigen::Matrix3d::Identity());
+  window.inlier.emplace_back(tracks.track_count(), false);
+  for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+  for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
+  window.R_wc.assign(window.frame_count(), Eigen::Matrix3d::Identity());
+  return window;
+}
+
+}  // namespace gpo

@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+
+#include <stop_token>
+
+namespace gpo {
+
+/// Global plane optimization (Du et al. 2020): minimizes over the plane's normal and the scaled
+/// translations of all frames the summed squared transfer error of the inliers, the window's
+/// rotations held fixed; 3m - 1 unknowns. No homography is decomposed, no point triangulated.
+Initialization initialize_gpo(const Window& window, std::stop_token stop);
+
+}  // namespace gpo

@@ -1,0 +1,37 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/methods.h"
+
+#include "engine/error.h"
+#include "engine/initializers/gpo.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+Initialization failed(std::string reason, SolverReport solver) {
+  Initialization result;
+  result.reason = std::move(reason);
+  result.solver = std::move(solver);
+  return result;
+}
+
+std::span<const Method> methods() {
+  static const std::array table{
+      Method{"gpo", "GPO", 0x009E73, initialize_gpo},
+  };
+  return table;
+}
+
+const Method& find_method(const std::string& key) {
+  std::string known;
+  for (const Method& method : methods()) {
+    if (method.key == key) return method;
+    known += (known.empty() ? "" : ", ") + method.key;
+  }
+  throw InputError(fmt::format("--method: unknown method '{}', expected one of {}", key, known));
+}
+
+}  // namespace gpo

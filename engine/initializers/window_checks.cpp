@@ -1,0 +1,140 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/window_checks.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/initializers/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
+
+/// A rotation leaves at least this multiple of the homography's error where there is parallax.
+constexpr double kParallaxToNoise = 2;
+/// The same in pixels: below it, lens and rolling shutter explain as much as parallax does.
+constexpr double kLeastParallaxPx = 0.5;
+/// A right solution leaves at most this multiple of the homographies' error, and so many pixels
+/// more: rotations are given and may be off by half a degree.
+constexpr double kDistrustFactor = 5;
+constexpr double kDistrustPx = 5;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+struct FrameErrors {
+  double homography_px;  ///< median transfer error of the frame's homography
+  double rotation_px;    ///< the same of the best rotation
+};
+
+FrameErrors frame_errors(const Window& window, int frame) {
+  std::vector<int> inliers;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.inlier[frame][j]) inliers.push_back(j);
+  }
+  const Matrix2Xd from = window.points_px[0](Eigen::all, inliers);
+  const Matrix2Xd to = window.points_px[frame](Eigen::all, inliers);
+  const Matrix3d K_inverse = window.K.inverse();
+  const Matrix3Xd rays_1 = (K_inverse * from.colwise().homogeneous()).colwise().normalized();
+  const Matrix3Xd rays_i = (K_inverse * to.colwise().homogeneous()).colwise().normalized();
+  const Matrix3d R_i1 = Eigen::umeyama(rays_1, rays_i, false).topLeftCorner<3, 3>();
+  const Matrix3d H_rotation = window.K * R_i1 * K_inverse;
+  std::vector<double> homography;
+  std::vector<double> rotation;
+  for (Eigen::Index k = 0; k < from.cols(); ++k) {
+    homography.push_back((transfer(window.H_i1[frame], from.col(k)) - to.col(k)).norm());
+    rotation.push_back((transfer(H_rotation, from.col(k)) - to.col(k)).norm());
+  }
+  return {median(std::move(homography)), median(std::move(rotation))};
+}
+
+}  // namespace
+
+std::optional<std::string> reason_not_to_try(const Window& window) {
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const int inliers = window.inlier_count(i);
+    if (inliers < kLeastInliers) {
+      return fmt::format("too few inliers: frame {} has {}, at least {} are needed",
+                         window.start + i,
+                         inliers,
+                         kLeastInliers);
+    }
+  }
+  FrameErrors widest{0, 0};
+  double least_px = 0;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const FrameErrors errors = frame_errors(window, i);
+    least_px = std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px);
+    if (errors.rotation_px > least_px) return std::nullopt;
+    if (errors.rotation_px > widest.rotation_px) widest = errors;
+  }
+  return fmt::format(
+      "no parallax: a pure rotation explains every frame to {:.2f} px (homography: {:.2f} px); "
+      "move the camera sideways",
+      widest.rotation_px,
+      widest.homography_px);
+}
+
+std::vector<double> reprojection_errors_px(const Window& window,
+                                           const Plane& plane,
+                                           std::span<const Pose> cameras) {
+  const Matrix3d K_inverse = window.K.inverse();
+  std::vector<double> errors;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const Eigen::Vector3d tau = -cameras[i].p_wc / plane.distance;
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (!window.inlier[i][j]) continue;
+      const Eigen::Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
+      const Transfer t = transfer_on_plane(window.K, cameras[i].R_wc, ray_1, plane.normal, tau);
+      errors.push_back(t.in_front ? (t.pixel - window.points_px[i].col(j)).norm()
+                                  : std::numeric_limits<double>::infinity());
+    }
+  }
+  return errors;
+}
+
+double root_mean_square(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::optional<std::string> reason_to_distrust(const Window& window,
+                                              const Plane& plane,
+                                              std::span<const Pose> cameras) {
+  const Matrix3d K_inverse = window.K.inverse();
+  for (int j = 0; j < window.track_count(); ++j) {
+    const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
+    if (window.inlier[0][j] && !(plane.normal.dot(ray) < 0)) {
+      return fmt::format("wrong minimum: the plane's horizon runs through the points (track {})",
+                         j);
+    }
+  }
+  std::vector<double> homography;
+  for (int i = 1; i < window.frame_count(); ++i)
+    homography.push_back(frame_errors(window, i).homography_px);
+  const double expected_px = median(std::move(homography));
+  const double found_px = median(reprojection_errors_px(window, plane, cameras));
+  if (found_px <= kDistrustFactor * expected_px + kDistrustPx) return std::nullopt;
+  return fmt::format(
+      "no convergence to the plane: median residual {:.1f} px, where the homographies leave {:.1f} "
+      "px "
+      "(wrong minimum, or rotations that do not fit the pictures)",
+      found_px,
+      expected_px);
+}
+
+}  // namespace gpo

@@ -1,0 +1,39 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// A frame with fewer inliers than this fails the window; a homography alone takes four.
+inline constexpr int kLeastInliers = 8;
+
+/// Why no method should try: a frame has too few inliers, or rotations alone explain all frames (no
+/// parallax), so that any plane would do. Nothing where the window may be tried.
+std::optional<std::string> reason_not_to_try(const Window& window);
+
+/// Why a solution is not one, though the solver ended: points behind a camera, or residuals far
+/// above what the homographies leave (wrong minimum, or rotations that do not belong to the
+/// pictures).
+std::optional<std::string> reason_to_distrust(const Window& window,
+                                              const Plane& plane,
+                                              std::span<const Pose> cameras);
+
+/// Reprojection errors of the inlier observations [px], the reference frame's left out; infinite
+/// where the point falls behind the camera.
+std::vector<double> reprojection_errors_px(const Window& window,
+                                           const Plane& plane,
+                                           std::span<const Pose> cameras);
+
+/// Root mean square, 0 of nothing.
+double root_mean_square(std::span<const double> values);
+
+}  // namespace gpo
