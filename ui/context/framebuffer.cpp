@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/framebuffer.h"
 
-#include <GL/glew.h>
-
 #include "engine/error.h"
+
+#include <GL/glew.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
+#include "ui/context/gui_style.h"
+#include "ui/context/window_context.h"
 
 #include <algorithm>
 
-#include "ui/context/gui_style.h"
-#include "ui/context/window_context.h"
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
 
 namespace gpo {
 namespace {

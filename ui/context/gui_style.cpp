@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui_style.h"
 
-#include <imgui.h>
+#include "ui/views/palette.h"
 
 #include <cmath>
 
-#include "ui/views/palette.h"
+#include <imgui.h>
 
 extern "C" {
 extern const unsigned char gpo_font_regular[], gpo_font_regular_end[];
@@ -64,13 +64,20 @@ void apply_colors(ImVec4* colors) {
 /// Digits as wide as each other, so that numbers that change do not dance; Inter's own are not.
 void add_font(const unsigned char* begin, const unsigned char* end, float size_px) {
   static const ImWchar digits[] = {'0', '9', 0};
-  static const ImWchar others[] = {0x0020, 0x024F,   // Latin with ° ² ± × ·
-                                   0x0370, 0x03FF,   // Greek
-                                   0x2010, 0x2044,   // – … and quotes
-                                   0x2190, 0x2199,   // arrows
-                                   0x2200, 0x2265,   // − √ ≈ ≤ ≥
-                                   0x25A0, 0x25FF,   // ○ ● ▶ ◀
-                                   0x2713, 0x2717,   // ticks and crosses
+  static const ImWchar others[] = {0x0020,
+                                   0x024F,  // Latin with ° ² ± × ·
+                                   0x0370,
+                                   0x03FF,  // Greek
+                                   0x2010,
+                                   0x2044,  // – … and quotes
+                                   0x2190,
+                                   0x2199,  // arrows
+                                   0x2200,
+                                   0x2265,  // − √ ≈ ≤ ≥
+                                   0x25A0,
+                                   0x25FF,  // ○ ● ▶ ◀
+                                   0x2713,
+                                   0x2717,  // ticks and crosses
                                    0};
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   ImFontConfig config;

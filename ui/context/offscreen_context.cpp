@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/offscreen_context.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <GL/glew.h>
+#include "engine/error.h"
+#include "ui/context/framebuffer.h"
 
 #include <array>
 
-#include "engine/error.h"
-#include "ui/context/framebuffer.h"
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glew.h>
 
 namespace gpo {
 namespace {
@@ -26,8 +26,8 @@ EGLDisplay open_display() {
     EGLDisplay display =
         platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (initialized(display)) return display;
-    const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(
-        eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto query_devices =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     std::array<EGLDeviceEXT, 8> devices{};
     EGLint count = 0;
     if (query_devices != nullptr) query_devices(devices.size(), devices.data(), &count);
@@ -48,10 +48,13 @@ EGLContext create_context(EGLDisplay display) {
   EGLint count = 0;
   eglChooseConfig(display, config_attributes.data(), &config, 1, &count);
   if (count < 1) return EGL_NO_CONTEXT;
-  const std::array<EGLint, 7> context_attributes = {EGL_CONTEXT_MAJOR_VERSION, 3,
-                                                    EGL_CONTEXT_MINOR_VERSION, 3,
+  const std::array<EGLint, 7> context_attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                                    3,
+                                                    EGL_CONTEXT_MINOR_VERSION,
+                                                    3,
                                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+                                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                    EGL_NONE};
   return eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes.data());
 }
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <memory>
-#include <opencv2/core.hpp>
 #include <string>
+
+#include <opencv2/core.hpp>
 
 namespace gpo {
 

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/vtk_window.h"
 
-#include <vtk_glew.h>
-
 #include <utility>
+
 #include <vtkObjectFactory.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLState.h>
 #include <vtkOutputWindow.h>
 #include <vtkTextureObject.h>
+#include <vtk_glew.h>
 
 namespace gpo {
 namespace {
@@ -17,8 +17,7 @@ namespace {
 class CallbackOutputWindow : public vtkOutputWindow {
  public:
   static CallbackOutputWindow* New();
-  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow);
-  void DisplayText(const char* text) override {
+  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow) void DisplayText(const char* text) override {
     if (on_message && text != nullptr) on_message(text);
   }
   std::function<void(const std::string&)> on_message;

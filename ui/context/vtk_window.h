@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkSmartPointer.h>
-
 #include <functional>
 #include <string>
+
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkSmartPointer.h>
 
 namespace gpo {
 
@@ -15,8 +15,7 @@ namespace gpo {
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
-  vtkTypeMacro(VtkWindow, vtkGenericOpenGLRenderWindow);
-  VtkWindow(const VtkWindow&) = delete;
+  vtkTypeMacro(VtkWindow, vtkGenericOpenGLRenderWindow) VtkWindow(const VtkWindow&) = delete;
   void operator=(const VtkWindow&) = delete;
 
   /// Loads OpenGL's functions once; VTK 9.1 takes GLEW's "no GLX display" for a failure, and then

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/window_context.h"
 
-#include <GL/glew.h>
-#include <GLFW/glfw3.h>
+#include "engine/error.h"
+#include "ui/context/framebuffer.h"
 
 #include <algorithm>
 
-#include "engine/error.h"
-#include "ui/context/framebuffer.h"
+#include <GL/glew.h>
+#include <GLFW/glfw3.h>
 
 namespace gpo {
 namespace {

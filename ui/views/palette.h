@@ -12,16 +12,16 @@ namespace gpo {
 namespace palette {
 
 // Data.
-constexpr std::uint32_t kInlier = 0x1FCB93;      ///< bluish green, lightened to show on pictures
-constexpr std::uint32_t kOutlier = 0xF0503C;     ///< red
-constexpr std::uint32_t kResidual = 0xF0E442;    ///< yellow
-constexpr std::uint32_t kTruth = 0xA9AEB6;       ///< neutral gray
-constexpr std::uint32_t kCubeBase = 0x2BD67B;    ///< green
-constexpr std::uint32_t kCubeEdge = 0xE4F3EA;    ///< the other edges: lighter
-constexpr std::uint32_t kCubeFace = 0x9FE8C4;    ///< translucent
-constexpr std::uint32_t kReference = 0xF0F2F5;   ///< the reference camera's mark
-constexpr std::uint32_t kPlane = 0x56B4E9;       ///< sky blue
-constexpr std::uint32_t kPoint = 0xC9D2DC;       ///< map points
+constexpr std::uint32_t kInlier = 0x1FCB93;     ///< bluish green, lightened to show on pictures
+constexpr std::uint32_t kOutlier = 0xF0503C;    ///< red
+constexpr std::uint32_t kResidual = 0xF0E442;   ///< yellow
+constexpr std::uint32_t kTruth = 0xA9AEB6;      ///< neutral gray
+constexpr std::uint32_t kCubeBase = 0x2BD67B;   ///< green
+constexpr std::uint32_t kCubeEdge = 0xE4F3EA;   ///< the other edges: lighter
+constexpr std::uint32_t kCubeFace = 0x9FE8C4;   ///< translucent
+constexpr std::uint32_t kReference = 0xF0F2F5;  ///< the reference camera's mark
+constexpr std::uint32_t kPlane = 0x56B4E9;      ///< sky blue
+constexpr std::uint32_t kPoint = 0xC9D2DC;      ///< map points
 constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
 
 // Surfaces and text, dark to light.
