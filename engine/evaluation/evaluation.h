@@ -8,6 +8,7 @@
 #include "engine/geometry/similarity.h"
 #include "engine/initializers/initialization.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

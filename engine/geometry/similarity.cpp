@@ -26,7 +26,7 @@ Alignment determined_alignment(const Eigen::Matrix3Xd& path, double reference_le
   const Eigen::Matrix3Xd centered = path.colwise() - path.rowwise().mean();
   const Eigen::Vector3d deviation =
       Eigen::JacobiSVD<Eigen::Matrix3Xd>(centered).singularValues() / std::sqrt(path.cols());
-  if (!(deviation(0) > 1e-4 * reference_length)) return Alignment::point;
+  if (!(deviation(0) > 1e-3 * reference_length)) return Alignment::point;
   return deviation(1) < 0.02 * deviation(0) ? Alignment::line : Alignment::ok;
 }
 

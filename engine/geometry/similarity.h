@@ -26,7 +26,7 @@ enum class Alignment { ok, line, point };
 Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// Extent of a path, judged by the standard deviations s1 >= s2 along its principal axes: a point
-/// where s1 < 1e-4 of `reference_length` (say the distance of the plane), a line where s2 < 2 % of
+/// where s1 < 1e-3 of `reference_length` (say the distance of the plane), a line where s2 < 2 % of
 /// s1.
 Alignment determined_alignment(const Eigen::Matrix3Xd& path, double reference_length);
 

@@ -3,24 +3,41 @@
 #pragma once
 
 #include "engine/geometry/plane.h"
+#include "engine/recording/recording.h"
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
 /// Where the virtual cube stands (method.md, "The virtual cube"). Base edges along the columns x
-/// and y of `axes`, which lie on the plane; column z is the plane's normal, towards the camera.
+/// and y of `axes`, which lie on the plane; column z is the plane's normal, towards the camera; x
+/// cross y points away from the camera, as rows and columns of a picture do.
 struct CubeAnchor {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< on the plane
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  bool centered = true;          ///< origin is the base's center, else one of its corners
-  std::optional<double> square;  ///< side of a chessboard square, where it stands on a board
+  bool on_board =
+      false;        ///< origin is a corner of the base, on a chessboard; else the base's center
+  double unit = 1;  ///< side of a chessboard square, else the plane's distance from the camera
 };
 
-/// 0.2 of the plane's distance, or the whole number of chessboard squares nearest to it.
+/// The base's center where the ray of an undistorted pixel's direction meets the plane, x as far as
+/// possible along the camera's x. Nothing where the ray misses the plane.
+std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
+                                          const Pose& camera,
+                                          const Eigen::Vector3d& ray_c);
+
+/// The board's first corner and axes, as seen along `corner_rays_c` (all corners, row by row) from
+/// `camera`, carried onto the plane. Nothing where a ray misses the plane.
+std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
+                                          const Pose& camera,
+                                          std::span<const Eigen::Vector3d> corner_rays_c,
+                                          const Board& board);
+
+/// 0.2 of the plane's distance, or the whole number of chessboard squares nearest to that.
 double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 
 /// Corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top).

@@ -33,8 +33,10 @@ struct Inspection {
   std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
   std::shared_ptr<const Initialization> initialization;
   std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
-  CubeAnchor cube;
-  std::optional<CubeAnchor> true_cube;  ///< in the truth's world, same place on the true plane
+  std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
+  std::optional<CubeAnchor>
+      true_cube;  ///< the same place on the true plane, in the truth's world;
+                  ///< its side is that of `cube` times true_cube.unit / cube.unit
   Timing timing;
 };
 

@@ -1,0 +1,12 @@
+/* Copyright (c) 2026, the gpo-inspector authors
+   SPDX-License-Identifier: BSD-3-Clause
+   The files that the program carries with it, so that it runs from anywhere. */
+#define EMBED(name, file) \
+  .balign 16; .globl name; .hidden name; name: .incbin file; \
+  .globl name##_end; .hidden name##_end; name##_end: .byte 0
+
+  .section .rodata
+EMBED(gpo_font_regular, GPO_FONT_REGULAR)
+EMBED(gpo_font_bold, GPO_FONT_BOLD)
+
+  .section .note.GNU-stack, "", %progbits

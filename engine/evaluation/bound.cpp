@@ -1,0 +1,53 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/evaluation/bound.h"
+
+#include "engine/initializers/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace gpo {
+
+std::optional<double> normal_bound_deg(const Window& window,
+                                       const Plane& plane,
+                                       std::span<const Pose> cameras,
+                                       double sigma_px) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const Eigen::Vector3d& n = plane.normal;
+  Eigen::Matrix<double, 3, 2> N;  // two directions in which the normal can move
+  N.col(0) = n.unitOrthogonal();
+  N.col(1) = n.cross(N.col(0));
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  for (int i = 1; i < window.frame_count(); ++i) {
+    Eigen::Matrix2d nn = Eigen::Matrix2d::Zero();
+    Eigen::Matrix<double, 2, 3> nt = Eigen::Matrix<double, 2, 3>::Zero();
+    Eigen::Matrix3d tt = Eigen::Matrix3d::Zero();
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (!window.inlier[i][j]) continue;
+      const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
+      const Transfer transfer =
+          transfer_on_plane(window.K, cameras[i].R_wc, ray, n, -cameras[i].p_wc / plane.distance);
+      const Eigen::Matrix2d J_n = transfer.d_normal * N;
+      nn += J_n.transpose() * J_n;
+      nt += J_n.transpose() * transfer.d_tau;
+      tt += transfer.d_tau.transpose() * transfer.d_tau;
+    }
+    information += nn - nt * tt.ldlt().solve(nt.transpose());  // Schur complement over tau_i
+  }
+  const Eigen::Matrix2d covariance = sigma_px * sigma_px * information.inverse();
+  const double bound_deg = degrees(std::sqrt(covariance.trace()));
+  return std::isfinite(bound_deg) ? std::optional(bound_deg) : std::nullopt;
+}
+
+double noise_from_residuals_px(std::span<const double> errors_px, int frames) {
+  double sum = 0;
+  for (const double e : errors_px) sum += e * e;
+  const double freedom = 2.0 * static_cast<double>(errors_px.size()) - (3.0 * frames - 1);
+  return std::sqrt(sum / std::max(freedom, 1.0));
+}
+
+}  // namespace gpo

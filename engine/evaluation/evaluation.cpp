@@ -1,0 +1,95 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/evaluation/evaluation.h"
+
+#include "engine/evaluation/bound.h"
+#include "engine/evaluation/plane_fit.h"
+#include "engine/initializers/window_checks.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+namespace {
+
+/// Camera centers of the frames that have a truth, estimate and truth side by side, 3 x n.
+struct Paths {
+  Eigen::Matrix3Xd estimated;
+  Eigen::Matrix3Xd actual;
+};
+
+Paths common_paths(const Initialization& initialization, const WindowTruth& truth) {
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(truth.cameras.size()); ++i) {
+    if (truth.cameras[i]) frames.push_back(i);
+  }
+  Paths paths{Eigen::Matrix3Xd(3, frames.size()), Eigen::Matrix3Xd(3, frames.size())};
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    paths.estimated.col(k) = initialization.cameras[frames[k]].p_wc;
+    paths.actual.col(k) = truth.cameras[frames[k]]->p_wc;
+  }
+  return paths;
+}
+
+Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
+  Eigen::Matrix3Xd matrix(3, points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) matrix.col(k) = points[k].position;
+  return matrix;
+}
+
+void measure_path(const Paths& paths, Evaluation& evaluation) {
+  const Similarity T = align(paths.estimated, paths.actual);
+  double squares = 0;
+  for (Eigen::Index k = 0; k < paths.actual.cols(); ++k) {
+    squares += (T * paths.estimated.col(k) - paths.actual.col(k)).squaredNorm();
+  }
+  evaluation.scale = T.scale;
+  evaluation.ate_m = std::sqrt(squares / static_cast<double>(paths.actual.cols()));
+  if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
+}
+
+/// Angle between two normals whose signs do not matter.
+double normal_angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return angle_deg(a, a.dot(b) < 0 ? Eigen::Vector3d(-b) : b);
+}
+
+void measure_plane(const Plane& estimated, const WindowTruth& truth, Evaluation& evaluation) {
+  const Plane actual = facing_origin(plane_in_camera(*truth.plane, *truth.cameras.front()));
+  evaluation.pne_deg = normal_angle_deg(estimated.normal, actual.normal);
+  if (evaluation.scale)
+    evaluation.pde_m = std::abs(*evaluation.scale * estimated.distance - actual.distance);
+  if (evaluation.T_true_est) {
+    evaluation.pne_aligned_deg =
+        normal_angle_deg(evaluation.T_true_est->R_ab * estimated.normal, truth.plane->normal);
+  }
+}
+
+}  // namespace
+
+Evaluation evaluate(const Initialization& initialization,
+                    const Window& window,
+                    const WindowTruth& truth,
+                    std::uint64_t seed) {
+  Evaluation evaluation;
+  const auto estimated_plane = fit_plane(positions(initialization.points), {.seed = seed});
+  const Paths paths = common_paths(initialization, truth);
+  const bool plane_known = truth.plane && truth.cameras.front();
+  const double reference_length =
+      plane_known ? std::abs(plane_in_camera(*truth.plane, *truth.cameras.front()).distance) : 1.0;
+  evaluation.alignment = paths.actual.cols() < 3
+                             ? Alignment::point
+                             : determined_alignment(paths.actual, reference_length);
+  if (evaluation.alignment != Alignment::point) measure_path(paths, evaluation);
+  if (plane_known && estimated_plane) measure_plane(*estimated_plane, truth, evaluation);
+  const std::vector<double> errors =
+      reprojection_errors_px(window, initialization.plane, initialization.cameras);
+  evaluation.pne_bound_deg =
+      normal_bound_deg(window,
+                       initialization.plane,
+                       initialization.cameras,
+                       noise_from_residuals_px(errors, window.frame_count()));
+  return evaluation;
+}
+
+}  // namespace gpo

@@ -1,0 +1,60 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/cube.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+namespace {
+
+/// Axes with x along the direction `x_w` as far as the plane allows, z towards the camera.
+Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Eigen::Vector3d& x_w) {
+  const bool towards = plane_w.normal.dot(camera.p_wc) + plane_w.distance >= 0;
+  const Eigen::Vector3d z = towards ? plane_w.normal : Eigen::Vector3d(-plane_w.normal);
+  const Eigen::Vector3d x = (x_w - z * z.dot(x_w)).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, x.cross(z), z;
+  return axes;
+}
+
+}  // namespace
+
+std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
+                                          const Pose& camera,
+                                          const Eigen::Vector3d& ray_c) {
+  const auto origin = intersect(plane_w, camera, ray_c);
+  if (!origin) return std::nullopt;
+  const double distance = std::abs(plane_w.normal.dot(camera.p_wc) + plane_w.distance);
+  return CubeAnchor{*origin, axes_on(plane_w, camera, camera.R_wc.col(0)), false, distance};
+}
+
+std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
+                                          const Pose& camera,
+                                          std::span<const Eigen::Vector3d> corner_rays_c,
+                                          const Board& board) {
+  const auto first = intersect(plane_w, camera, corner_rays_c.front());
+  const auto row_end = intersect(plane_w, camera, corner_rays_c[board.columns - 1]);
+  if (!first || !row_end) return std::nullopt;
+  const double square = (*row_end - *first).norm() / (board.columns - 1);
+  return CubeAnchor{*first, axes_on(plane_w, camera, *row_end - *first), true, square};
+}
+
+double default_cube_side(const CubeAnchor& anchor, double plane_distance) {
+  const double side = 0.2 * plane_distance;
+  return anchor.on_board ? std::max(1.0, std::round(side / anchor.unit)) * anchor.unit : side;
+}
+
+std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side) {
+  const double shift = anchor.on_board ? 0 : -0.5;
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, (k >> 2) & 1);
+    corners[k] = anchor.origin + anchor.axes * (side * unit);
+  }
+  return corners;
+}
+
+}  // namespace gpo

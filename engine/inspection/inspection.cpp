@@ -1,0 +1,292 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/inspection.h"
+
+#include "engine/error.h"
+#include "engine/frontend/rotation_averaging.h"
+#include "engine/frontend/tracker.h"
+#include "engine/initializers/methods.h"
+#include "engine/initializers/window_checks.h"
+#include "engine/recording/board_truth.h"
+
+#include <chrono>
+#include <tuple>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// A stage's last result, kept until its inputs change.
+template <class Key, class Value>
+struct Kept {
+  std::optional<Key> key;
+  Value value{};
+  double milliseconds = 0;
+
+  /// Recomputes where `wanted` differs; `compute` returns nothing where it was stopped.
+  template <class Compute>
+  bool update(const Key& wanted, Compute&& compute) {
+    if (key == wanted) return true;
+    key.reset();
+    const auto begin = std::chrono::steady_clock::now();
+    auto computed = compute();
+    if (!computed) return false;
+    value = std::move(*computed);
+    milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    key = wanted;
+    return true;
+  }
+};
+
+RansacOptions ransac_options(const Settings& settings) {
+  RansacOptions options;
+  options.enabled = settings.ransac;
+  options.threshold_px = settings.ransac_threshold_px;
+  options.seed = settings.seed;
+  return options;
+}
+
+void check_window(const Recording& recording, const Settings& settings) {
+  const int count = recording.frame_count();
+  if (settings.frames < 2) {
+    throw InputError(fmt::format("--frames: {}, expected at least 2", settings.frames));
+  }
+  if (settings.start < 0 || settings.start >= count) {
+    throw InputError(
+        fmt::format("--start: frame {} is not in the recording, which has frames 0 to {}",
+                    settings.start,
+                    count - 1));
+  }
+  if (settings.start + settings.frames > count) {
+    throw InputError(
+        fmt::format("--frames: {} frames from frame {} on do not fit, the recording has {} frames",
+                    settings.frames,
+                    settings.start,
+                    count));
+  }
+}
+
+RotationSource choose_source(const Recording& recording, RotationSource asked) {
+  if (asked == RotationSource::automatic) {
+    return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  }
+  if (asked == RotationSource::gyro && !recording.gyroscope) {
+    throw InputError(fmt::format("--rotations gyro: {} has no gyroscope", recording.name));
+  }
+  if (asked == RotationSource::truth && !recording.truth && !recording.board) {
+    throw InputError(fmt::format("--rotations truth: {} has no ground truth", recording.name));
+  }
+  return asked;
+}
+
+std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start) {
+  std::vector<Eigen::Matrix3d> R_wc;
+  for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
+    const auto& reference = truth->cameras.front();
+    if (!reference || !truth->cameras[i]) {
+      throw InputError(fmt::format("--rotations truth: frame {} has no ground truth ({})",
+                                   start + static_cast<int>(reference ? i : 0),
+                                   truth->source));
+    }
+    R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
+  }
+  if (R_wc.empty()) throw InputError("--rotations truth: the window has no ground truth");
+  return R_wc;
+}
+
+/// Either the rotations, or why there are none.
+struct Rotations {
+  std::vector<Eigen::Matrix3d> R_wc;
+  std::string reason;
+};
+
+Rotations compute_rotations(const Recording& recording,
+                            const Window& window,
+                            const WindowTruth* truth,
+                            RotationSource source) {
+  if (source == RotationSource::gyro) {
+    return {gyro_rotations(*recording.gyroscope, window.timestamps_ns), ""};
+  }
+  if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
+  if (auto averaged = averaged_rotations(window)) return {std::move(*averaged), ""};
+  const auto reason = reason_not_to_try(window);
+  return {{},
+          reason.value_or("rotation averaging: the homographies allow no consistent rotations")};
+}
+
+std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
+                                              const std::vector<Eigen::Vector2d>& raw_px) {
+  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
+  std::vector<Eigen::Vector3d> rays;
+  for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
+  return rays;
+}
+
+/// The direction in which the inliers of the reference frame lie on average.
+Eigen::Vector3d centroid_ray(const Window& window) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.inlier[0][j]) sum += window.points_px[0].col(j);
+  }
+  return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
+}
+
+void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners) {
+  const Recording& recording = *inspection.recording;
+  const auto rays = undistorted_rays(recording.camera, board_corners);
+  const auto anchor = [&](const Plane& plane, const Pose& camera) {
+    return rays.empty() ? anchor_on_plane(plane, camera, centroid_ray(*inspection.window))
+                        : anchor_on_board(plane, camera, rays, *recording.board);
+  };
+  inspection.cube = anchor(inspection.initialization->plane, Pose{});
+  const WindowTruth* truth = inspection.truth.get();
+  if (truth != nullptr && truth->plane && truth->cameras.front()) {
+    inspection.true_cube = anchor(*truth->plane, *truth->cameras.front());
+  }
+}
+
+}  // namespace
+
+struct Inspector::Stages {
+  using Span = std::tuple<int, int>;  // start, frames
+  std::shared_ptr<const Recording> recording;
+  Kept<Span, std::shared_ptr<const Tracks>> tracks;
+  Kept<Span, std::shared_ptr<const WindowTruth>> truth;
+  Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
+  Kept<std::tuple<Span, RansacOptions>, std::shared_ptr<const Window>> outliers;
+  Kept<std::tuple<Span, RansacOptions, RotationSource>, Rotations> rotations;
+
+  bool update_tracks(const Settings& settings, std::stop_token stop, const Progress& progress);
+  bool update_truth(const Settings& settings, std::stop_token stop, const Progress& progress);
+  std::shared_ptr<const WindowTruth> compute_truth(const Settings& settings,
+                                                   std::stop_token stop,
+                                                   const Progress& progress) const;
+  void update_window(const Settings& settings, RotationSource source);
+};
+
+bool Inspector::Stages::update_tracks(const Settings& settings,
+                                      std::stop_token stop,
+                                      const Progress& progress) {
+  const auto [start, frames] = Span(settings.start, settings.frames);
+  return tracks.update({start, frames}, [&]() -> std::optional<std::shared_ptr<const Tracks>> {
+    if (!recording->tracks.empty()) {
+      return std::make_shared<const Tracks>(select_tracks(recording->tracks, start, frames));
+    }
+    if (!recording->pictures) {
+      throw InputError(
+          fmt::format("{}: no pictures and no tracks; expected --tracks FILE", recording->name));
+    }
+    const auto told = [&](int done, int of) {
+      if (progress) progress("tracking", done, of);
+    };
+    auto tracked = track_window(*recording->pictures, start, frames, {}, stop, told);
+    if (!tracked) return std::nullopt;
+    return std::make_shared<const Tracks>(std::move(*tracked));
+  });
+}
+
+std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
+    const Settings& settings, std::stop_token stop, const Progress& progress) const {
+  if (recording->truth) {
+    const auto begin = recording->truth->poses.begin() + settings.start;
+    WindowTruth truth{recording->truth->source, {begin, begin + settings.frames}, recording->plane};
+    return std::make_shared<const WindowTruth>(std::move(truth));
+  }
+  if (!recording->board || !recording->pictures) return nullptr;
+  const auto told = [&](int done, int of) {
+    if (progress) progress("finding the board", done, of);
+  };
+  GroundTruth found = board_truth(*recording, settings.start, settings.frames, stop, told);
+  // The board's plane is z = 0 of its frame.
+  return std::make_shared<const WindowTruth>(
+      WindowTruth{found.source, std::move(found.poses), Plane{-Eigen::Vector3d::UnitZ(), 0}});
+}
+
+bool Inspector::Stages::update_truth(const Settings& settings,
+                                     std::stop_token stop,
+                                     const Progress& progress) {
+  const bool done = truth.update(
+      {settings.start, settings.frames},
+      [&]() -> std::optional<std::shared_ptr<const WindowTruth>> {
+        auto computed = compute_truth(settings, stop, progress);
+        return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
+      });
+  return done && board_corners.update(settings.start, [&]() {
+    const bool look = recording->board && recording->pictures;
+    return std::optional(
+        look ? find_board(recording->pictures->gray(settings.start), *recording->board)
+             : std::vector<Eigen::Vector2d>{});
+  });
+}
+
+void Inspector::Stages::update_window(const Settings& settings, RotationSource source) {
+  const Span span(settings.start, settings.frames);
+  const RansacOptions ransac = ransac_options(settings);
+  outliers.update({span, ransac}, [&]() {
+    return std::optional(std::make_shared<const Window>(
+        make_window(*tracks.value, recording->camera, recording->timestamps_ns, ransac)));
+  });
+  rotations.update({span, ransac, source}, [&]() {
+    return std::optional(compute_rotations(*recording, *outliers.value, truth.value.get(), source));
+  });
+}
+
+Inspector::Inspector(std::shared_ptr<const Recording> recording)
+    : stages_(std::make_unique<Stages>()) {
+  stages_->recording = std::move(recording);
+}
+
+Inspector::~Inspector() = default;
+
+std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
+                                                     std::stop_token stop,
+                                                     const Progress& progress) {
+  Stages& stages = *stages_;
+  const Recording& recording = *stages.recording;
+  check_window(recording, settings);
+  const Method& method = find_method(settings.method);
+  Inspection inspection;
+  inspection.recording = stages.recording;
+  inspection.settings = settings;
+  inspection.rotations_used = choose_source(recording, settings.rotations);
+  if (!stages.update_tracks(settings, stop, progress)) return nullptr;
+  if (!stages.update_truth(settings, stop, progress)) return nullptr;
+  stages.update_window(settings, inspection.rotations_used);
+  if (progress) progress("initializing", 0, 0);
+
+  Window window = *stages.outliers.value;
+  const Rotations& rotations = stages.rotations.value;
+  if (!rotations.R_wc.empty()) window.R_wc = rotations.R_wc;
+  const auto begin = std::chrono::steady_clock::now();
+  Initialization initialization =
+      rotations.R_wc.empty() ? failed(rotations.reason) : method.initialize(window, stop);
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - begin;
+  if (stop.stop_requested()) return nullptr;
+
+  inspection.tracks = stages.tracks.value;
+  inspection.truth = stages.truth.value;
+  inspection.window = std::make_shared<const Window>(std::move(window));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(initialization));
+  if (inspection.initialization->ok) {
+    if (inspection.truth) {
+      inspection.evaluation = evaluate(
+          *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
+    }
+    place_cubes(inspection, stages.board_corners.value);
+  }
+  inspection.timing = {stages.tracks.milliseconds,
+                       stages.outliers.milliseconds,
+                       stages.rotations.milliseconds,
+                       elapsed.count(),
+                       inspection.initialization->solver.milliseconds,
+                       0};
+  Timing& t = inspection.timing;
+  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  return std::make_shared<const Inspection>(std::move(inspection));
+}
+
+}  // namespace gpo

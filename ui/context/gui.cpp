@@ -1,0 +1,66 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+
+#include "ui/context/gui_style.h"
+#include "ui/context/window_context.h"
+
+#include <algorithm>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+void create_imgui(float scale) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  apply_style(scale);
+  load_fonts(scale);
+}
+
+}  // namespace
+
+ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(font)]; }
+
+Gui::Gui(float content_scale) : scale_(content_scale), has_window_(false) {
+  create_imgui(scale_);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Gui::Gui(WindowContext& window) : scale_(window.content_scale()), has_window_(true) {
+  create_imgui(scale_);
+  ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Gui::~Gui() {
+  ImGui_ImplOpenGL3_Shutdown();
+  if (has_window_) ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void Gui::begin_frame(int width, int height, float framebuffer_scale, double delta_seconds) {
+  ImGui_ImplOpenGL3_NewFrame();
+  if (has_window_) ImGui_ImplGlfw_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = ImVec2(static_cast<float>(width) / framebuffer_scale,
+                          static_cast<float>(height) / framebuffer_scale);
+  io.DisplayFramebufferScale = ImVec2(framebuffer_scale, framebuffer_scale);
+  // Dear ImGui asserts that time goes on.
+  io.DeltaTime = std::max(static_cast<float>(delta_seconds), 1e-5F);
+  ImGui::NewFrame();
+}
+
+void Gui::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace gpo

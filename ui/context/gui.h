@@ -1,0 +1,45 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+struct ImFont;
+
+namespace gpo {
+
+class WindowContext;
+
+enum class Font { regular, bold, small, heading };
+
+/// The font in the current Dear ImGui context; push it, or draw with it.
+ImFont* font(Font font);
+
+/// Dear ImGui in the OpenGL context that is current: style, fonts, frames. One screen unit is one
+/// pixel of the framebuffer; what is HiDPI is drawn with larger fonts and paddings.
+class Gui {
+ public:
+  static constexpr double kFixedFrame_s = 1.0 / 60;
+
+  /// Without input, for pictures: the same frames give the same bytes.
+  explicit Gui(float content_scale = 1);
+  /// Fed with mouse and keys by the window.
+  explicit Gui(WindowContext& window);
+  ~Gui();
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
+
+  /// Width and height of what is drawn [px]. `framebuffer_scale`: pixels a screen unit; 1 on X11.
+  void begin_frame(int width,
+                   int height,
+                   float framebuffer_scale = 1,
+                   double delta_seconds = kFixedFrame_s);
+  /// Renders into the framebuffer that is bound, over what is there.
+  void end_frame();
+  /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
+  float scale() const { return scale_; }
+
+ private:
+  float scale_;
+  bool has_window_;
+};
+
+}  // namespace gpo

@@ -1,0 +1,130 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui_style.h"
+
+#include "ui/views/palette.h"
+
+#include <cmath>
+
+#include <imgui.h>
+
+extern "C" {
+extern const unsigned char gpo_font_regular[], gpo_font_regular_end[];
+extern const unsigned char gpo_font_bold[], gpo_font_bold_end[];
+}
+
+namespace gpo {
+namespace {
+
+ImVec4 color(std::uint32_t rgb, double alpha = 1) {
+  return {static_cast<float>(red(rgb)),
+          static_cast<float>(green(rgb)),
+          static_cast<float>(blue(rgb)),
+          static_cast<float>(alpha)};
+}
+
+void apply_colors(ImVec4* colors) {
+  using namespace palette;
+  colors[ImGuiCol_Text] = color(kText);
+  colors[ImGuiCol_TextDisabled] = color(kTextDim);
+  colors[ImGuiCol_TextSelectedBg] = color(kAccent, 0.35);
+  colors[ImGuiCol_WindowBg] = colors[ImGuiCol_ChildBg] = color(kPanel);
+  colors[ImGuiCol_MenuBarBg] = color(kBackground);
+  colors[ImGuiCol_PopupBg] = color(kRaised, 0.98);
+  colors[ImGuiCol_ModalWindowDimBg] = color(kBackground, 0.6);
+  colors[ImGuiCol_Border] = colors[ImGuiCol_Separator] = color(kBorder);
+  colors[ImGuiCol_BorderShadow] = color(0, 0);
+  colors[ImGuiCol_FrameBg] = color(kRaised);
+  colors[ImGuiCol_FrameBgHovered] = color(kHovered);
+  colors[ImGuiCol_FrameBgActive] = color(kActive);
+  colors[ImGuiCol_Button] = colors[ImGuiCol_Header] = color(kRaised);
+  colors[ImGuiCol_ButtonHovered] = colors[ImGuiCol_HeaderHovered] = color(kHovered);
+  colors[ImGuiCol_ButtonActive] = colors[ImGuiCol_HeaderActive] = color(kActive);
+  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = color(kAccent);
+  colors[ImGuiCol_SliderGrabActive] = color(kText);
+  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgCollapsed] = color(kBackground);
+  colors[ImGuiCol_TitleBgActive] = color(kRaised);
+  colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = color(kPanel);
+  colors[ImGuiCol_TabHovered] = color(kHovered);
+  colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = color(kActive);
+  colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_ResizeGripHovered] = color(kAccent, 0.6);
+  colors[ImGuiCol_SeparatorActive] = colors[ImGuiCol_ResizeGripActive] = color(kAccent);
+  colors[ImGuiCol_ResizeGrip] = color(kBorder);
+  colors[ImGuiCol_ScrollbarBg] = color(kBackground, 0);
+  colors[ImGuiCol_ScrollbarGrab] = color(kHovered);
+  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = color(kActive);
+  colors[ImGuiCol_TableHeaderBg] = color(kRaised);
+  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = color(kBorder);
+  colors[ImGuiCol_TableRowBg] = color(0, 0);
+  colors[ImGuiCol_TableRowBgAlt] = color(kText, 0.03);
+  colors[ImGuiCol_NavHighlight] = color(kAccent);
+  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = color(kAccent);
+}
+
+/// Digits as wide as each other, so that numbers that change do not dance; Inter's own are not.
+void add_font(const unsigned char* begin, const unsigned char* end, float size_px) {
+  static const ImWchar digits[] = {'0', '9', 0};
+  static const ImWchar others[] = {0x0020,
+                                   0x024F,  // Latin with ° ² ± × ·
+                                   0x0370,
+                                   0x03FF,  // Greek
+                                   0x2010,
+                                   0x2044,  // – … and quotes
+                                   0x2190,
+                                   0x2199,  // arrows
+                                   0x2200,
+                                   0x2265,  // − √ ≈ ≤ ≥
+                                   0x25A0,
+                                   0x25FF,  // ○ ● ▶ ◀
+                                   0x2713,
+                                   0x2717,  // ticks and crosses
+                                   0};
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  ImFontConfig config;
+  config.FontDataOwnedByAtlas = false;
+  config.OversampleH = 2;
+  config.GlyphRanges = digits;
+  const float digit_width = std::round(0.62F * size_px);
+  config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = digit_width;
+  auto* bytes = const_cast<unsigned char*>(begin);  // ImGui reads them only
+  const int count = static_cast<int>(end - begin);
+  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &config);
+  ImFontConfig rest;
+  rest.FontDataOwnedByAtlas = false;
+  rest.OversampleH = 2;
+  rest.MergeMode = true;
+  rest.GlyphRanges = others;
+  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &rest);
+}
+
+}  // namespace
+
+void apply_style(float scale) {
+  ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
+  apply_colors(style.Colors);
+  style.WindowPadding = ImVec2(12, 10);
+  style.FramePadding = ImVec2(9, 5);
+  style.ItemSpacing = ImVec2(8, 7);
+  style.ItemInnerSpacing = ImVec2(7, 4);
+  style.CellPadding = ImVec2(8, 4);
+  style.WindowBorderSize = style.PopupBorderSize = style.ChildBorderSize = 1;
+  style.FrameBorderSize = style.TabBorderSize = 0;
+  style.WindowRounding = style.ChildRounding = 0;
+  style.FrameRounding = style.PopupRounding = style.GrabRounding = style.TabRounding = 4;
+  style.ScrollbarRounding = 6;
+  style.ScrollbarSize = 12;
+  style.GrabMinSize = 11;
+  style.WindowTitleAlign = ImVec2(0.0F, 0.5F);
+  style.ScaleAllSizes(scale);
+}
+
+void load_fonts(float scale) {
+  const auto size = [scale](float at_96_dpi) { return std::round(at_96_dpi * scale); };
+  add_font(gpo_font_regular, gpo_font_regular_end, size(16));
+  add_font(gpo_font_bold, gpo_font_bold_end, size(16));
+  add_font(gpo_font_regular, gpo_font_regular_end, size(14));
+  add_font(gpo_font_bold, gpo_font_bold_end, size(20));
+}
+
+}  // namespace gpo

@@ -1,0 +1,111 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/offscreen_context.h"
+
+#include "engine/error.h"
+#include "ui/context/framebuffer.h"
+
+#include <array>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glew.h>
+
+namespace gpo {
+namespace {
+
+bool initialized(EGLDisplay display) {
+  return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE;
+}
+
+/// Surfaceless first: it needs neither a display nor a GPU.
+EGLDisplay open_display() {
+  const auto platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+      eglGetProcAddress("eglGetPlatformDisplayEXT"));
+  if (platform_display != nullptr) {
+    EGLDisplay display =
+        platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    if (initialized(display)) return display;
+    const auto query_devices =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    std::array<EGLDeviceEXT, 8> devices{};
+    EGLint count = 0;
+    if (query_devices != nullptr) query_devices(devices.size(), devices.data(), &count);
+    for (int i = 0; i < count; ++i) {
+      display = platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
+      if (initialized(display)) return display;
+    }
+  }
+  EGLDisplay display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
+  return initialized(display) ? display : EGL_NO_DISPLAY;
+}
+
+EGLContext create_context(EGLDisplay display) {
+  if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return EGL_NO_CONTEXT;
+  const std::array<EGLint, 5> config_attributes = {
+      EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  eglChooseConfig(display, config_attributes.data(), &config, 1, &count);
+  if (count < 1) return EGL_NO_CONTEXT;
+  const std::array<EGLint, 7> context_attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                                    3,
+                                                    EGL_CONTEXT_MINOR_VERSION,
+                                                    3,
+                                                    EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                    EGL_NONE};
+  return eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes.data());
+}
+
+}  // namespace
+
+struct OffscreenContext::Handles {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  std::unique_ptr<Framebuffer> framebuffer;
+
+  bool make_current() const {
+    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
+  }
+  ~Handles() {
+    if (context == EGL_NO_CONTEXT) return;
+    if (make_current()) framebuffer.reset();
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    // The display stays: EGL gives the same one to every context of the process.
+  }
+};
+
+OffscreenContext::OffscreenContext(int width, int height)
+    : width_(width), height_(height), handles_(std::make_unique<Handles>()) {
+  handles_->display = open_display();
+  if (handles_->display != EGL_NO_DISPLAY) handles_->context = create_context(handles_->display);
+  if (handles_->context == EGL_NO_CONTEXT || !handles_->make_current())
+    throw InputError(
+        "cannot draw without a display: found no EGL with OpenGL 3.3, expected Mesa's (on Debian: "
+        "apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri)");
+  load_gl_functions();
+  handles_->framebuffer = std::make_unique<Framebuffer>(width, height);
+}
+
+OffscreenContext::~OffscreenContext() = default;
+
+void OffscreenContext::make_current() { handles_->make_current(); }
+
+void OffscreenContext::bind() {
+  make_current();
+  handles_->framebuffer->bind();
+}
+
+cv::Mat OffscreenContext::read_bgr() {
+  bind();
+  return read_bound_framebuffer(width_, height_);
+}
+
+std::string gl_renderer() {
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return name != nullptr ? name : "";
+}
+
+}  // namespace gpo

@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/vtk_window.h"
+
+#include <utility>
+
+#include <vtkObjectFactory.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLState.h>
+#include <vtkOutputWindow.h>
+#include <vtkTextureObject.h>
+#include <vtk_glew.h>
+
+namespace gpo {
+namespace {
+
+class CallbackOutputWindow : public vtkOutputWindow {
+ public:
+  static CallbackOutputWindow* New();
+  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow) void DisplayText(const char* text) override {
+    if (on_message && text != nullptr) on_message(text);
+  }
+  std::function<void(const std::string&)> on_message;
+};
+vtkStandardNewMacro(CallbackOutputWindow);
+
+}  // namespace
+
+vtkStandardNewMacro(VtkWindow);
+
+VtkWindow::VtkWindow() {
+  SetOwnContext(0);
+  SetMapped(true);
+  SetIsCurrent(true);
+  SetSupportsOpenGL(1);
+  SetReadyForRendering(true);
+  SetFrameBlitModeToNoBlit();
+  SetMultiSamples(4);
+}
+
+void VtkWindow::OpenGLInitContext() {
+  if (Initialized) return;
+  const GLenum status = glewInit();
+  GlewInitValid = status == GLEW_OK || status == GLEW_ERROR_NO_GLX_DISPLAY;
+  if (!GlewInitValid) {
+    vtkErrorMacro("OpenGL's functions could not be loaded");
+    return;
+  }
+  Initialized = true;
+  GLfloat range[2] = {1, 1};
+  glGetFloatv(GL_LINE_WIDTH_RANGE, range);
+  if (glGetError() == GL_NO_ERROR) MaximumHardwareLineWidth = range[1];
+}
+
+vtkSmartPointer<VtkWindow> make_vtk_window() {
+  auto window = vtkSmartPointer<VtkWindow>::New();
+  window->InitializeFromCurrentContext();
+  return window;
+}
+
+unsigned render_to_texture(VtkWindow& window, int width, int height) {
+  if (width < 1 || height < 1) return 0;
+  GLint bound = 0;
+  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &bound);
+  window.SetSize(width, height);
+  // VTK remembers the state of OpenGL; Dear ImGui has changed it since.
+  window.GetState()->Reset();
+  window.Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound));
+  glUseProgram(0);
+  glBindVertexArray(0);
+  auto* texture = window.GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0);
+  return texture != nullptr ? texture->GetHandle() : 0;
+}
+
+VtkMessages::VtkMessages(std::function<void(const std::string&)> on_message)
+    : previous_(vtkOutputWindow::GetInstance()) {
+  auto ours = vtkSmartPointer<CallbackOutputWindow>::New();
+  ours->on_message = std::move(on_message);
+  vtkOutputWindow::SetInstance(ours);
+}
+
+VtkMessages::~VtkMessages() {
+  vtkOutputWindow::SetInstance(vtkOutputWindow::SafeDownCast(previous_));
+}
+
+}  // namespace gpo

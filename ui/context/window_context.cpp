@@ -1,0 +1,90 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/window_context.h"
+
+#include "engine/error.h"
+#include "ui/context/framebuffer.h"
+
+#include <algorithm>
+
+#include <GL/glew.h>
+#include <GLFW/glfw3.h>
+
+namespace gpo {
+namespace {
+
+std::string last_glfw_error() {
+  const char* description = nullptr;
+  glfwGetError(&description);
+  return description != nullptr ? description : "no reason given";
+}
+
+}  // namespace
+
+WindowContext::WindowContext(const std::string& title, int width, int height, bool visible) {
+  if (glfwInit() != GLFW_TRUE)
+    throw InputError("cannot open a window: " + last_glfw_error() +
+                     "; expected a display (`run` and `snapshot` need none)");
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
+  // The views bring their own depth and samples; the window only shows them.
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    const std::string reason = last_glfw_error();
+    glfwTerminate();
+    throw InputError("cannot open a window: " + reason + "; expected OpenGL 3.3");
+  }
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  try {
+    load_gl_functions();
+  } catch (...) {
+    glfwTerminate();
+    throw;
+  }
+}
+
+WindowContext::~WindowContext() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void WindowContext::make_current() { glfwMakeContextCurrent(window_); }
+
+void WindowContext::bind() {
+  make_current();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  const cv::Size pixels = size();
+  glViewport(0, 0, pixels.width, pixels.height);
+}
+
+void WindowContext::poll() { glfwPollEvents(); }
+void WindowContext::wait(double seconds) { glfwWaitEventsTimeout(seconds); }
+void WindowContext::swap() { glfwSwapBuffers(window_); }
+bool WindowContext::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+
+cv::Size WindowContext::size() const {
+  cv::Size pixels;
+  glfwGetFramebufferSize(window_, &pixels.width, &pixels.height);
+  return pixels;
+}
+
+float WindowContext::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::max({x, y, 1.0F});
+}
+
+cv::Mat WindowContext::read_bgr() {
+  bind();
+  glReadBuffer(GL_BACK);
+  const cv::Size pixels = size();
+  return read_bound_framebuffer(pixels.width, pixels.height);
+}
+
+}  // namespace gpo

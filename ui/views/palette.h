@@ -1,0 +1,55 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace gpo {
+
+/// Every color of the views and the panels, 0xRRGGBB. The methods' own are in `methods()`. Data in
+/// Okabe-Ito's colors, which people who see few colors tell apart; shape tells them apart too.
+namespace palette {
+
+// Data.
+constexpr std::uint32_t kInlier = 0x1FCB93;     ///< bluish green, lightened to show on pictures
+constexpr std::uint32_t kOutlier = 0xF0503C;    ///< red
+constexpr std::uint32_t kResidual = 0xF0E442;   ///< yellow
+constexpr std::uint32_t kTruth = 0xA9AEB6;      ///< neutral gray
+constexpr std::uint32_t kCubeBase = 0x2BD67B;   ///< green
+constexpr std::uint32_t kCubeEdge = 0xE4F3EA;   ///< the other edges: lighter
+constexpr std::uint32_t kCubeFace = 0x9FE8C4;   ///< translucent
+constexpr std::uint32_t kReference = 0xF0F2F5;  ///< the reference camera's mark
+constexpr std::uint32_t kPlane = 0x56B4E9;      ///< sky blue
+constexpr std::uint32_t kPoint = 0xC9D2DC;      ///< map points
+constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
+
+// Surfaces and text, dark to light.
+constexpr std::uint32_t kSceneBottom = 0x15181D;
+constexpr std::uint32_t kSceneTop = 0x262B33;
+constexpr std::uint32_t kBackground = 0x14171B;
+constexpr std::uint32_t kPanel = 0x1B1F25;
+constexpr std::uint32_t kRaised = 0x272D36;
+constexpr std::uint32_t kHovered = 0x343C48;
+constexpr std::uint32_t kActive = 0x3F4958;
+constexpr std::uint32_t kBorder = 0x323944;
+constexpr std::uint32_t kTextDim = 0x98A2B0;
+constexpr std::uint32_t kText = 0xE6EAF0;
+constexpr std::uint32_t kAccent = 0x56B4E9;  ///< sky blue: what is chosen or can be dragged
+constexpr std::uint32_t kGood = 0x1FCB93;
+constexpr std::uint32_t kWarning = 0xE69F00;
+constexpr std::uint32_t kBad = 0xF0503C;
+
+}  // namespace palette
+
+constexpr double red(std::uint32_t rgb) { return ((rgb >> 16) & 0xFF) / 255.0; }
+constexpr double green(std::uint32_t rgb) { return ((rgb >> 8) & 0xFF) / 255.0; }
+constexpr double blue(std::uint32_t rgb) { return (rgb & 0xFF) / 255.0; }
+
+/// As Dear ImGui packs a color (IM_COL32). `alpha` in 0..1.
+constexpr std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {
+  return static_cast<std::uint32_t>(alpha * 255 + 0.5) << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) |
+         ((rgb >> 16) & 0xFF);
+}
+
+}  // namespace gpo
