@@ -1,0 +1,53 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/settings.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace gpo {
+
+/// Exit codes of the contract.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;    ///< the initialization failed, or a picture differs
+inline constexpr int kBadInput = 2;  ///< bad input or usage
+
+/// What `run` and `snapshot` inspect.
+struct InspectArguments {
+  std::filesystem::path recording;
+  std::optional<std::filesystem::path> tracks;
+  Settings settings;
+};
+
+/// Opens, says once what is missing (on standard error), inspects. Throws InputError.
+std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments);
+
+struct RunArguments {
+  InspectArguments inspect;
+  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> points;
+};
+
+struct SnapshotArguments {
+  InspectArguments inspect;
+  std::string view;                 ///< image | scene | window
+  std::filesystem::path output;     ///< .png
+  std::optional<int> frame;         ///< counts in the recording; default: the window's last
+  std::optional<std::string> size;  ///< "WxH" [px]
+  std::optional<std::filesystem::path> baseline;
+  int tolerance = 3;  ///< largest difference of a color channel that counts as equal
+};
+
+int info_command(const std::filesystem::path& recording, bool json);
+int run_command(const RunArguments& arguments);
+int snapshot_command(const SnapshotArguments& arguments);
+int synthesize_command(const std::filesystem::path& recipe, const std::filesystem::path& output);
+int view_command(const std::optional<std::filesystem::path>& recording, const Settings& settings);
+
+}  // namespace gpo

@@ -1,0 +1,160 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands.h"
+#include "engine/error.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+#include <functional>
+#include <type_traits>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core/ocl.hpp>
+#include <opencv2/core/utils/logger.hpp>
+
+namespace gpo {
+namespace {
+
+std::string option_name(const SettingInfo& info) {
+  std::string name = info.key;
+  std::ranges::replace(name, '_', '-');
+  return "--" + name;
+}
+
+/// One option a setting: `visit_settings` is the only place that declares them.
+void add_settings(CLI::App& command, Settings& settings) {
+  visit_settings(settings, [&](const SettingInfo& info, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    std::string help = info.help;
+    if (*info.unit != '\0') help += fmt::format(" [{}]", info.unit);
+    if constexpr (std::is_same_v<Value, bool>) {
+      command.add_flag_callback(
+          "--no-" + option_name(info).substr(2), [&value] { value = false; }, "Off: " + help);
+    } else if constexpr (std::is_same_v<Value, RotationSource>) {
+      help += fmt::format(": {}", fmt::join(rotation_source_keys(), ", "));
+      command.add_option_function<std::string>(
+          option_name(info),
+          [&value](const std::string& key) { value = rotation_source(key); },
+          help);
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      std::string known;
+      for (const Method& method : methods()) known += " " + method.key;
+      command.add_option(option_name(info), value, help + ":" + known)->capture_default_str();
+    } else {
+      command.add_option(option_name(info), value, help)
+          ->capture_default_str()
+          ->check(CLI::Range(static_cast<Value>(info.least), static_cast<Value>(info.most)));
+    }
+  });
+}
+
+void add_inspection(CLI::App& command, InspectArguments& arguments) {
+  command.add_option("recording", arguments.recording, "Folder or file of a recording")->required();
+  command.add_option(
+      "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
+  add_settings(command, arguments.settings);
+}
+
+void add_run(CLI::App& app, RunArguments& arguments) {
+  CLI::App* command = app.add_subcommand("run", "One initialization; prints a short table");
+  add_inspection(*command, arguments.inspect);
+  command->add_option("--json", arguments.json, "Write the whole result");
+  command->add_option("--trajectory", arguments.trajectory, "Write the camera poses in TUM format");
+  command->add_option("--points", arguments.points, "Write the map points as PLY");
+}
+
+void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
+  CLI::App* command = app.add_subcommand("snapshot", "One picture, without a display");
+  add_inspection(*command, arguments.inspect);
+  command->add_option("--view", arguments.view, "What to draw")
+      ->required()
+      ->check(CLI::IsMember({"image", "scene", "window"}));
+  command->add_option("--output", arguments.output, "PNG file to write")->required();
+  command->add_option(
+      "--frame", arguments.frame, "Frame of the recording to draw; default: the window's last");
+  command->add_option("--size", arguments.size, "WxH in pixels; default: the view's own");
+  command->add_option("--baseline",
+                      arguments.baseline,
+                      "Picture to compare with; exit code 1 and OUTPUT.diff.png where it differs");
+  command
+      ->add_option("--tolerance",
+                   arguments.tolerance,
+                   "Largest difference of a color channel that counts as equal, of 255")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 255));
+}
+
+struct Arguments {
+  std::filesystem::path info_recording;
+  bool info_json = false;
+  RunArguments run;
+  SnapshotArguments snapshot;
+  std::filesystem::path recipe;
+  std::filesystem::path synthesize_output;
+  std::optional<std::filesystem::path> view_recording;
+  Settings view_settings;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.require_subcommand(0, 1);
+  CLI::App* view = app.add_subcommand("view", "The window; the default");
+  view->add_option("recording", arguments.view_recording, "Folder or file of a recording");
+  add_settings(*view, arguments.view_settings);
+  CLI::App* info = app.add_subcommand("info", "What is found in a recording");
+  info->add_option("recording", arguments.info_recording, "Folder or file of a recording")
+      ->required();
+  info->add_flag("--json", arguments.info_json, "As JSON");
+  add_run(app, arguments.run);
+  add_snapshot(app, arguments.snapshot);
+  CLI::App* synthesize =
+      app.add_subcommand("synthesize", "A recording with perfect ground truth, from a recipe");
+  synthesize->add_option("recipe", arguments.recipe, "Recipe, a YAML file")->required();
+  synthesize->add_option("--output", arguments.synthesize_output, "Folder to write, EuRoC layout")
+      ->required();
+}
+
+int dispatch(const CLI::App& app, const Arguments& arguments) {
+  if (app.got_subcommand("info"))
+    return info_command(arguments.info_recording, arguments.info_json);
+  if (app.got_subcommand("run")) return run_command(arguments.run);
+  if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
+  if (app.got_subcommand("synthesize"))
+    return synthesize_command(arguments.recipe, arguments.synthesize_output);
+  return view_command(arguments.view_recording, arguments.view_settings);
+}
+
+/// Messages of libraries may span lines; the contract promises one.
+int complain(std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  fmt::print(stderr, "gpo-inspector: {}\n", message);
+  return kBadInput;
+}
+
+int main_with_errors(int argc, char** argv) {
+  CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
+               "gpo-inspector");
+  Arguments arguments;
+  declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return dispatch(app, arguments);
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(error.what());
+  } catch (const InputError& error) {
+    return complain(error.what());
+  } catch (const std::exception& error) {
+    return complain(fmt::format("internal error, please report it: {}", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace gpo
+
+int main(int argc, char** argv) {
+  cv::ocl::setUseOpenCL(false);  // its results differ from the CPU's
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  return gpo::main_with_errors(argc, argv);
+}

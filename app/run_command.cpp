@@ -1,0 +1,31 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands.h"
+#include "app/output_file.h"
+#include "engine/inspection/report.h"
+#include "engine/recording/recording.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
+  const auto recording = open_recording(arguments.recording, {.tracks = arguments.tracks});
+  for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
+  return Inspector(recording).inspect(arguments.settings);
+}
+
+int run_command(const RunArguments& arguments) {
+  for (const auto& file : {arguments.json, arguments.trajectory, arguments.points}) {
+    if (file) check_writable(*file);
+  }
+  const auto inspection = inspect(arguments.inspect);
+  const bool ok = inspection->initialization->ok;
+  fmt::print("{}", to_text(*inspection));
+  if (arguments.json) write_file(*arguments.json, to_json(*inspection).dump(2) + "\n");
+  if (ok && arguments.trajectory) write_file(*arguments.trajectory, to_tum(*inspection));
+  if (ok && arguments.points) write_file(*arguments.points, to_ply(*inspection));
+  return ok ? kDone : kFailed;
+}
+
+}  // namespace gpo

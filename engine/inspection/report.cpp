@@ -1,0 +1,232 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/report.h"
+
+#include "engine/initializers/methods.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json vector_json(const auto& v) {
+  return ordered_json(std::vector<double>(v.begin(), v.end()));
+}
+
+Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return (q.w() < 0 ? -1.0 : 1.0) * q.normalized().coeffs();
+}
+
+ordered_json optional_json(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json settings_json(const Inspection& inspection) {
+  ordered_json json;
+  visit_settings(inspection.settings, [&](const SettingInfo& info, const auto& value) {
+    const std::string key = info.key;
+    if (key == "start" || key == "frames" || key == "method") return;  // told elsewhere
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, RotationSource>) {
+      json[key] = to_string(inspection.rotations_used);
+    } else {
+      json[key] = value;
+    }
+  });
+  return json;
+}
+
+ordered_json frames_json(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  ordered_json frames = ordered_json::array();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    ordered_json frame = {{"index", window.start + i},
+                          {"timestamp_ns", window.timestamps_ns[i]},
+                          {"p_wc", nullptr},
+                          {"q_wc_xyzw", nullptr},
+                          {"inliers", window.inlier_count(i)}};
+    if (inspection.initialization->ok) {
+      const Pose& pose = inspection.initialization->cameras[i];
+      frame["p_wc"] = vector_json(pose.p_wc);
+      frame["q_wc_xyzw"] = vector_json(quaternion_xyzw(pose.R_wc));
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+ordered_json points_json(const Inspection& inspection) {
+  ordered_json points = ordered_json::array();
+  for (const MapPoint& point : inspection.initialization->points) {
+    points.push_back({{"track", inspection.tracks->ids[point.track]},
+                      {"position", vector_json(point.position)}});
+  }
+  return points;
+}
+
+ordered_json metrics_json(const Evaluation& evaluation) {
+  return {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
+          {"scale", optional_json(evaluation.scale)},
+          {"ate_m", optional_json(evaluation.ate_m)},
+          {"pne_deg", optional_json(evaluation.pne_deg)},
+          {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
+          {"pde_m", optional_json(evaluation.pde_m)},
+          {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+}
+
+std::string row(const char* name, const std::string& value) {
+  return fmt::format("{:<12}{}\n", name, value);
+}
+
+std::string with_unit(const std::optional<double>& value,
+                      double factor,
+                      int digits,
+                      const char* unit) {
+  return value ? fmt::format("{:.{}f} {}", *value * factor, digits, unit) : "-";
+}
+
+std::string metrics_text(const Evaluation& e) {
+  const char* alignment = e.alignment == Alignment::ok ? "ok"
+                          : e.alignment == Alignment::line
+                              ? "degenerate (the true path is a line)"
+                              : "degenerate (the true path is a point)";
+  return row("alignment", alignment) + row("ATE", with_unit(e.ate_m, 1e3, 2, "mm")) +
+         row("PNE",
+             with_unit(e.pne_deg, 1, 3, "deg") + "  (bound " +
+                 with_unit(e.pne_bound_deg, 1, 3, "deg") + ", after alignment " +
+                 with_unit(e.pne_aligned_deg, 1, 3, "deg") + ")") +
+         row("PDE", with_unit(e.pde_m, 1e3, 2, "mm"));
+}
+
+}  // namespace
+
+ordered_json to_json(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const Window& window = *inspection.window;
+  const SolverReport& solver = result.solver;
+  const Timing& t = inspection.timing;
+  ordered_json json;
+  json["recording"] = inspection.recording->path.string();
+  json["method"] = inspection.settings.method;
+  json["status"] = result.ok ? "ok" : "failed";
+  json["reason"] = result.reason;
+  json["window"] = {{"start", window.start},
+                    {"frames", window.frame_count()},
+                    {"tracks", window.track_count()},
+                    {"inliers", window.inlier_count(0)}};
+  json["settings"] = settings_json(inspection);
+  json["plane"] = nullptr;
+  if (result.ok) {
+    json["plane"] = {{"normal", vector_json(result.plane.normal)},
+                     {"distance", result.plane.distance}};
+  }
+  json["frames"] = frames_json(inspection);
+  json["points"] = points_json(inspection);
+  json["solver"] = {{"iterations", solver.iterations},
+                    {"initial_cost", solver.initial_cost},
+                    {"final_cost", solver.final_cost},
+                    {"unknowns", solver.unknowns},
+                    {"residuals", solver.residuals},
+                    {"termination", solver.termination}};
+  json["timing_ms"] = {{"track", t.track},
+                       {"ransac", t.ransac},
+                       {"rotations", t.rotations},
+                       {"initialize", t.initialize},
+                       {"optimize", t.optimize},
+                       {"total", t.total}};
+  if (inspection.evaluation) json["metrics"] = metrics_json(*inspection.evaluation);
+  return json;
+}
+
+std::string to_text(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const Window& window = *inspection.window;
+  const Timing& t = inspection.timing;
+  std::string text =
+      row("recording", inspection.recording->name) +
+      row("window",
+          fmt::format("frames {} to {} ({})",
+                      window.start,
+                      window.start + window.frame_count() - 1,
+                      window.frame_count())) +
+      row("method", find_method(inspection.settings.method).title) +
+      row("rotations",
+          inspection.rotations_used == RotationSource::gyro
+              ? fmt::format("gyro (bias: {})", inspection.recording->gyroscope->bias_source)
+              : to_string(inspection.rotations_used)) +
+      row("status", result.ok ? "ok" : "failed: " + result.reason) +
+      row("inliers", fmt::format("{} of {} tracks", window.inlier_count(0), window.track_count()));
+  if (result.ok) {
+    const Eigen::Vector3d& n = result.plane.normal;
+    text +=
+        row("normal",
+            fmt::format(
+                "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
+        row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
+        row("solver",
+            fmt::format("{} iterations, {} unknowns, {} residuals",
+                        result.solver.iterations,
+                        result.solver.unknowns,
+                        result.solver.residuals));
+  }
+  text += row("time",
+              fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
+                          "{:.1f}, of it solver {:.1f})",
+                          t.total,
+                          t.track,
+                          t.ransac,
+                          t.rotations,
+                          t.initialize,
+                          t.optimize));
+  if (inspection.evaluation) {
+    text += metrics_text(*inspection.evaluation) + row("truth", inspection.truth->source);
+  }
+  return text;
+}
+
+std::string to_tum(const Inspection& inspection) {
+  std::string text =
+      "# timestamp[s] tx ty tz qx qy qz qw; camera to world; world = reference camera (x right, y "
+      "down, "
+      "z forward); unit = distance of the plane\n";
+  const Window& window = *inspection.window;
+  for (std::size_t i = 0; i < inspection.initialization->cameras.size(); ++i) {
+    const auto& [R_wc, p] = inspection.initialization->cameras[i];
+    const Eigen::Vector4d q = quaternion_xyzw(R_wc);
+    const std::int64_t t = window.timestamps_ns[i];
+    text += fmt::format("{}.{:09d} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
+                        t / 1'000'000'000,
+                        t % 1'000'000'000,
+                        p.x(),
+                        p.y(),
+                        p.z(),
+                        q.x(),
+                        q.y(),
+                        q.z(),
+                        q.w());
+  }
+  return text;
+}
+
+std::string to_ply(const Inspection& inspection) {
+  const auto& points = inspection.initialization->points;
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\ncomment world = reference camera (x right, y down, z forward); unit "
+      "= distance of the plane\n"
+      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
+      "track\nend_header\n",
+      points.size());
+  for (const MapPoint& point : points) {
+    text += fmt::format("{:.9f} {:.9f} {:.9f} {}\n",
+                        point.position.x(),
+                        point.position.y(),
+                        point.position.z(),
+                        inspection.tracks->ids[point.track]);
+  }
+  return text;
+}
+
+}  // namespace gpo

@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+
+/// `run --json` of the contract. World = reference camera, gauge d = 1; quaternions x y z w. A
+/// failed initialization has null for its plane and poses; an unknown metric is null.
+nlohmann::ordered_json to_json(const Inspection& inspection);
+
+/// The short table that `run` prints, with units.
+std::string to_text(const Inspection& inspection);
+
+/// Camera poses in TUM format: t tx ty tz qx qy qz qw, after a comment line that names frame and
+/// units.
+std::string to_tum(const Inspection& inspection);
+
+/// Map points, ASCII PLY with the track's id; the very points that the views draw.
+std::string to_ply(const Inspection& inspection);
+
+}  // namespace gpo

@@ -1,0 +1,99 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/layout.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+struct Size {
+  float width, height, scale;
+};
+
+std::vector<Size> sizes() {
+  std::vector<Size> all;
+  for (const float scale : {1.0f, 1.25f, 1.5f, 2.0f}) {
+    for (float width = 800; width <= 3840; width += 95) {
+      for (float height = 500; height <= 2160; height += 83) {
+        if (width >= 800 * scale && height >= 500 * scale) all.push_back({width, height, scale});
+      }
+    }
+  }
+  all.insert(all.end(), {{800, 500, 1}, {1280, 720, 1}, {1280, 720, 2}, {800, 500, 2}});
+  return all;
+}
+
+std::vector<Rectangle> parts(const WindowLayout& l) {
+  return {l.menu, l.settings, l.results, l.picture, l.scene, l.timeline, l.status};
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
+}
+
+std::string name(const Size& s) {
+  return std::to_string(s.width) + "x" + std::to_string(s.height) + " at " +
+         std::to_string(s.scale);
+}
+
+TEST(WindowLayout, PartsLieInsideAndDoNotOverlap) {
+  for (const Size& size : sizes()) {
+    SCOPED_TRACE(name(size));
+    const auto all = parts(window_layout(size.width, size.height, size.scale));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      ASSERT_GE(all[i].x, 0);
+      ASSERT_GE(all[i].y, 0);
+      ASSERT_LE(all[i].right(), size.width);
+      ASSERT_LE(all[i].bottom(), size.height);
+      ASSERT_GT(all[i].width, 100);
+      ASSERT_GT(all[i].height, 20);
+      for (std::size_t j = 0; j < i; ++j) ASSERT_FALSE(overlap(all[i], all[j])) << i << " " << j;
+    }
+  }
+}
+
+TEST(WindowLayout, PictureAndSceneAreTheLargest) {
+  for (const Size& size : sizes()) {
+    SCOPED_TRACE(name(size));
+    const WindowLayout layout = window_layout(size.width, size.height, size.scale);
+    const auto area = [](const Rectangle& r) { return r.width * r.height; };
+    const float views = area(layout.picture) + area(layout.scene);
+    const float others = size.width * size.height - views;
+    if (size.width >= 1280 * size.scale && size.height >= 720 * size.scale) {
+      ASSERT_GT(views, others);
+    }
+    ASSERT_NEAR(area(layout.picture) / area(layout.scene), 1, 0.02);
+    if (size.width < 800 * size.scale) continue;
+    for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
+      ASSERT_GT(area(layout.picture), area(part));
+    }
+  }
+}
+
+TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
+  const WindowLayout layout = window_layout(1280, 720, 1);
+  for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
+    EXPECT_EQ(part.x, 0);
+    EXPECT_EQ(part.width, 1280);
+  }
+  EXPECT_EQ(layout.status.bottom(), 720);
+  EXPECT_EQ(layout.picture.y, layout.scene.y);  // side by side
+  EXPECT_LE(layout.picture.right(), layout.scene.x);
+}
+
+TEST(WindowLayout, DoublesWithTheContentScale) {
+  const auto one = parts(window_layout(1280, 720, 1));
+  const auto two = parts(window_layout(2560, 1440, 2));
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_NEAR(two[i].x, 2 * one[i].x, 2);
+    EXPECT_NEAR(two[i].width, 2 * one[i].width, 2);
+    EXPECT_NEAR(two[i].height, 2 * one[i].height, 2);
+  }
+}
+
+}  // namespace
+}  // namespace gpo

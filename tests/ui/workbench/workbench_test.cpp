@@ -1,0 +1,309 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/workbench.h"
+
+#include "engine/initializers/methods.h"
+#include "ui/workbench/actions.h"
+
+#include <set>
+
+#include <GLFW/glfw3.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+std::shared_ptr<const Recording> recording_of(int frames, double rate_hz = 10) {
+  auto recording = std::make_shared<Recording>();
+  for (int i = 0; i < frames; ++i) {
+    recording->timestamps_ns.push_back(static_cast<std::int64_t>(i * 1e9 / rate_hz));
+  }
+  return recording;
+}
+
+WorkbenchState opened(int frames = 60) {
+  WorkbenchState state;
+  adopt(state, recording_of(frames));
+  return state;
+}
+
+void run(WorkbenchState& state, const std::string& action) { apply(state, RunAction{action}); }
+
+void expect_legal(const Settings& settings, int frame_count) {
+  EXPECT_GE(settings.start, 0);
+  EXPECT_GE(settings.frames, 2);
+  EXPECT_LE(settings.frames, 1000);
+  EXPECT_LE(settings.start + settings.frames, frame_count);
+}
+
+TEST(Workbench, ShowsTheLastFrameOfTheWindowOfANewRecording) {
+  const WorkbenchState state = opened(60);
+  EXPECT_EQ(state.settings.start, 0);
+  EXPECT_EQ(state.settings.frames, 30);
+  EXPECT_EQ(state.frame, 29);
+}
+
+TEST(Workbench, FitsTheWindowIntoAShortRecordingAndSaysSo) {
+  WorkbenchState state;
+  state.settings.start = 500;
+  adopt(state, recording_of(12));
+  expect_legal(state.settings, 12);
+  EXPECT_EQ(state.frame, 11);
+  EXPECT_EQ(state.message, "start 500 does not fit: the last of 12 frames is 11");
+}
+
+TEST(Workbench, StepsStayInsideTheRecording) {
+  WorkbenchState state = opened(25);
+  run(state, "last");
+  EXPECT_EQ(state.frame, 24);
+  run(state, "next");
+  run(state, "next-ten");
+  EXPECT_EQ(state.frame, 24);
+  run(state, "previous");
+  EXPECT_EQ(state.frame, 23);
+  run(state, "previous-ten");
+  EXPECT_EQ(state.frame, 13);
+  run(state, "next-ten");
+  EXPECT_EQ(state.frame, 23);
+  run(state, "next");
+  EXPECT_EQ(state.frame, 24);
+  run(state, "first");
+  EXPECT_EQ(state.frame, 0);
+  run(state, "previous");
+  run(state, "previous-ten");
+  EXPECT_EQ(state.frame, 0);
+}
+
+TEST(Workbench, ScrubbingStaysInsideTheRecording) {
+  WorkbenchState state = opened(25);
+  apply(state, GoToFrame{-5});
+  EXPECT_EQ(state.frame, 0);
+  apply(state, GoToFrame{1000});
+  EXPECT_EQ(state.frame, 24);
+}
+
+TEST(Workbench, PlaysAtTheRateOfTheRecordingAndStopsAtItsEnd) {
+  WorkbenchState state = opened(25);
+  run(state, "first");
+  run(state, "play");
+  EXPECT_TRUE(state.playing);
+  EXPECT_DOUBLE_EQ(*seconds_to_next_frame(state), 0.1);
+  advance(state, 0.04);
+  EXPECT_EQ(state.frame, 0);
+  EXPECT_NEAR(*seconds_to_next_frame(state), 0.06, 1e-12);
+  advance(state, 0.27);  // 0.31 s in all
+  EXPECT_EQ(state.frame, 3);
+  advance(state, 100);
+  EXPECT_EQ(state.frame, 24);
+  EXPECT_FALSE(state.playing);
+  EXPECT_FALSE(seconds_to_next_frame(state).has_value());
+}
+
+TEST(Workbench, PlayAtTheEndBeginsAgainAndASecondPressPauses) {
+  WorkbenchState state = opened(25);
+  run(state, "last");
+  run(state, "play");
+  EXPECT_EQ(state.frame, 0);
+  run(state, "play");
+  EXPECT_FALSE(state.playing);
+  advance(state, 10);
+  EXPECT_EQ(state.frame, 0);
+}
+
+TEST(Workbench, StepPausesPlaying) {
+  WorkbenchState state = opened();
+  run(state, "play");
+  run(state, "next");
+  EXPECT_FALSE(state.playing);
+}
+
+TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
+  for (const auto& [name, flag] : {std::pair{"tracks", &ViewToggles::tracks},
+                                   {"tails", &ViewToggles::tails},
+                                   {"residuals", &ViewToggles::residuals},
+                                   {"cube", &ViewToggles::cube},
+                                   {"truth", &ViewToggles::truth}}) {
+    WorkbenchState state = opened();
+    const bool before = state.view.*flag;
+    run(state, name);
+    EXPECT_NE(state.view.*flag, before) << name;
+    EXPECT_EQ(find_action(name)->checked(state), !before) << name;
+    run(state, name);
+    EXPECT_EQ(state.view.*flag, before) << name;
+    EXPECT_EQ(state.settings, opened().settings) << name;
+  }
+}
+
+TEST(Workbench, RansacIsSwitched) {
+  WorkbenchState state = opened();
+  run(state, "ransac");
+  EXPECT_FALSE(state.settings.ransac);
+  run(state, "ransac");
+  EXPECT_TRUE(state.settings.ransac);
+}
+
+TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
+  WorkbenchState state = opened();
+  for (std::size_t i = 0; i < methods().size() && i < 9; ++i) {
+    const Action* action = action_of_character(U'1' + i);
+    ASSERT_NE(action, nullptr);
+    run(state, action->name);
+    EXPECT_EQ(state.settings.method, methods()[i].key);
+    EXPECT_TRUE(action->checked(state));
+  }
+}
+
+TEST(Workbench, WindowStartsHereAndKeepsItsEnd) {
+  WorkbenchState state = opened(60);
+  apply(state, GoToFrame{10});
+  run(state, "window-start");
+  EXPECT_EQ(state.settings.start, 10);
+  EXPECT_EQ(state.settings.frames, 20);  // 10..29
+  apply(state, GoToFrame{35});
+  run(state, "window-start");  // behind its end: keeps its length
+  EXPECT_EQ(state.settings.start, 35);
+  EXPECT_EQ(state.settings.frames, 20);
+}
+
+TEST(Workbench, WindowEndsHereAndKeepsItsStart) {
+  WorkbenchState state = opened(60);
+  state.settings.start = 20;
+  apply(state, GoToFrame{25});
+  run(state, "window-end");
+  EXPECT_EQ(state.settings.start, 20);
+  EXPECT_EQ(state.settings.frames, 6);  // 20..25
+  apply(state, GoToFrame{10});
+  run(state, "window-end");  // before its start: keeps its length
+  EXPECT_EQ(state.settings.start, 5);
+  EXPECT_EQ(state.settings.frames, 6);
+}
+
+TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
+  for (const int count : {2, 3, 31, 1500}) {
+    for (int frame = 0; frame<count; frame += count> 100 ? 37 : 1) {
+      for (const Settings& before : {Settings{},
+                                     Settings{.start = count - 2, .frames = 2},
+                                     Settings{.start = 0, .frames = count}}) {
+        WorkbenchState state = opened(count);
+        state.settings = fit_window(before, count);
+        state.frame = frame;
+        WorkbenchState other = state;
+        run(state, "window-start");
+        expect_legal(state.settings, count);
+        EXPECT_EQ(state.settings.start, std::min(frame, count - 2));
+        run(other, "window-end");
+        expect_legal(other.settings, count);
+        EXPECT_EQ(other.settings.start + other.settings.frames - 1, std::max(frame, 1));
+      }
+    }
+  }
+}
+
+TEST(Workbench, SettingsOfThePanelAreMadeToFit) {
+  WorkbenchState state = opened(20);
+  apply(state, ChangeSettings{{.start = 18, .frames = 50}});
+  expect_legal(state.settings, 20);
+  apply(state, ChangeSettings{{.start = -3, .frames = -1}});
+  expect_legal(state.settings, 20);
+}
+
+TEST(Workbench, CubeSideStaysBetweenAutomaticAndTwoDistances) {
+  WorkbenchState state;
+  apply(state, SetCubeSide{0.3});
+  EXPECT_DOUBLE_EQ(state.cube_side, 0.3);
+  apply(state, SetCubeSide{-1});
+  EXPECT_DOUBLE_EQ(state.cube_side, 0);
+  apply(state, SetCubeSide{9});
+  EXPECT_DOUBLE_EQ(state.cube_side, 2);
+}
+
+TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
+  WorkbenchState state = opened();
+  run(state, "help");
+  EXPECT_TRUE(state.show_help);
+  run(state, "escape");
+  EXPECT_FALSE(state.show_help);
+  EXPECT_FALSE(state.wishes.cancel);
+  run(state, "escape");
+  EXPECT_TRUE(state.wishes.cancel);
+}
+
+TEST(Workbench, WishesAreLeftForTheWindow) {
+  WorkbenchState state = opened();
+  run(state, "save-picture");
+  EXPECT_TRUE(state.wishes.save_picture);
+  run(state, "quit");
+  EXPECT_TRUE(state.wishes.quit);
+  run(state, "open-example");
+  EXPECT_TRUE(state.wishes.open_example);
+  run(state, "compute");
+  EXPECT_TRUE(state.wishes.compute);
+  run(state, "fit");
+  EXPECT_TRUE(state.wishes.fit);
+  apply(state, OpenRecording{"desk"});
+  EXPECT_EQ(state.wishes.open, "desk");
+}
+
+TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
+  for (const Action& action : actions()) {
+    WorkbenchState state;
+    run(state, action.name);
+    EXPECT_EQ(state.frame, 0) << action.name;
+    EXPECT_FALSE(state.playing) << action.name;
+    EXPECT_EQ(state.message, action.needs_recording ? "no recording is open" : "") << action.name;
+    if (action.value) action.value(state);
+  }
+}
+
+TEST(Workbench, UnknownActionIsNamed) {
+  WorkbenchState state;
+  run(state, "fly");
+  EXPECT_EQ(state.message, "no action is called \"fly\"");
+}
+
+TEST(Actions, HaveUniqueNamesAndKeysAndAreExplained) {
+  std::set<std::string> names;
+  std::set<std::string> labels;
+  for (const Action& action : actions()) {
+    EXPECT_TRUE(names.insert(action.name).second) << action.name;
+    EXPECT_FALSE(action.title.empty()) << action.name;
+    EXPECT_FALSE(action.tooltip.empty()) << action.name;
+    ASSERT_TRUE(action.run) << action.name;
+    for (const Shortcut& shortcut : action.shortcuts) {
+      EXPECT_TRUE(labels.insert(shortcut.label).second) << shortcut.label;
+    }
+  }
+}
+
+TEST(Actions, AreFoundByTheKeysThatTheDesignNames) {
+  EXPECT_EQ(action_of_key(GLFW_KEY_LEFT, false)->name, "previous");
+  EXPECT_EQ(action_of_key(GLFW_KEY_RIGHT, false)->name, "next");
+  EXPECT_EQ(action_of_key(GLFW_KEY_LEFT, true)->name, "previous-ten");
+  EXPECT_EQ(action_of_key(GLFW_KEY_RIGHT, true)->name, "next-ten");
+  EXPECT_EQ(action_of_key(GLFW_KEY_HOME, false)->name, "first");
+  EXPECT_EQ(action_of_key(GLFW_KEY_END, false)->name, "last");
+  EXPECT_EQ(action_of_key(GLFW_KEY_F1, false)->name, "help");
+  EXPECT_EQ(action_of_key(GLFW_KEY_ESCAPE, false)->name, "escape");
+  EXPECT_EQ(action_of_key(GLFW_KEY_UNKNOWN, false), nullptr);
+  for (const auto& [character, name] : {std::pair{U' ', "play"},
+                                        {U'[', "window-start"},
+                                        {U']', "window-end"},
+                                        {U't', "tails"},
+                                        {U'T', "tails"},
+                                        {U'e', "residuals"},
+                                        {U'b', "cube"},
+                                        {U'g', "truth"},
+                                        {U'r', "ransac"},
+                                        {U'f', "fit"},
+                                        {U's', "save-picture"},
+                                        {U'?', "help"},
+                                        {U'1', "method-1"}}) {
+    ASSERT_NE(action_of_character(character), nullptr) << name;
+    EXPECT_EQ(action_of_character(character)->name, name);
+  }
+  EXPECT_EQ(action_of_character(U'\u00e4'), nullptr);
+}
+
+}  // namespace
+}  // namespace gpo
