@@ -28,6 +28,8 @@ double seconds_of_frame(const Recording& recording, int frame) {
 
 }  // namespace
 
+void push(Commands& commands, const Command& command) { commands.push_back(command); }
+
 void apply(WorkbenchState& state, const Command& command) {
   const auto run = [&](const RunAction& c) { run_action(state, c.name); };
   const auto change = [&](const ChangeSettings& c) {

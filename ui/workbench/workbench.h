@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace gpo {
 
@@ -69,6 +70,11 @@ struct OpenRecording {
 /// Everything that a user can do. Panels push commands and change nothing themselves; so keys,
 /// menus, panels and tests take one path.
 using Command = std::variant<RunAction, ChangeSettings, GoToFrame, SetCubeSide, OpenRecording>;
+
+/// What the user did while a frame was drawn, to be applied after it.
+using Commands = std::vector<Command>;
+/// Not `push_back`: inlined, it makes GCC 12 warn of members that are not there.
+void push(Commands& commands, const Command& command);
 
 void apply(WorkbenchState& state, const Command& command);
 
