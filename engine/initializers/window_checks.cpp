@@ -115,6 +115,19 @@ double root_mean_square(std::span<const double> values) {
 std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras) {
+  std::vector<double> homography;
+  for (int i = 1; i < window.frame_count(); ++i)
+    homography.push_back(frame_errors(window, i).homography_px);
+  const double expected_px = median(std::move(homography));
+  const double found_px = median(reprojection_errors_px(window, plane, cameras));
+  if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
+    return fmt::format(
+        "no convergence to the plane: median residual {:.1f} px, where the homographies leave "
+        "{:.1f} px "
+        "(wrong minimum, or rotations that do not fit the pictures)",
+        found_px,
+        expected_px);
+  }
   const Matrix3d K_inverse = window.K.inverse();
   for (int j = 0; j < window.track_count(); ++j) {
     const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
@@ -123,18 +136,7 @@ std::optional<std::string> reason_to_distrust(const Window& window,
                          j);
     }
   }
-  std::vector<double> homography;
-  for (int i = 1; i < window.frame_count(); ++i)
-    homography.push_back(frame_errors(window, i).homography_px);
-  const double expected_px = median(std::move(homography));
-  const double found_px = median(reprojection_errors_px(window, plane, cameras));
-  if (found_px <= kDistrustFactor * expected_px + kDistrustPx) return std::nullopt;
-  return fmt::format(
-      "no convergence to the plane: median residual {:.1f} px, where the homographies leave {:.1f} "
-      "px "
-      "(wrong minimum, or rotations that do not fit the pictures)",
-      found_px,
-      expected_px);
+  return std::nullopt;
 }
 
 }  // namespace gpo

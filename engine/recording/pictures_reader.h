@@ -1,0 +1,20 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <filesystem>
+
+namespace gpo {
+
+/// Reads a video, or a folder with a video or with numbered pictures, and camera.yaml, gyro.csv and
+/// frame_timestamps.txt beside them. With `tracks` there need be no pictures. Throws InputError.
+Recording read_pictures(const std::filesystem::path& path,
+                        const std::optional<std::filesystem::path>& tracks,
+                        std::size_t cache_bytes);
+
+/// Whether the folder holds a video or numbered pictures.
+bool holds_pictures(const std::filesystem::path& folder);
+
+}  // namespace gpo

@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <filesystem>
+
+namespace gpo {
+
+/// board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}. Throws InputError.
+Board read_board(const std::filesystem::path& file);
+
+/// plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
+Plane read_plane(const std::filesystem::path& file);
+
+}  // namespace gpo

@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace gpo {
+
+/// All bytes of a file. Throws InputError where it is missing or cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
+/// Without white space at both ends.
+std::string_view trimmed(std::string_view text);
+std::string lower_case(std::string_view text);
+
+/// A finite number that fills the whole text; nothing otherwise.
+std::optional<double> parse_number(std::string_view text);
+std::optional<std::int64_t> parse_integer(std::string_view text);
+/// The number times 10^decimals, rounded, without the detour through a double that would cost the
+/// nanoseconds of a time stamp: ("1403636579.763555584", 9) is 1403636579763555584.
+std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
+
+}  // namespace gpo

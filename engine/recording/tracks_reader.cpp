@@ -1,0 +1,58 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/tracks_reader.h"
+
+#include "engine/recording/csv_table.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace gpo {
+
+namespace {
+
+constexpr int kMostFrames = 10'000'000;
+
+}  // namespace
+
+std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
+                                          std::optional<int> frame_count) {
+  const CsvTable table = read_csv(file, {"frame", "track", "x", "y"}, CsvColumns::exactly);
+  const int end = frame_count.value_or(kMostFrames);
+  std::vector<TrackObservation> read;
+  read.reserve(table.rows.size());
+  for (const auto& row : table.rows) {
+    const std::int64_t frame = csv_integer(table, row, 0);
+    if (frame < 0 || frame >= end) {
+      csv_fail(table,
+               row.line,
+               "frame " + std::to_string(frame),
+               "0 to " + std::to_string(end - 1) + ", the frames of the recording");
+    }
+    read.push_back({static_cast<int>(frame),
+                    csv_integer(table, row, 1),
+                    {csv_number(table, row, 2), csv_number(table, row, 3)}});
+  }
+  std::vector<std::size_t> order(read.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) { return std::tuple(read[i].frame, read[i].track, i); };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+  std::vector<TrackObservation> sorted;
+  sorted.reserve(read.size());
+  for (const std::size_t i : order) {
+    const bool again = !sorted.empty() && sorted.back().frame == read[i].frame &&
+                       sorted.back().track == read[i].track;
+    if (again) {
+      csv_fail(table,
+               table.rows[i].line,
+               "track " + std::to_string(read[i].track) + " a second time in frame " +
+                   std::to_string(read[i].frame),
+               "one row a frame and track");
+    }
+    sorted.push_back(read[i]);
+  }
+  return sorted;
+}
+
+}  // namespace gpo

@@ -1,0 +1,40 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+namespace gpo {
+
+/// A value in a YAML file that knows where it stands, so that an error can say it.
+struct YamlEntry {
+  std::filesystem::path file;
+  std::string key;  ///< empty: the whole file
+  YAML::Node node;
+};
+
+/// Parses a file, OpenCV's dialect ("%YAML:1.0", !!opencv-matrix) too. Throws InputError.
+YamlEntry load_yaml(const std::filesystem::path& file);
+
+/// "FILE:LINE: key `KEY`: found FOUND, expected EXPECTED".
+[[noreturn]] void yaml_fail(const YamlEntry& entry,
+                            const std::string& found,
+                            const std::string& expected);
+
+std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key);
+/// The same, or an InputError that says what was expected.
+YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected);
+
+std::string text(const YamlEntry& entry, const std::string& expected);
+double number(const YamlEntry& entry);
+int integer(const YamlEntry& entry, const std::string& expected);
+/// All numbers of a list, of a list of lists, or of a matrix ({rows, cols, data}), row by row.
+std::vector<double> numbers(const YamlEntry& entry);
+std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std::string& expected);
+
+}  // namespace gpo

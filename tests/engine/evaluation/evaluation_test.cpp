@@ -1,0 +1,146 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/evaluation/evaluation.h"
+
+#include "engine/evaluation/bound.h"
+#include "engine/evaluation/plane_fit.h"
+#include "engine/initializers/map_points.h"
+#include "tests/engine/simulated_window.h"
+
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+using test::Motion;
+using test::simulate;
+using test::Simulation;
+
+/// The exact answer of a simulated window.
+Initialization exact(const Simulation& s) {
+  Initialization result;
+  result.ok = true;
+  result.plane = s.plane;
+  result.cameras = s.cameras;
+  result.points = lift_to_plane(s.window, s.plane, s.cameras);
+  return result;
+}
+
+/// The same cameras and plane in another world, in meters.
+WindowTruth truth_in_meters(const Simulation& s, double scale) {
+  const Pose T_world_ref{so3_exp({0.4, -1.2, 0.8}), {3, -2, 5}};
+  WindowTruth truth{"simulation", {}, {}};
+  for (const Pose& camera : s.cameras) {
+    truth.cameras.push_back(T_world_ref * Pose{camera.R_wc, scale * camera.p_wc});
+  }
+  const Vector3d n = T_world_ref.R_wc * s.plane.normal;
+  truth.plane = Plane{n, scale * s.plane.distance - n.dot(T_world_ref.p_wc)};
+  return truth;
+}
+
+TEST(Evaluation, ExactAnswerHasNoError) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  EXPECT_EQ(e.alignment, Alignment::ok);
+  EXPECT_NEAR(*e.scale, 0.7, 1e-9);
+  EXPECT_NEAR(*e.ate_m, 0, 1e-9);
+  EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
+  EXPECT_NEAR(*e.pne_aligned_deg, 0, 1e-6);
+  EXPECT_NEAR(*e.pde_m, 0, 1e-9);
+}
+
+TEST(Evaluation, TruthsSignOfTheNormalDoesNotMatter) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  WindowTruth truth = truth_in_meters(s, 0.7);
+  truth.plane = Plane{-truth.plane->normal, -truth.plane->distance};
+  const Evaluation e = evaluate(exact(s), s.window, truth, 1);
+  EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
+  EXPECT_NEAR(*e.pde_m, 0, 1e-9);
+}
+
+TEST(Evaluation, TellsAKnownErrorOfTheNormal) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  Initialization tilted = exact(s);
+  const Vector3d axis = s.plane.normal.unitOrthogonal();
+  tilted.plane.normal = so3_exp(radians(2.0) * axis) * s.plane.normal;
+  for (MapPoint& point : tilted.points)
+    point.position = so3_exp(radians(2.0) * axis) * point.position;
+  const Evaluation e = evaluate(tilted, s.window, truth_in_meters(s, 0.7), 1);
+  EXPECT_NEAR(*e.pne_deg, 2.0, 1e-6);
+  EXPECT_NEAR(*e.pne_aligned_deg, 2.0, 1e-6);
+}
+
+TEST(Evaluation, AteIsTheRootMeanSquareAfterAlignment) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  Initialization noisy = exact(s);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0, 0.01);
+  for (Pose& camera : noisy.cameras)
+    camera.p_wc += Vector3d(noise(random), noise(random), noise(random));
+  const Evaluation e = evaluate(noisy, s.window, truth_in_meters(s, 0.7), 1);
+  EXPECT_NEAR(*e.ate_m, 0.7 * 0.01 * std::sqrt(3), 0.004);
+}
+
+TEST(Evaluation, StraightPathsHaveNoAlignedNormal) {
+  const Simulation s = simulate({.motion = Motion::sideways, .noise_px = 0});
+  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  EXPECT_EQ(e.alignment, Alignment::line);
+  EXPECT_FALSE(e.pne_aligned_deg);
+  EXPECT_NEAR(*e.scale, 0.7, 1e-9);
+  EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
+}
+
+TEST(Evaluation, RestingCamerasHaveNeitherScaleNorAte) {
+  const Simulation s = simulate({.motion = Motion::rotation_only, .noise_px = 0});
+  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  EXPECT_EQ(e.alignment, Alignment::point);
+  EXPECT_FALSE(e.scale || e.ate_m || e.pde_m || e.pne_aligned_deg);
+  EXPECT_TRUE(e.pne_deg);
+}
+
+TEST(Evaluation, FramesWithoutTruthAreLeftOut) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  WindowTruth truth = truth_in_meters(s, 0.7);
+  for (int i = 5; i < 15; ++i) truth.cameras[i].reset();
+  EXPECT_NEAR(*evaluate(exact(s), s.window, truth, 1).ate_m, 0, 1e-9);
+  truth.cameras[0].reset();  // without it the truth is not known in the reference camera's frame
+  EXPECT_FALSE(evaluate(exact(s), s.window, truth, 1).pne_deg);
+}
+
+TEST(PlaneFit, IgnoresPointsOffThePlane) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Initialization result = exact(s);
+  Eigen::Matrix3Xd points(3, result.points.size());
+  for (std::size_t k = 0; k < result.points.size(); ++k) {
+    points.col(k) = result.points[k].position * (k % 4 == 0 ? 0.7 : 1.0);
+  }
+  const auto plane = fit_plane(points);
+  EXPECT_LT(angle_deg(plane->normal, s.plane.normal), 1e-6);
+  EXPECT_NEAR(plane->distance, 1, 1e-9);
+}
+
+TEST(PlaneFit, RefusesALine) {
+  Eigen::Matrix3Xd points(3, 10);
+  for (int k = 0; k < 10; ++k) points.col(k) = Vector3d(k, 2 * k, 5 + k);
+  EXPECT_FALSE(fit_plane(points));
+  EXPECT_FALSE(fit_plane(points.leftCols(2)));
+}
+
+TEST(NoiseEstimate, IsTheNoiseOfOneCoordinate) {
+  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
+  std::vector<double> errors;
+  for (int i = 1; i < 30; ++i) {
+    for (int j = 0; j < 150; ++j) {
+      const Vector3d y = s.window.H_i1[i] * s.window.points_px[0].col(j).homogeneous();
+      errors.push_back((y.hnormalized() - s.window.points_px[i].col(j)).norm());
+    }
+  }
+  EXPECT_NEAR(noise_from_residuals_px(errors, 30), 0.5, 0.02);
+}
+
+}  // namespace
+}  // namespace gpo

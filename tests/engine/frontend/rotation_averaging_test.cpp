@@ -1,0 +1,109 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/rotation_averaging.h"
+
+#include "engine/geometry/pose.h"
+#include "tests/engine/simulated_window.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using test::Motion;
+using test::simulate;
+using test::Simulation;
+
+double error_deg(const Matrix3d& a, const Matrix3d& b) {
+  return degrees(so3_log(a.transpose() * b).norm());
+}
+
+std::vector<Matrix3d> random_rotations(int count) {
+  std::vector<Matrix3d> R{Matrix3d::Identity()};
+  for (int i = 1; i < count; ++i) R.push_back(so3_exp(0.5 * Eigen::Vector3d::Random()));
+  return R;
+}
+
+TEST(RotationAveraging, SurvivesAThirdOfGrossOutliers) {
+  std::srand(5);
+  std::mt19937_64 random(5);
+  const auto truth = random_rotations(20);
+  std::vector<RelativeRotation> relative;
+  for (int i = 0; i < 20; ++i) {
+    for (int j = i + 1; j < 20; ++j) {
+      const double size = random() % 3 == 0 && i > 0 ? 0.8 : 0.001;
+      relative.push_back(
+          {i, j, truth[i].transpose() * truth[j] * so3_exp(size * Eigen::Vector3d::Random())});
+    }
+  }
+  std::vector<Matrix3d> start{Matrix3d::Identity()};
+  for (int j = 1; j < 20; ++j) start.push_back(truth[j] * so3_exp(0.1 * Eigen::Vector3d::Random()));
+  const auto R = average_rotations(relative, start);
+  for (int i = 0; i < 20; ++i) EXPECT_LT(error_deg(R[i], truth[i]), 0.1);
+}
+
+TEST(RotationAveraging, WindowIsExactWithoutNoise) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
+    const Simulation s = simulate({.motion = motion, .noise_px = 0, .seed = 2});
+    const auto R = averaged_rotations(s.window);
+    ASSERT_TRUE(R);
+    for (int i = 0; i < 30; ++i)
+      EXPECT_LT(error_deg((*R)[i], s.cameras[i].R_wc), 0.01) << "frame " << i;
+  }
+}
+
+/// The rotation of the five-point essential matrix between the reference frame and the last one.
+Matrix3d five_point_rotation(const Simulation& s) {
+  std::vector<cv::Point2d> from;
+  std::vector<cv::Point2d> to;
+  for (int j = 0; j < s.window.track_count(); ++j) {
+    from.emplace_back(s.window.points_px[0](0, j), s.window.points_px[0](1, j));
+    to.emplace_back(s.window.points_px[29](0, j), s.window.points_px[29](1, j));
+  }
+  cv::Mat K;
+  cv::eigen2cv(s.window.K, K);
+  cv::Mat mask;
+  const cv::Mat E = cv::findEssentialMat(from, to, K, cv::RANSAC, 0.999, 1.0, mask);
+  cv::Mat R;
+  cv::Mat t;
+  cv::recoverPose(E, from, to, K, R, t, mask);
+  Matrix3d R_21;
+  cv::cv2eigen(R, R_21);
+  return R_21.transpose();
+}
+
+// Why the input is decomposed homographies and not five-point rotations (method.md): measured here.
+TEST(RotationAveraging, IsFarBetterThanFivePointOnAPlane) {
+  std::vector<double> averaged;
+  std::vector<double> five_point;
+  for (std::uint64_t seed = 1; seed <= 21; ++seed) {
+    const Simulation s = simulate({.motion = Motion::orbit, .seed = seed});
+    const auto R = averaged_rotations(s.window);
+    ASSERT_TRUE(R);
+    averaged.push_back(error_deg((*R)[29], s.cameras[29].R_wc));
+    five_point.push_back(error_deg(five_point_rotation(s), s.cameras[29].R_wc));
+  }
+  std::ranges::sort(averaged);
+  std::ranges::sort(five_point);
+  RecordProperty("averaged_deg", std::to_string(averaged[10]));
+  RecordProperty("five_point_deg", std::to_string(five_point[10]));
+  EXPECT_LT(averaged[10], 0.5 * five_point[10]);
+  EXPECT_LT(averaged[10], 0.15);
+}
+
+TEST(RotationAveraging, HasNoAnswerForAWindowWithoutInliers) {
+  Simulation s = simulate({});
+  for (auto& frame : s.window.inlier) frame.assign(150, false);
+  EXPECT_FALSE(averaged_rotations(s.window));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,90 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/engine/simulated_window.h"
+
+#include <numbers>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace gpo::test {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d position(const SimulationOptions& options, const Vector3d& normal, double s) {
+  const double angle = s * std::numbers::pi / 2;
+  switch (options.motion) {
+    case Motion::sideways:
+      return options.travel * s * Vector3d::UnitX();
+    case Motion::orbit:
+      return options.travel *
+             Vector3d(std::sin(angle), 0.4 * (1 - std::cos(angle)), 0.5 * (1 - std::cos(angle)));
+    case Motion::approach:
+      return -options.travel * s * normal;
+    case Motion::wander:
+      return options.travel *
+             Vector3d(0.5 * std::sin(4 * s), 0.4 * std::sin(3 * s), 0.3 * std::sin(5 * s));
+    case Motion::rotation_only:
+      break;
+  }
+  return Vector3d::Zero();
+}
+
+}  // namespace
+
+Simulation simulate(const SimulationOptions& options) {
+  std::mt19937_64 random(options.seed);
+  std::normal_distribution<double> normal_noise;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Simulation simulation;
+  Window& window = simulation.window;
+  window.K << 500, 0, 319.5, 0, 500, 239.5, 0, 0, 1;
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const double azimuth = 2 * std::numbers::pi * uniform(random);
+  const double tilt = radians(options.tilt_deg);
+  simulation.plane = {
+      Vector3d(
+          std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), -std::cos(tilt)),
+      1};
+  const Vector3d wobble =
+      0.1 * Vector3d(normal_noise(random), normal_noise(random), normal_noise(random));
+  for (int i = 0; i < options.frames; ++i) {
+    const double s = static_cast<double>(i) / std::max(1, options.frames - 1);
+    const Vector3d rotation =
+        wobble.cwiseProduct(Vector3d(std::sin(3 * s), std::sin(2 * s), std::sin(4 * s)));
+    simulation.cameras.push_back(
+        {so3_exp(rotation), position(options, simulation.plane.normal, s)});
+  }
+  window.points_px.assign(options.frames, Eigen::Matrix2Xd(2, options.points));
+  for (int j = 0; j < options.points; ++j) {
+    std::optional<Vector3d> point;
+    while (!point || point->norm() > 4) {
+      const Eigen::Vector2d px(30 + 580 * uniform(random), 30 + 420 * uniform(random));
+      point = intersect(simulation.plane, Pose{}, K_inverse * px.homogeneous());
+    }
+    const bool on_plane = j >= options.off_plane * options.points;
+    if (!on_plane) *point *= 0.6 + 0.3 * uniform(random);  // something that stands on the plane
+    simulation.on_plane.push_back(on_plane);
+    for (int i = 0; i < options.frames; ++i) {
+      const Eigen::Vector2d exact =
+          (window.K * to_camera(simulation.cameras[i], *point)).hnormalized();
+      const double sigma = i == 0 ? 0 : options.noise_px;
+      window.points_px[i].col(j) =
+          exact + sigma * Eigen::Vector2d(normal_noise(random), normal_noise(random));
+    }
+  }
+  for (int i = 0; i < options.frames; ++i) {
+    const auto& [R, p] = simulation.cameras[i];
+    const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+    window.timestamps_ns.push_back(1'000'000'000 + 33'333'333LL * i);
+    window.inlier.push_back(simulation.on_plane);
+    window.R_wc.push_back(R);
+    window.H_i1.push_back(window.K * R.transpose() * (I + p * simulation.plane.normal.transpose()) *
+                          K_inverse);
+  }
+  return simulation;
+}
+
+}  // namespace gpo::test

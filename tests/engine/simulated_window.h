@@ -1,0 +1,38 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace gpo::test {
+
+enum class Motion { sideways, orbit, approach, wander, rotation_only };
+
+struct SimulationOptions {
+  Motion motion = Motion::sideways;
+  int frames = 30;
+  int points = 150;
+  double noise_px = 0.5;  ///< on each coordinate, in all frames but the reference frame
+  double travel = 0.3;    ///< length of the path [plane distance]
+  double tilt_deg = 40;   ///< angle between the optical axis and the plane's normal
+  double off_plane = 0;   ///< share of the tracks that do not lie on the plane
+  std::uint64_t seed = 1;
+};
+
+/// A window with exact answers in the gauge of an initialization: world = reference camera, d = 1.
+/// 640x480, f = 500 px. Tracks on the plane are marked as inliers; rotations are the true ones.
+struct Simulation {
+  Window window;
+  Plane plane;
+  std::vector<Pose> cameras;
+  std::vector<bool> on_plane;
+};
+
+Simulation simulate(const SimulationOptions& options);
+
+}  // namespace gpo::test
