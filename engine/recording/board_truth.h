@@ -4,7 +4,9 @@
 
 #include "engine/recording/recording.h"
 
+#include <functional>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,8 +27,8 @@ std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray,
 /// column, so z points into the board, away from the camera.
 std::vector<Eigen::Vector3d> board_points(const Board& board);
 
-/// Camera pose in the board's frame by PnP on the corners (IPPE start, refined), and the root mean
-/// square of the reprojection error [px].
+/// Camera pose in the board's frame by PnP on the undistorted corners (IPPE, refined), and the root
+/// mean square of the reprojection error [undistorted px]. Nothing where that is above 2 px.
 struct BoardPose {
   Pose pose;
   double rms_px = 0;
@@ -34,5 +36,15 @@ struct BoardPose {
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
                                     const Camera& camera);
+
+/// Camera poses in the board's frame for `frames` frames from `start` on (poses[0] is that of frame
+/// `start`), by looking for the board in each picture in turn. A frame in which it is not found has
+/// none. The recording must have pictures and a board. Once stopped it returns what it has within
+/// one frame's time. Throws InputError for pictures that cannot be decoded.
+GroundTruth board_truth(const Recording& recording,
+                        int start,
+                        int frames,
+                        std::stop_token stop = {},
+                        const std::function<void(int done, int of)>& progress = {});
 
 }  // namespace gpo

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -42,10 +43,23 @@ cv::VideoCapture open_capture(const std::filesystem::path& file) {
   return capture;
 }
 
-/// Times of all frames [ms], by decoding each.
+/// Times of all frames [ms], by decoding each. Where they do not ascend, the frame rate's instead.
 std::vector<double> frame_times_ms(cv::VideoCapture& capture) {
   std::vector<double> times;
-  while (capture.grab()) times.push_back(capture.get(cv::CAP_PROP_POS_MSEC));
+  std::size_t ascending = 0;
+  while (capture.grab()) {
+    times.push_back(capture.get(cv::CAP_PROP_POS_MSEC));
+    const std::size_t n = times.size();
+    if (ascending + 1 == n && (n == 1 || times[n - 1] > times[n - 2])) ascending = n;
+  }
+  // The last frames, which a decoder that reorders keeps back until the end, come without a time.
+  const bool only_tail_lacks = std::all_of(times.begin() + static_cast<std::ptrdiff_t>(ascending),
+                                           times.end(),
+                                           [](double time) { return time == 0; });
+  const std::size_t kept = only_tail_lacks ? ascending : 0;
+  const double fps = capture.get(cv::CAP_PROP_FPS);
+  const double period = fps > 0 ? 1e3 / fps : 1e3 / 30;
+  for (std::size_t i = kept; i < times.size(); ++i) times[i] = i == 0 ? 0 : times[i - 1] + period;
   return times;
 }
 
@@ -59,48 +73,52 @@ bool is_cut(const std::vector<double>& times_ms, double declared, double fps) {
   return declared - frames_of_time > missing / 2;
 }
 
-std::vector<std::int64_t> to_nanoseconds(const std::vector<double>& times_ms, double fps) {
-  const bool ascending = std::adjacent_find(times_ms.begin(), times_ms.end(), [](auto a, auto b) {
-                           return !(b > a);
-                         }) == times_ms.end();
-  std::vector<std::int64_t> times;
-  for (std::size_t i = 0; i < times_ms.size(); ++i) {
-    const double ms = ascending ? times_ms[i] : static_cast<double>(i) * 1e3 / fps;
-    times.push_back(std::llround(ms * 1e6));
-  }
-  return times;
-}
-
-/// Sequential access made random: forward from where it stands, from the beginning to go back.
-/// Seeking is not exact in every container.
+/// Sequential access made random: forward from where it stands, from the beginning to go back
+/// (seeking is not exact in every container). On the way back the frames before the one asked for
+/// are kept as well, since stepping backward will ask for them next.
 class SequentialDecoder {
  public:
   SequentialDecoder(std::filesystem::path file, Camera camera)
       : file_(std::move(file)), camera_(std::move(camera)) {}
 
   cv::Mat decode(int index) {
+    if (const auto kept = before_.find(index); kept != before_.end()) return kept->second;
+    int first_kept = index;
     if (!capture_.isOpened() || index < next_) {
+      first_kept = next_ > 0 ? index - kKept : index;
       capture_ = open_capture(file_);
       next_ = 0;
+      before_.clear();
     }
     cv::Mat picture;
     for (; next_ <= index; ++next_) {
-      const bool read = next_ < index ? capture_.grab() : capture_.read(picture);
-      if (!read) {
-        capture_.release();
-        throw InputError(file_.string() + ": frame " + std::to_string(next_) +
-                         ": found nothing to decode, expected a picture");
+      if (next_ < first_kept) {
+        if (!capture_.grab()) fail();
+        continue;
       }
+      cv::Mat read;
+      if (!capture_.read(read)) fail();
+      picture = read.clone();
+      if (next_ < index) before_[next_] = picture;
     }
     check_size(file_, picture, camera_);
-    return picture.clone();
+    return picture;
   }
 
  private:
+  static constexpr int kKept = 12;
+
+  [[noreturn]] void fail() {
+    capture_.release();
+    throw InputError(file_.string() + ": frame " + std::to_string(next_) +
+                     ": found nothing to decode, expected a picture");
+  }
+
   std::filesystem::path file_;
   Camera camera_;
   cv::VideoCapture capture_;
   int next_ = 0;
+  std::map<int, cv::Mat> before_;
 };
 
 }  // namespace
@@ -120,8 +138,10 @@ VideoFile open_video(const std::filesystem::path& file,
   }
   const auto decoder = std::make_shared<SequentialDecoder>(file, camera);
   const auto decode = [decoder](int index) { return decoder->decode(index); };
+  std::vector<std::int64_t> times_ns;
+  for (const double ms : times_ms) times_ns.push_back(std::llround(ms * 1e6));
   return {
-      to_nanoseconds(times_ms, fps > 0 ? fps : 30),
+      std::move(times_ns),
       std::make_shared<const FrameCache>(static_cast<int>(times_ms.size()), decode, cache_bytes)};
 }
 

@@ -1,0 +1,252 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/board_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+
+namespace {
+
+using Corners = std::vector<Eigen::Vector2d>;
+
+constexpr int kSearchSize = 420;  // [px] long side of the picture in which the board is looked for
+constexpr double kMostRmsPx = 2;  // a pose that fits worse is none
+constexpr double kMostAstray = 0.12;  // of the distance to the next corner, before refinement
+constexpr double kSubPixReach = 0.3;  // of the distance to the next corner
+
+/// Corners by OpenCV in a reduced picture, row by row but in some order, back in full pixels.
+std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
+  cv::Mat reduced = gray;
+  const double scale =
+      std::min(1.0, static_cast<double>(kSearchSize) / std::max(gray.cols, gray.rows));
+  if (scale < 1) cv::resize(gray, reduced, {}, scale, scale, cv::INTER_AREA);
+  std::vector<cv::Point2f> corners;
+  const int flags =
+      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  if (!cv::findChessboardCorners(reduced, {board.columns, board.rows}, corners, flags)) return {};
+  const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
+  const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
+  for (auto& corner : corners) {
+    corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
+  }
+  return corners;
+}
+
+double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+    if (i % board.columns > 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
+    if (i >= board.columns) {
+      least = std::min(least, cv::norm(corners[i] - corners[i - board.columns]));
+    }
+  }
+  return least;
+}
+
+/// The search in the reduced picture leaves single corners far off (a gap of the floor beside the
+/// board attracts them). Those that a homography of the whole board contradicts move onto it.
+void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
+  std::vector<cv::Point2f> grid;
+  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+    grid.emplace_back(static_cast<float>(i % board.columns), static_cast<float>(i / board.columns));
+  }
+  const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
+  if (H.empty()) return;
+  std::vector<cv::Point2f> expected;
+  cv::perspectiveTransform(grid, expected, H);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
+  }
+}
+
+/// Sub-pixel corners in the full picture; one that runs away from its start stays there.
+void refine(std::vector<cv::Point2f>& corners, const cv::Mat& gray, double spacing) {
+  const double reach = kSubPixReach * spacing;
+  const int half = std::clamp(static_cast<int>(std::lround(reach)), 2, 7);
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
+  const std::vector<cv::Point2f> starts = corners;
+  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (cv::norm(corners[i] - starts[i]) > reach) corners[i] = starts[i];
+  }
+}
+
+/// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
+Corners quarter_turn(const Corners& from, const Board& board) {
+  const int n = board.columns;
+  Corners turned(from.size());
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column < n; ++column) {
+      turned[row * n + column] = from[column * n + (n - 1 - row)];
+    }
+  }
+  return turned;
+}
+
+Corners half_turn(const Corners& from) { return {from.rbegin(), from.rend()}; }
+
+/// Reverses each row where the corners run the wrong way round.
+Corners right_handed(Corners corners, const Board& board) {
+  const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
+  const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();
+  if (along_row.x() * along_column.y() - along_row.y() * along_column.x() > 0) return corners;
+  for (auto row = corners.begin(); row != corners.end(); row += board.columns) {
+    std::reverse(row, row + board.columns);
+  }
+  return corners;
+}
+
+/// How much darker the inner squares with even row + column are than the others.
+double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Board& board) {
+  double difference = 0;
+  for (int row = 0; row + 1 < board.rows; ++row) {
+    for (int column = 0; column + 1 < board.columns; ++column) {
+      const int i = row * board.columns + column;
+      const Eigen::Vector2d center = (corners[i] + corners[i + 1] + corners[i + board.columns] +
+                                      corners[i + board.columns + 1]) /
+                                     4;
+      const int x = std::clamp(static_cast<int>(std::lround(center.x())), 0, gray.cols - 1);
+      const int y = std::clamp(static_cast<int>(std::lround(center.y())), 0, gray.rows - 1);
+      difference += ((row + column) % 2 == 0 ? -1.0 : 1.0) * gray.at<std::uint8_t>(y, x);
+    }
+  }
+  return difference;
+}
+
+Eigen::Vector2d center_of(const Corners& corners) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& corner : corners) sum += corner;
+  return sum / static_cast<double>(corners.size());
+}
+
+/// How well two sets of corners agree in direction; where they are does not count.
+double agreement(const Corners& a, const Corners& b) {
+  const Eigen::Vector2d center_a = center_of(a);
+  const Eigen::Vector2d center_b = center_of(b);
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - center_a).dot(b[i] - center_b);
+  return sum;
+}
+
+/// Our own order (OpenCV's jumps between frames, and its finders disagree): the first square inside
+/// is dark where the turns of the board differ in that; among equals the order nearest to the
+/// previous frame's, or with the rows running to the right.
+Corners ordered(Corners corners, const cv::Mat& gray, const Board& board, const Corners& previous) {
+  corners = right_handed(std::move(corners), board);
+  std::vector<Corners> turns = {corners, half_turn(corners)};
+  if (board.columns == board.rows) {
+    turns.push_back(quarter_turn(corners, board));
+    turns.push_back(half_turn(turns.back()));
+  }
+  std::vector<Corners> dark_first;
+  for (const auto& turn : turns) {
+    if (darkness_of_first(gray, turn, board) > 0) dark_first.push_back(turn);
+  }
+  if (!dark_first.empty()) turns = std::move(dark_first);
+  const auto score = [&](const Corners& turn) {
+    if (previous.size() == turn.size()) return agreement(turn, previous);
+    return (turn[board.columns - 1] - turn.front()).x();
+  };
+  return *std::max_element(turns.begin(), turns.end(), [&](const auto& a, const auto& b) {
+    return score(a) < score(b);
+  });
+}
+
+/// Refined pose for one of IPPE's two solutions.
+BoardPose refined(const std::vector<cv::Point3d>& points,
+                  const std::vector<cv::Point2d>& pixels,
+                  const cv::Matx33d& K,
+                  cv::Mat rvec,
+                  cv::Mat tvec) {
+  cv::solvePnPRefineLM(points, pixels, K, cv::noArray(), rvec, tvec);
+  std::vector<cv::Point2d> projected;
+  cv::projectPoints(points, rvec, tvec, K, cv::noArray(), projected);
+  double sum = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const cv::Point2d error = projected[i] - pixels[i];
+    sum += error.dot(error);
+  }
+  const Pose T_camera_board{so3_exp({rvec.at<double>(0), rvec.at<double>(1), rvec.at<double>(2)}),
+                            {tvec.at<double>(0), tvec.at<double>(1), tvec.at<double>(2)}};
+  return {inverse(T_camera_board), std::sqrt(sum / static_cast<double>(pixels.size()))};
+}
+
+}  // namespace
+
+Corners find_board(const cv::Mat& gray, const Board& board, const Corners& previous) {
+  auto found = search(gray, board);
+  if (found.empty()) return {};
+  const double spacing = least_spacing(found, board);
+  mend(found, board, spacing);
+  refine(found, gray, spacing);
+  Corners corners;
+  for (const auto& corner : found) corners.emplace_back(corner.x, corner.y);
+  return ordered(std::move(corners), gray, board, previous);
+}
+
+std::vector<Eigen::Vector3d> board_points(const Board& board) {
+  std::vector<Eigen::Vector3d> points;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      points.emplace_back(column * board.square_m, row * board.square_m, 0);
+    }
+  }
+  return points;
+}
+
+std::optional<BoardPose> board_pose(const Corners& corners_raw_px,
+                                    const Board& board,
+                                    const Camera& camera) {
+  std::vector<cv::Point3d> points;
+  for (const auto& point : board_points(board)) points.emplace_back(point.x(), point.y(), 0);
+  if (corners_raw_px.size() != points.size()) return std::nullopt;
+  std::vector<cv::Point2d> pixels;
+  for (const auto& raw : corners_raw_px) {
+    const Eigen::Vector2d ideal = undistort(camera, raw);
+    if (!ideal.allFinite()) return std::nullopt;
+    pixels.emplace_back(ideal.x(), ideal.y());
+  }
+  const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  std::vector<cv::Mat> rvecs;
+  std::vector<cv::Mat> tvecs;
+  cv::solvePnPGeneric(points, pixels, K, cv::noArray(), rvecs, tvecs, false, cv::SOLVEPNP_IPPE);
+  std::optional<BoardPose> best;
+  for (std::size_t i = 0; i < rvecs.size(); ++i) {
+    const BoardPose pose = refined(points, pixels, K, rvecs[i].clone(), tvecs[i].clone());
+    const bool in_front = pose.pose.p_wc.z() < 0;
+    if (in_front && pose.rms_px <= kMostRmsPx && (!best || pose.rms_px < best->rms_px)) best = pose;
+  }
+  return best;
+}
+
+GroundTruth board_truth(const Recording& recording,
+                        int start,
+                        int frames,
+                        std::stop_token stop,
+                        const std::function<void(int done, int of)>& progress) {
+  GroundTruth truth;
+  truth.source = "chessboard";
+  truth.poses.resize(frames);
+  Corners previous;
+  for (int i = 0; i < frames && !stop.stop_requested(); ++i) {
+    const auto corners =
+        find_board(recording.pictures->gray(start + i), *recording.board, previous);
+    if (!corners.empty()) {
+      previous = corners;
+      if (const auto pose = board_pose(corners, *recording.board, recording.camera)) {
+        truth.poses[i] = pose->pose;
+      }
+    }
+    if (progress) progress(i + 1, frames);
+  }
+  return truth;
+}
+
+}  // namespace gpo
