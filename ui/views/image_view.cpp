@@ -233,11 +233,7 @@ void draw_image_view(ImDrawList& list,
   }
   if (options.legend) draw_legend(list, rect, Corner::top_left, heading(inspection, frame), rows);
   if (inside && !inspection.initialization->ok)
-    draw_badge(list,
-               {rect.min + Vector2d(0, 0.62 * rect.size.y()), rect.size},
-               palette::kWarning,
-               "not initialized",
-               inspection.initialization->reason);
+    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
   list.PopClipRect();
 }
 

@@ -6,6 +6,8 @@
 #include "ui/views/palette.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include <imgui.h>
 
@@ -19,10 +21,26 @@ struct TextSize {
   float width, height;
 };
 
-TextSize measure(Font which, const std::string& text, float wrap = 0) {
+TextSize measure(Font which, const std::string& text) {
   const ImFont* f = font(which);
-  const ImVec2 size = f->CalcTextSizeA(f->FontSize, 1e6F, wrap, text.c_str());
+  const ImVec2 size = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str());
   return {size.x, size.y};
+}
+
+/// Lines broken at spaces only; Dear ImGui would break numbers at their point.
+std::string wrapped(Font which, const std::string& text, float width) {
+  std::string lines, line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (!line.empty() && measure(which, longer).width > width) {
+      lines += line + "\n";
+      line = word;
+    } else {
+      line = longer;
+    }
+  }
+  return lines + line;
 }
 
 void draw_ground(ImDrawList& list, const ImVec2& min, const ImVec2& max, std::uint32_t frame_rgb) {
@@ -126,32 +144,27 @@ void draw_badge(ImDrawList& list,
                 const ScreenRect& rect,
                 std::uint32_t rgb,
                 const std::string& heading,
-                const std::string& text,
-                double below) {
+                const std::string& text) {
   const float s = overlay_scale();
   const float padding = 11 * s;
-  const float wrap = std::max(0.7F * static_cast<float>(rect.size.x()) - 2 * padding, 80 * s);
-  const TextSize title = measure(Font::bold, heading, wrap);
-  const TextSize body = text.empty() ? TextSize{0, 0} : measure(Font::regular, text, wrap);
-  const float gap = text.empty() ? 0 : 3 * s;
+  const float widest = std::max(0.86F * static_cast<float>(rect.size.x()) - 2 * padding, 80 * s);
+  const std::string lines = wrapped(Font::regular, text, widest);
+  const TextSize title = measure(Font::bold, heading);
+  const TextSize body = lines.empty() ? TextSize{0, 0} : measure(Font::regular, lines);
+  const float gap = lines.empty() ? 0 : 3 * s;
   const float width = std::max(title.width, body.width) + 2 * padding;
   const float height = title.height + gap + body.height + 2 * padding;
-  const auto middle = static_cast<float>(rect.min.x() + rect.size.x() / 2);
-  const ImVec2 min(std::round(middle - width / 2),
-                   std::round(static_cast<float>(rect.min.y() + below) + 12 * s));
+  const ImVec2 corner = to_imgui(rect.min + rect.size.cwiseProduct(Eigen::Vector2d(0.5, 1)));
+  const ImVec2 min(std::round(corner.x - width / 2), std::round(corner.y - height - 14 * s));
   draw_ground(list, min, ImVec2(min.x + width, min.y + height), rgb);
-  const auto write = [&](Font which, float y, std::uint32_t color, const std::string& words) {
-    list.AddText(font(which),
-                 font(which)->FontSize,
-                 ImVec2(min.x + padding, y),
-                 imgui_color(color),
-                 words.c_str(),
-                 nullptr,
-                 wrap);
-  };
-  write(Font::bold, min.y + padding, rgb, heading);
-  if (!text.empty())
-    write(Font::regular, min.y + padding + title.height + gap, palette::kText, text);
+  const ImVec2 at(min.x + padding, min.y + padding);
+  const ImFont *bold = font(Font::bold), *regular = font(Font::regular);
+  list.AddText(bold, bold->FontSize, at, imgui_color(rgb), heading.c_str());
+  list.AddText(regular,
+               regular->FontSize,
+               ImVec2(at.x, at.y + title.height + gap),
+               imgui_color(palette::kText),
+               lines.c_str());
 }
 
 }  // namespace gpo

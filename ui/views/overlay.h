@@ -40,13 +40,11 @@ ScreenRect draw_legend(ImDrawList& list,
                        const std::string& heading,
                        const std::vector<LegendRow>& rows);
 
-/// One message in a colored frame, wrapped, in the upper middle of the rectangle; `below` pixels
-/// from its top.
+/// A message in a colored frame, wrapped, at the lower middle of the rectangle.
 void draw_badge(ImDrawList& list,
                 const ScreenRect& rect,
                 std::uint32_t rgb,
                 const std::string& heading,
-                const std::string& text,
-                double below = 0);
+                const std::string& text);
 
 }  // namespace gpo

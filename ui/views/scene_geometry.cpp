@@ -30,7 +30,7 @@ Pose moved(const Similarity& T, const Pose& pose) { return {T.R_ab * pose.R_wc, 
 /// Values at both ends without the outermost percents, which single wrong points own.
 std::array<double, 2> usual_range(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const std::size_t cut = values.size() / 50;
+  const std::size_t cut = values.size() / 25;
   return {values[cut], values[values.size() - 1 - cut]};
 }
 
@@ -120,6 +120,10 @@ double frustum_depth(const Inspection& inspection) {
       0.25 * (high - low).norm(), 0.05 * estimate.plane.distance, 0.1 * estimate.plane.distance);
 }
 
+int frustum_stride(const Inspection& inspection) {
+  return std::max(1, (inspection.window->frame_count() + 5) / 10);
+}
+
 PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
   PlaneGrid grid = grid_axes(inspection);
   std::vector<double> xs, ys;
@@ -154,13 +158,12 @@ std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspe
   const double slope = normal.dot(grid.normal);
   if (std::abs(slope) < 0.1) return std::nullopt;
   std::array<Vector3d, 4> border;
-  const std::array<std::array<int, 2>, 4> corners = {{{grid.low[0] - 1, grid.low[1] - 1},
-                                                      {grid.high[0] + 1, grid.low[1] - 1},
-                                                      {grid.high[0] + 1, grid.high[1] + 1},
-                                                      {grid.low[0] - 1, grid.high[1] + 1}}};
+  const double i0 = grid.low[0] - 0.5, i1 = grid.high[0] + 0.5;
+  const double j0 = grid.low[1] - 0.5, j1 = grid.high[1] + 0.5;
+  const std::array<Vector3d, 4> corners = {
+      grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
   for (int k = 0; k < 4; ++k) {
-    const Vector3d estimated = grid.at(corners[k][0], corners[k][1]);
-    border[k] = estimated - grid.normal * (normal.dot(estimated - on_plane) / slope);
+    border[k] = corners[k] - grid.normal * (normal.dot(corners[k] - on_plane) / slope);
   }
   return border;
 }
@@ -172,6 +175,9 @@ std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_sid
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   for (const int i : {grid.low[0], grid.high[0]})
     for (const int j : {grid.low[1], grid.high[1]}) extent.push_back(grid.at(i, j));
+  if (const auto T_est_true = estimate_from_truth(inspection))
+    if (const auto border = true_plane_border(inspection, *T_est_true, grid))
+      extent.insert(extent.end(), border->begin(), border->end());
   if (inspection.cube)
     for (const Vector3d& corner : cube_corners(*inspection.cube, cube_side))
       extent.push_back(corner);
@@ -187,7 +193,7 @@ OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side,
   if (ahead.norm() < 0.2) ahead = -Vector3d::UnitY() + camera.up * camera.up.y();
   camera.front = ahead.normalized();
   camera.yaw_deg = 40;
-  camera.pitch_deg = 22;
+  camera.pitch_deg = 26;
   return fitted(camera, scene_extent(inspection, cube_side), aspect);
 }
 

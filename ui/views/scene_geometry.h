@@ -33,6 +33,9 @@ std::array<Eigen::Vector3d, 6> frustum(const Camera& camera, const Pose& pose, d
 /// How deep the frusta are drawn, so that they neither hide each other nor vanish.
 double frustum_depth(const Inspection& inspection);
 
+/// Every so many frames a frustum is drawn, so that some ten make the path.
+int frustum_stride(const Inspection& inspection);
+
 /// A finite part of a plane, in cells.
 struct PlaneGrid {
   Eigen::Vector3d origin;        ///< on the plane
@@ -47,8 +50,8 @@ struct PlaneGrid {
 /// The part of the estimated plane around the map points and the cube. The initialization is ok.
 PlaneGrid plane_grid(const Inspection& inspection, double cube_side);
 
-/// Border of the true plane in the estimate's world: what lies across from the estimate's grid, a
-/// cell wider, so that a tilt shows. Nothing where the true plane is unknown.
+/// Border of the true plane in the estimate's world: what lies across from the estimate's grid,
+/// half a cell wider, so that a tilt shows. Nothing where the true plane is unknown.
 std::optional<std::array<Eigen::Vector3d, 4>> true_plane_border(const Inspection& inspection,
                                                                 const Similarity& T_est_true,
                                                                 const PlaneGrid& grid);

@@ -77,7 +77,9 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
   if (options.truth && estimate_from_truth(inspection))
     rows.push_back({Sign::frustum,
                     palette::kTruth,
-                    inspection.truth->plane ? "true cameras and plane" : "true cameras"});
+                    inspection.initialization->ok && inspection.truth->plane
+                        ? "true cameras and plane"
+                        : "true cameras"});
   return rows;
 }
 
@@ -144,7 +146,8 @@ void draw_scene_view(ImDrawList& list,
                 high,
                 ImVec2(0, 1),
                 ImVec2(1, 0));
-  draw_axes(list, rect, inspection, camera);
+  const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
+  if (shows_something) draw_axes(list, rect, inspection, camera);
   const int frame_in_window = frame - inspection.window->start;
   if (options.legend)
     draw_legend(list,
@@ -152,13 +155,9 @@ void draw_scene_view(ImDrawList& list,
                 Corner::top_left,
                 fmt::format("frame {}", frame),
                 legend_rows(inspection, frame_in_window, options));
-  draw_scale_bar(list, rect, inspection, camera);
+  if (shows_something) draw_scale_bar(list, rect, inspection, camera);
   if (!inspection.initialization->ok)
-    draw_badge(list,
-               {rect.min + Vector2d(0, 0.62 * rect.size.y()), rect.size},
-               palette::kWarning,
-               "not initialized",
-               inspection.initialization->reason);
+    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
   list.PopClipRect();
 }
 

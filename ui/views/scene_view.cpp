@@ -71,11 +71,12 @@ void add_cameras(const Stage& stage) {
   const std::uint32_t rgb = find_method(inspection.settings.method).rgb;
   const double depth = frustum_depth(inspection);
   const Camera& camera = inspection.recording->camera;
+  const int stride = frustum_stride(inspection);
   Shapes frusta, path;
   std::vector<Vector3d> centers;
   for (int i = 0; i < static_cast<int>(estimate.cameras.size()); ++i) {
     centers.push_back(estimate.cameras[i].p_wc);
-    if (i != stage.frame && i != 0)
+    if (i != stage.frame && i % stride == 0 && i != 0)
       add_frustum(frusta,
                   frustum(camera, estimate.cameras[i], depth),
                   mixed(palette::kSceneBottom, rgb, 0.75));
@@ -102,6 +103,7 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
   if (!T_est_true) return;
   const std::uint32_t dim = mixed(palette::kSceneBottom, palette::kTruth, 0.6);
   const double depth = 0.75 * frustum_depth(inspection);
+  const int stride = frustum_stride(inspection);
   Shapes frusta, path, current;
   std::vector<Vector3d> centers;
   for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i) {
@@ -110,7 +112,7 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
     centers.push_back(pose->p_wc);
     if (i == stage.frame)
       add_frustum(current, frustum(inspection.recording->camera, *pose, depth), palette::kTruth);
-    else
+    else if (i % stride == 0)
       add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dim);
   }
   path.lines(centers, false, palette::kTruth);
@@ -155,7 +157,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
       points.point(point.position, palette::kPoint);
   }
-  stage.add(points, 4.5);
+  stage.add(points, 5);
 }
 
 void add_cube(const Stage& stage) {

@@ -5,6 +5,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -15,10 +16,15 @@ namespace {
 
 class Snapshot : public DrawingTest {};
 
-/// For people to look at.
+/// Where pictures are kept: to look at, and for the test that starts another process.
+std::filesystem::path kept(const std::string& name) {
+  const char* other = std::getenv("GPO_TEST_KEEP");
+  return std::filesystem::path(other != nullptr ? other : GPO_TEST_OUTPUT_DIR) / (name + ".png");
+}
+
 void keep(const std::string& name, const cv::Mat& picture) {
-  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + name + ".png", picture);
+  std::filesystem::create_directories(kept(name).parent_path());
+  cv::imwrite(kept(name).string(), picture);
 }
 
 TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
@@ -37,6 +43,20 @@ TEST_F(Snapshot, SceneHasTheSameBytesAgain) {
   EXPECT_EQ(picture.size(), cv::Size(960, 720));
   if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
   EXPECT_TRUE(same_bytes(picture, snapshot_scene(inspection, 24)));
+}
+
+TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  const auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "another-process";
+  std::filesystem::remove_all(folder);
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string command = "GPO_TEST_KEEP='" + folder.string() + "' '" + self +
+                              "' --gtest_filter='Snapshot.*SameBytesAgain' >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT(concurrency-mt-unsafe)
+  const cv::Mat image = cv::imread((folder / "image.png").string());
+  const cv::Mat scene = cv::imread((folder / "scene.png").string());
+  EXPECT_TRUE(same_bytes(snapshot_image(made_inspection(), 34), image));
+  EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
 }
 
 TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
