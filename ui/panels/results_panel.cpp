@@ -25,19 +25,25 @@ std::uint32_t color_of(Tone tone) {
   return palette::kText;
 }
 
+/// Not SameLine(x): that counts from the group's left edge.
+void continue_line_at(float x) {
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(std::round(x));
+}
+
 void draw_value(const ResultRow& row, float right, float gap) {
   // Values end at one line, so that their digits can be compared; notes stand to their left.
   const float value_width = ImGui::CalcTextSize(row.value.c_str()).x;
   if (!row.note.empty()) {
     ImGui::PushFont(font(Font::small));
     const float note_width = ImGui::CalcTextSize(row.note.c_str()).x;
-    ImGui::SameLine(right - value_width - note_width - gap);
+    continue_line_at(right - value_width - note_width - gap);
     ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
     ImGui::TextUnformatted(row.note.c_str());
     ImGui::PopStyleColor();
     ImGui::PopFont();
   }
-  ImGui::SameLine(right - value_width);
+  continue_line_at(right - value_width);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(row.tone)));
   ImGui::TextUnformatted(row.value.c_str());
   ImGui::PopStyleColor();
@@ -69,7 +75,7 @@ void draw_state(const PanelInput& input, float right) {
   const bool stale = input.inspection && !(input.inspection->settings == input.state.settings);
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
   ImGui::PushFont(font(Font::small));
-  ImGui::SameLine(right - ImGui::CalcTextSize(text).x);
+  continue_line_at(right - ImGui::CalcTextSize(text).x);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kWarning));
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
