@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
 

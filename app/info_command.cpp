@@ -1,0 +1,22 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands.h"
+#include "engine/recording/recording_info.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+int info_command(const std::filesystem::path& recording, bool json) {
+  const auto opened = open_recording(recording);
+  const RecordingInfo info = describe(*opened);
+  if (json) {
+    fmt::print("{}\n", to_json(info).dump(2));
+    return kDone;
+  }
+  fmt::print("{}", to_text(info));
+  for (const std::string& note : opened->notes) fmt::print("{}\n", note);
+  return kDone;
+}
+
+}  // namespace gpo
