@@ -11,6 +11,9 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 namespace gpo {
 namespace {
@@ -29,7 +32,8 @@ constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition c
 struct Pair {
   int i;
   int j;
-  std::vector<HomographyMotion> motions;  // from i to j
+  Matrix3d H_ji;                          // Euclidean: rays of i to rays of j, any scale
+  std::vector<HomographyMotion> motions;  // from i to j; empty where the camera hardly moved
 };
 
 /// Candidates from the tracks that both frames see as inliers.
@@ -42,10 +46,28 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   if (static_cast<int>(common.size()) < kLeastPairTracks) return std::nullopt;
   const Matrix2Xd from = window.points_px[i](Eigen::all, common);
   const Matrix2Xd to = window.points_px[j](Eigen::all, common);
-  const auto H = fit_homography(from, to);
-  if (!H) return std::nullopt;
-  Pair pair{i, j, decompose_homography(refine_homography(*H, from, to), window.K, from)};
-  return pair.motions.empty() ? std::nullopt : std::optional(std::move(pair));
+  const auto fitted = fit_homography(from, to);
+  if (!fitted) return std::nullopt;
+  const Matrix3d H = refine_homography(*fitted, from, to);
+  return Pair{i, j, window.K.inverse() * H * window.K, decompose_homography(H, window.K, from)};
+}
+
+/// The rotation R_ji when the plane's normal (in frame i) is known: H' = lambda R (I - tau n^T)
+/// leaves the directions on the plane to R alone. Exact without noise; an error of the normal
+/// enters in proportion to |tau|, so that it suits pairs of little parallax, where a decomposition
+/// is ill-posed.
+Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
+  Matrix3d from;
+  from.col(0) = normal.unitOrthogonal();
+  from.col(1) = normal.cross(from.col(0));
+  from.col(2) = normal;
+  const Eigen::Matrix<double, 3, 2> M = H_ji * from.leftCols<2>();
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>, Eigen::HouseholderQRPreconditioner> svd(
+      M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3d to;
+  to.leftCols<2>() = svd.matrixU().leftCols<2>() * svd.matrixV().transpose();
+  to.col(2) = to.col(0).cross(to.col(1));
+  return to * from.transpose();
 }
 
 double weight_of(const HomographyMotion& motion) {
@@ -57,6 +79,18 @@ const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
                                 const Vector3d& normal) {
   return *std::ranges::max_element(
       motions, {}, [&](const auto& m) { return m.normal.dot(normal); });
+}
+
+/// R_ji of a pair: of the decomposition whose normal (frame i) is the expected one where it is
+/// sharp, else from the expected normal itself.
+Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
+  if (!pair.motions.empty()) {
+    const HomographyMotion& motion = nearest(pair.motions, normal);
+    if (motion.tau.norm() > kFullParallax && angle_deg(motion.normal, normal) < kNormalCapDeg) {
+      return motion.R_21;
+    }
+  }
+  return rotation_given_normal(pair.H_ji, normal);
 }
 
 /// The plane's normal in the reference frame on which most decompositions agree. The false twin of
@@ -72,6 +106,7 @@ std::optional<Vector3d> common_normal(std::span<const Pair> reference_pairs) {
         Vector3d sum = Vector3d::Zero();
         cost = 0;
         for (const Pair& pair : reference_pairs) {
+          if (pair.motions.empty()) continue;
           const HomographyMotion& motion = nearest(pair.motions, normal);
           const double angle = angle_deg(motion.normal, normal);
           cost += weight_of(motion) * std::min(angle * angle, kNormalCapDeg * kNormalCapDeg);
@@ -154,18 +189,15 @@ std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window) {
     return std::nullopt;
   std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
   std::vector<RelativeRotation> relative;
-  const auto add = [&](const Pair& pair, const Vector3d& expected_normal) {
-    const HomographyMotion& motion = nearest(pair.motions, expected_normal);
-    if (angle_deg(motion.normal, expected_normal) > 3 * kNormalCapDeg) return;
-    relative.push_back({pair.i, pair.j, motion.R_21.transpose(), 1});
-  };
   for (const Pair& pair : reference_pairs) {
-    R_wc.push_back(nearest(pair.motions, *normal).R_21.transpose());
-    add(pair, *normal);
+    relative.push_back({pair.i, pair.j, rotation_of(pair, *normal).transpose()});
+    R_wc.push_back(relative.back().R_ij);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
     for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
-      if (const auto pair = decompose_pair(window, i, j)) add(*pair, R_wc[i].transpose() * *normal);
+      const auto pair = decompose_pair(window, i, j);
+      if (pair)
+        relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * *normal).transpose()});
     }
   }
   return average_rotations(relative, std::move(R_wc));

@@ -121,7 +121,10 @@ void add_view_actions(std::vector<Action>& table) {
                    "View",
                    {letter('F')},
                    "Shows all of the picture and all of the scene",
-                   [](State& s) { s.wishes.fit = true; }});
+                   [](State& s) {
+                     s.picture_zoom = {};
+                     s.orbit.reset();
+                   }});
 }
 
 void add_time_actions(std::vector<Action>& table) {

@@ -13,7 +13,7 @@ namespace {
 constexpr float kMenuHeight = 26;
 constexpr float kStatusHeight = 26;
 constexpr float kTimelineHeight = 76;
-constexpr float kSettingsHeight = 254;
+constexpr float kSettingsHeight = 240;
 constexpr float kColumnWidth = 292;
 constexpr float kLeastResultsHeight = 60;
 

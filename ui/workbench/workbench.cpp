@@ -28,6 +28,8 @@ double seconds_of_frame(const Recording& recording, int frame) {
 
 }  // namespace
 
+void push(Commands& commands, const Command& command) { commands.push_back(command); }
+
 void apply(WorkbenchState& state, const Command& command) {
   const auto run = [&](const RunAction& c) { run_action(state, c.name); };
   const auto change = [&](const ChangeSettings& c) {
@@ -38,8 +40,11 @@ void apply(WorkbenchState& state, const Command& command) {
     state.play_seconds = 0;
   };
   const auto cube = [&](const SetCubeSide& c) { state.cube_side = std::clamp(c.side, 0.0, 2.0); };
+  const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
+  const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
+  const auto fit = [&](const FitScene&) { state.orbit.reset(); };
   const auto open = [&](const OpenRecording& c) { state.wishes.open = c.path; };
-  std::visit(Overloaded{run, change, go, cube, open}, command);
+  std::visit(Overloaded{run, change, go, cube, zoom, orbit, fit, open}, command);
 }
 
 void advance(WorkbenchState& state, double seconds) {
@@ -63,6 +68,8 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.recording = std::move(recording);
   state.playing = false;
   state.play_seconds = 0;
+  state.picture_zoom = {};
+  state.orbit.reset();
   const Settings fitting = fit_window(state.settings, state.frame_count());
   state.message = state.recording->notes.empty() ? "" : state.recording->notes.front();
   if (fitting.start != state.settings.start) {

@@ -4,12 +4,15 @@
 
 #include "engine/inspection/settings.h"
 #include "engine/recording/recording.h"
+#include "ui/views/image_geometry.h"
+#include "ui/views/orbit_camera.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace gpo {
 
@@ -27,7 +30,6 @@ struct Wishes {
   bool quit = false;
   bool cancel = false;        ///< what the worker does
   bool compute = false;       ///< inspect again with the same settings
-  bool fit = false;           ///< zoom and orbit back to where everything is seen
   bool save_picture = false;  ///< the picture of the current frame, to disk
   bool open_example = false;
   std::optional<std::filesystem::path> open;
@@ -42,7 +44,9 @@ struct WorkbenchState {
   bool playing = false;
   double play_seconds = 0;  ///< since `frame` is shown, while playing
   ViewToggles view;
-  double cube_side = 0;  ///< in plane distances; 0: automatic
+  double cube_side = 0;              ///< in plane distances; 0: automatic
+  PictureZoom picture_zoom;          ///< of the picture
+  std::optional<OrbitCamera> orbit;  ///< of the scene; nothing: everything in view
   bool show_help = false;
   std::string message;  ///< the last one, one line
   Wishes wishes;
@@ -62,13 +66,32 @@ struct GoToFrame {
 struct SetCubeSide {
   double side;
 };
+struct ZoomPicture {
+  PictureZoom zoom;
+};
+struct OrbitScene {
+  OrbitCamera camera;
+};
+struct FitScene {};
 struct OpenRecording {
   std::filesystem::path path;
 };
 
 /// Everything that a user can do. Panels push commands and change nothing themselves; so keys,
 /// menus, panels and tests take one path.
-using Command = std::variant<RunAction, ChangeSettings, GoToFrame, SetCubeSide, OpenRecording>;
+using Command = std::variant<RunAction,
+                             ChangeSettings,
+                             GoToFrame,
+                             SetCubeSide,
+                             ZoomPicture,
+                             OrbitScene,
+                             FitScene,
+                             OpenRecording>;
+
+/// What the user did while a frame was drawn, to be applied after it.
+using Commands = std::vector<Command>;
+/// Not `push_back`: inlined, it makes GCC 12 warn of members that are not there.
+void push(Commands& commands, const Command& command);
 
 void apply(WorkbenchState& state, const Command& command);
 

@@ -218,6 +218,21 @@ TEST(Workbench, CubeSideStaysBetweenAutomaticAndTwoDistances) {
   EXPECT_DOUBLE_EQ(state.cube_side, 2);
 }
 
+TEST(Workbench, FitShowsAllOfPictureAndScene) {
+  WorkbenchState state = opened();
+  apply(state, ZoomPicture{{.factor = 4}});
+  apply(state, OrbitScene{{.yaw_deg = 50}});
+  EXPECT_EQ(state.picture_zoom.factor, 4);
+  ASSERT_TRUE(state.orbit.has_value());
+  apply(state, FitScene{});
+  EXPECT_FALSE(state.orbit.has_value());
+  EXPECT_EQ(state.picture_zoom.factor, 4);
+  apply(state, OrbitScene{{.yaw_deg = 50}});
+  run(state, "fit");
+  EXPECT_EQ(state.picture_zoom.factor, 1);
+  EXPECT_FALSE(state.orbit.has_value());
+}
+
 TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
   WorkbenchState state = opened();
   run(state, "help");
@@ -239,8 +254,6 @@ TEST(Workbench, WishesAreLeftForTheWindow) {
   EXPECT_TRUE(state.wishes.open_example);
   run(state, "compute");
   EXPECT_TRUE(state.wishes.compute);
-  run(state, "fit");
-  EXPECT_TRUE(state.wishes.fit);
   apply(state, OpenRecording{"desk"});
   EXPECT_EQ(state.wishes.open, "desk");
 }

@@ -1,0 +1,127 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/worker_link.h"
+
+#include "engine/error.h"
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A workbench with a worker whose computation only remembers what it was asked for, and lasts
+/// until it is stopped while `hold` is set.
+class WorkerLinkTest : public testing::Test {
+ protected:
+  Worker::Opened open(const std::filesystem::path& path) {
+    if (path == "bad") throw InputError("bad: no such folder");
+    auto recording = std::make_shared<Recording>();
+    recording->name = path.string();
+    for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
+    return {recording, [this](const Settings& settings, std::stop_token stop, const Progress&) {
+              {
+                const std::lock_guard lock(mutex_);
+                starts_.push_back(settings.start);
+              }
+              while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+              auto inspection = std::make_shared<Inspection>();
+              inspection->settings = settings;
+              return inspection;
+            }};
+  }
+  void synchronize() { gpo::synchronize(state_, link_, worker_, "example"); }
+  void settle() {
+    do {
+      synchronize();
+    } while (link_.status.busy);
+    synchronize();
+  }
+  std::vector<int> starts() {
+    const std::lock_guard lock(mutex_);
+    return starts_;
+  }
+
+  std::atomic<bool> hold_ = false;
+  std::mutex mutex_;
+  std::vector<int> starts_;
+  WorkbenchState state_;
+  WorkerLink link_;
+  Worker worker_{[this](const std::filesystem::path& path) { return open(path); }};
+};
+
+TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
+  apply(state_, OpenRecording{"desk"});
+  settle();
+  ASSERT_NE(state_.recording, nullptr);
+  EXPECT_EQ(state_.recording->name, "desk");
+  EXPECT_EQ(state_.frame, 29);
+  ASSERT_NE(link_.inspection, nullptr);
+  EXPECT_EQ(link_.inspection->settings, state_.settings);
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0));
+}
+
+TEST_F(WorkerLinkTest, OpensTheExample) {
+  apply(state_, RunAction{"open-example"});
+  settle();
+  EXPECT_EQ(state_.recording->name, "example");
+}
+
+TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
+  apply(state_, OpenRecording{"desk"});
+  settle();
+  apply(state_, GoToFrame{7});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0));
+  apply(state_, RunAction{"window-start"});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0, 7));
+  apply(state_, RunAction{"compute"});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0, 7, 7));
+}
+
+TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
+  apply(state_, OpenRecording{"desk"});
+  settle();
+  hold_ = true;
+  apply(state_, GoToFrame{7});
+  apply(state_, RunAction{"window-start"});
+  synchronize();
+  EXPECT_TRUE(link_.status.busy);
+  apply(state_, RunAction{"escape"});
+  settle();
+  EXPECT_EQ(link_.inspection->settings.start, 0);
+  EXPECT_EQ(state_.settings.start, 7);
+  EXPECT_EQ(state_.message, "canceled; F5 computes again");
+}
+
+TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
+  apply(state_, OpenRecording{"desk"});
+  settle();
+  apply(state_, OpenRecording{"bad"});
+  settle();
+  EXPECT_EQ(state_.recording->name, "desk");
+  EXPECT_EQ(link_.status.error, "bad: no such folder");
+  ASSERT_NE(link_.inspection, nullptr);
+}
+
+TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
+  state_.wishes.quit = state_.wishes.save_picture = state_.wishes.compute = true;
+  synchronize();
+  EXPECT_TRUE(state_.wishes.quit);
+  EXPECT_TRUE(state_.wishes.save_picture);
+  EXPECT_FALSE(state_.wishes.compute);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// A recording in a few words, for the menu bar: name, picture size, frames and rate, gyroscope,
+/// truth.
+std::vector<std::string> recording_facts(const Recording& recording);
+
+/// Why the recording cannot give rotations from this source, in one line; empty where it can.
+std::string why_no_rotations(const Recording& recording, RotationSource source);
+
+enum class Tone { plain, good, bad, dim };
+
+/// One row of the results: what, how much with its unit, and an explanation. A value that is not
+/// known is a dash, and the explanation says why.
+struct ResultRow {
+  std::string label;
+  std::string value;
+  std::string note;  ///< beside the value, dim: the bound
+  std::string tooltip;
+  Tone tone = Tone::plain;
+};
+struct ResultGroup {
+  std::string title;
+  std::vector<ResultRow> rows;
+};
+
+/// The results of an inspection, or of none (null). Without `timings` the milliseconds are dashes.
+std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings);
+
+/// "4.1 mm", "1.20 m": three digits that mean something.
+std::string length_text(double meters);
+/// "0.31°".
+std::string angle_text(double degrees);
+std::string milliseconds_text(double milliseconds);
+
+}  // namespace gpo

@@ -1,0 +1,177 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/methods.h"
+#include "ui/context/gui.h"
+#include "ui/panels/facts.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/palette.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// One visit a setting: label to the left, the widget that fits its type to the right. `changed`
+/// tells whether the user changed one.
+struct SettingRows {
+  const PanelInput& input;
+  float label_width;
+  bool changed = false;
+
+  void label(const char* title, const char* help) const {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(title);
+    tooltip(help);
+    ImGui::SameLine(label_width);
+    ImGui::SetNextItemWidth(-1);
+  }
+
+  int most_of(const SettingInfo& info) const {
+    const int frames = input.state.frame_count();
+    return frames > 0 ? std::min(static_cast<int>(info.most), frames) : static_cast<int>(info.most);
+  }
+
+  void operator()(const SettingInfo& info, int& value) {
+    label(info.title, info.help);
+    changed |= ImGui::DragInt((std::string("##") + info.key).c_str(),
+                              &value,
+                              0.25F,
+                              static_cast<int>(info.least),
+                              most_of(info),
+                              "%d",
+                              ImGuiSliderFlags_AlwaysClamp);
+    tooltip(std::string(info.help) + ". Drag, or double-click to type");
+  }
+
+  void operator()(const SettingInfo& info, std::uint64_t& value) {
+    label(info.title, info.help);
+    const auto least = static_cast<std::uint64_t>(info.least);
+    const auto most = static_cast<std::uint64_t>(info.most);
+    changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
+                                 ImGuiDataType_U64,
+                                 &value,
+                                 0.1F,
+                                 &least,
+                                 &most,
+                                 "%llu",
+                                 ImGuiSliderFlags_AlwaysClamp);
+    tooltip(std::string(info.help) + ". Drag, or double-click to type");
+  }
+
+  void operator()(const SettingInfo& info, double& value) {
+    label(info.title, info.help);
+    // A threshold of what is switched off does nothing.
+    const bool idle =
+        info.key == std::string("ransac_threshold_px") && !input.state.settings.ransac;
+    ImGui::BeginDisabled(idle);
+    const std::string format = fmt::format("%.1f {}", info.unit);
+    changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
+                                 ImGuiDataType_Double,
+                                 &value,
+                                 0.02F,
+                                 &info.least,
+                                 &info.most,
+                                 format.c_str(),
+                                 ImGuiSliderFlags_AlwaysClamp);
+    ImGui::EndDisabled();
+    tooltip(idle ? "Without RANSAC every track counts as an inlier"
+                 : std::string(info.help) + ". Drag, or double-click to type");
+  }
+
+  void operator()(const SettingInfo& info, bool& value) {
+    label(info.title, info.help);
+    changed |= ImGui::Checkbox((std::string("##") + info.key).c_str(), &value);
+    tooltip(info.help);
+  }
+
+  void operator()(const SettingInfo& info, std::string& value) {
+    label(info.title, info.help);
+    const auto table = methods();
+    const auto chosen = std::find_if(
+        table.begin(), table.end(), [&](const Method& method) { return method.key == value; });
+    const std::string& title = chosen == table.end() ? value : chosen->title;
+    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), title.c_str())) {
+      tooltip(info.help);
+      return;
+    }
+    for (const Method& method : table) {
+      ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(method.rgb));
+      ImGui::Bullet();
+      ImGui::PopStyleColor();
+      if (ImGui::Selectable(method.title.c_str(), method.key == value)) {
+        value = method.key;
+        changed = true;
+      }
+    }
+    ImGui::EndCombo();
+  }
+
+  std::string source_title(RotationSource source) const {
+    if (source != RotationSource::automatic || !input.state.recording) return to_string(source);
+    const bool gyro = why_no_rotations(*input.state.recording, RotationSource::gyro).empty();
+    return std::string(to_string(source)) + (gyro ? " (gyro)" : " (averaging)");
+  }
+
+  void operator()(const SettingInfo& info, RotationSource& value) {
+    label(info.title, info.help);
+    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), source_title(value).c_str())) {
+      tooltip(info.help);
+      return;
+    }
+    for (std::size_t i = 0; i < rotation_source_keys().size(); ++i) {
+      const auto source = static_cast<RotationSource>(i);
+      const std::string why_not =
+          input.state.recording ? why_no_rotations(*input.state.recording, source) : "";
+      const auto flags = why_not.empty() ? 0 : ImGuiSelectableFlags_Disabled;
+      if (ImGui::Selectable(source_title(source).c_str(), source == value, flags)) {
+        value = source;
+        changed = true;
+      }
+      tooltip(why_not);
+    }
+    ImGui::EndCombo();
+  }
+};
+
+void cube_row(const SettingRows& rows, const PanelInput& input, Commands& commands) {
+  const char* help =
+      "Side of the cube, in distances of the plane. 0: automatic, or whole squares of a chessboard";
+  rows.label("Cube side", help);
+  double side = input.state.cube_side;
+  const double least = 0;
+  const double most = 2;
+  if (ImGui::DragScalar("##cube_side",
+                        ImGuiDataType_Double,
+                        &side,
+                        0.002F,
+                        &least,
+                        &most,
+                        side > 0 ? "%.2f d" : "automatic",
+                        ImGuiSliderFlags_AlwaysClamp)) {
+    push(commands, SetCubeSide{side});
+  }
+  tooltip(help);
+}
+
+}  // namespace
+
+void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
+  const float s = input.scale;
+  const PanelScope panel(
+      "settings", place, {12 * s, 8 * s}, ImGuiWindowFlags_AlwaysUseWindowPadding);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * s, 3 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
+  heading("SETTINGS");
+  SettingRows rows{input, std::round(104 * s)};
+  Settings settings = input.state.settings;
+  visit_settings(settings, rows);
+  if (rows.changed) push(commands, ChangeSettings{settings});
+  cube_row(rows, input, commands);
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace gpo

@@ -1,0 +1,197 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/time_axis.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/palette.h"
+#include "ui/workbench/actions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using palette::kAccent;
+using palette::kBad;
+using palette::kGood;
+using palette::kHovered;
+using palette::kRaised;
+using palette::kText;
+using palette::kTextDim;
+
+enum class Icon { first, back, play, pause, on, last };
+
+void draw_triangle(ImDrawList& list, ImVec2 center, float size, bool to_left, ImU32 color) {
+  const float tip = to_left ? -size : size;
+  list.AddTriangleFilled({center.x - tip * 0.8F, center.y - size},
+                         {center.x - tip * 0.8F, center.y + size},
+                         {center.x + tip * 0.9F, center.y},
+                         color);
+}
+
+void draw_bar(ImDrawList& list, ImVec2 center, float half_width, float half_height, ImU32 color) {
+  list.AddRectFilled({std::round(center.x - half_width), std::round(center.y - half_height)},
+                     {std::round(center.x + half_width), std::round(center.y + half_height)},
+                     color);
+}
+
+void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
+  switch (icon) {
+    case Icon::first:
+      draw_bar(list, {c.x - size, c.y}, size * 0.2F, size, color);
+      return draw_triangle(list, {c.x + size * 0.25F, c.y}, size, true, color);
+    case Icon::last:
+      draw_bar(list, {c.x + size, c.y}, size * 0.2F, size, color);
+      return draw_triangle(list, {c.x - size * 0.25F, c.y}, size, false, color);
+    case Icon::back:
+      return draw_triangle(list, c, size * 0.85F, true, color);
+    case Icon::on:
+      return draw_triangle(list, c, size * 0.85F, false, color);
+    case Icon::play:
+      return draw_triangle(list, c, size * 1.2F, false, color);
+    case Icon::pause:
+      draw_bar(list, {c.x - size * 0.5F, c.y}, size * 0.3F, size * 1.1F, color);
+      return draw_bar(list, {c.x + size * 0.5F, c.y}, size * 0.3F, size * 1.1F, color);
+  }
+}
+
+void icon_button(Icon icon, const char* name, float side, const PanelInput& input, Commands& out) {
+  const Action& action = *find_action(name);
+  ImGui::PushID(name);
+  ImGui::BeginDisabled(!enabled(action, input.state));
+  if (ImGui::Button("##icon", {side, side})) push(out, RunAction{name});
+  ImGui::EndDisabled();
+  const ImVec2 from = ImGui::GetItemRectMin();
+  const ImVec2 to = ImGui::GetItemRectMax();
+  const ImU32 color = imgui_color(enabled(action, input.state) ? kText : kTextDim);
+  draw_icon(*ImGui::GetWindowDrawList(),
+            icon,
+            {(from.x + to.x) / 2, (from.y + to.y) / 2},
+            side * 0.2F,
+            color);
+  tooltip(action.title + " (" + action.shortcuts.front().label + ")");
+  ImGui::PopID();
+}
+
+/// Bars: how many tracks live in each frame of the window, inliers below, the rest above.
+void draw_tracks(
+    ImDrawList& list, const Window& window, const TimeAxis& axis, float top, float bottom) {
+  const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
+  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
+    const auto& points = window.points_px[i];
+    const auto seen = (points.row(0).array() == points.row(0).array()).count();
+    const float left = slot_begin(axis, window.start + i);
+    const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
+    const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
+    list.AddRectFilled({left, bottom - a_track * static_cast<float>(seen)},
+                       {right, inliers},
+                       imgui_color(kBad, 0.75));
+    list.AddRectFilled({left, inliers}, {right, bottom}, imgui_color(kGood, 0.75));
+  }
+}
+
+void draw_window_ends(ImDrawList& list,
+                      const Settings& settings,
+                      const TimeAxis& axis,
+                      float top,
+                      float bottom,
+                      float scale) {
+  const float left = slot_begin(axis, settings.start);
+  const float right = slot_begin(axis, std::min(axis.frames, settings.start + settings.frames));
+  const ImU32 color = imgui_color(kAccent);
+  const float line = std::max(1.0F, std::round(2 * scale));
+  const float foot = std::round(6 * scale);
+  list.AddRectFilled({left, top}, {right, bottom}, imgui_color(kAccent, 0.14));
+  list.AddRectFilled({left, top}, {left + line, bottom}, color);
+  list.AddRectFilled({right - line, top}, {right, bottom}, color);
+  for (const float y : {top, bottom - line}) {
+    list.AddRectFilled({left, y}, {left + foot, y + line}, color);
+    list.AddRectFilled({right - foot, y}, {right, y + line}, color);
+  }
+}
+
+void draw_cursor(ImDrawList& list, float x, float top, float bottom, float scale) {
+  const float half = std::max(1.0F, std::round(scale));
+  const ImU32 color = imgui_color(kText);
+  x = std::round(x);
+  list.AddRectFilled({x - half, top}, {x + half, bottom}, color);
+  const float head = 5 * scale;
+  list.AddTriangleFilled(
+      {x - head, top - head}, {x + head, top - head}, {x, top + head * 0.4F}, color);
+}
+
+void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
+  const WorkbenchState& state = input.state;
+  const TimeAxis axis{bar.x, bar.right(), state.frame_count()};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(kRaised));
+  if (axis.frames < 1) return;
+  ImGui::SetCursorScreenPos({bar.x, bar.y});
+  ImGui::InvisibleButton("axis", {bar.width, bar.height});
+  if (ImGui::IsItemActive()) {
+    push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
+  } else if (ImGui::IsItemHovered()) {
+    tooltip(fmt::format("frame {}", frame_at(axis, ImGui::GetIO().MousePos.x)));
+  }
+  draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
+  if (input.inspection && input.inspection->window) {
+    draw_tracks(list, *input.inspection->window, axis, bar.y + 3 * input.scale, bar.bottom());
+  }
+  draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);
+}
+
+/// "frame 29 / 59" over "0.967 s": counted from 0, as everywhere.
+void draw_numbers(const PanelInput& input, float left, float top) {
+  const WorkbenchState& state = input.state;
+  if (!state.recording) return;
+  const auto& times = state.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times[state.frame] - times.front()) * 1e-9;
+  ImGui::SetCursorScreenPos({left, top});
+  ImGui::TextUnformatted(
+      fmt::format("frame {} / {}", state.frame, state.frame_count() - 1).c_str());
+  ImGui::SetCursorScreenPos({left, top + ImGui::GetTextLineHeightWithSpacing()});
+  const int start = state.settings.start;
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(kTextDim));
+  ImGui::TextUnformatted(fmt::format("{:.3f} s", seconds).c_str());
+  ImGui::PopStyleColor();
+  tooltip(
+      fmt::format("The window spans frames {} to {}", start, start + state.settings.frames - 1));
+}
+
+}  // namespace
+
+void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
+  const float s = input.scale;
+  const PanelScope panel("timeline", place, {12 * s, 12 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * s, 4 * s});
+  const float side = std::round(std::min(30 * s, place.height - 16 * s));
+  ImGui::SetCursorPosY(std::round((place.height - side) / 2));
+  const Icon play = input.state.playing ? Icon::pause : Icon::play;
+  const std::array<std::pair<Icon, const char*>, 5> buttons = {{{Icon::first, "first"},
+                                                                {Icon::back, "previous"},
+                                                                {play, "play"},
+                                                                {Icon::on, "next"},
+                                                                {Icon::last, "last"}}};
+  for (const auto& [icon, name] : buttons) {
+    icon_button(icon, name, side, input, commands);
+    ImGui::SameLine();
+  }
+  const float numbers = std::round(124 * s);
+  const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
+  const Rectangle bar{left,
+                      place.y + std::round(12 * s),
+                      place.right() - numbers - 24 * s - left,
+                      place.height - std::round(22 * s)};
+  draw_axis(input, bar, commands);
+  draw_numbers(input,
+               place.right() - numbers - 8 * s,
+               place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s));
+  ImGui::PopStyleVar();
+}
+
+}  // namespace gpo

@@ -1,0 +1,24 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "ui/views/image_view.h"
+#include "ui/views/scene_view.h"
+#include "ui/workbench/layout.h"
+#include "ui/workbench/workbench.h"
+
+#include <memory>
+
+namespace gpo {
+
+/// What the state asks the views to show. `inspection` may be null.
+ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection);
+SceneViewOptions scene_options(const WorkbenchState& state);
+
+ScreenRect screen_rect(const Rectangle& place);
+
+/// For the views, while nothing has been computed: a recording with an empty window.
+Inspection nothing_inspected(std::shared_ptr<const Recording> recording);
+
+}  // namespace gpo

@@ -1,0 +1,63 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/widgets.h"
+
+#include "ui/context/gui.h"
+#include "ui/views/palette.h"
+
+namespace gpo {
+
+PanelScope::PanelScope(const char* name,
+                       const Rectangle& place,
+                       ImVec2 padding,
+                       ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({place.x, place.y});
+  ImGui::SetNextWindowSize({place.width, place.height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+  // The least size of a window would push small parts over their neighbors.
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin(name,
+               nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav | flags);
+}
+
+PanelScope::~PanelScope() {
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+}
+
+void heading(const char* text) {
+  ImGui::PushFont(font(Font::small));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+void tooltip(const std::string& text) {
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void clipped_text(const std::string& text, float width, std::uint32_t rgb) {
+  std::string shown = text;
+  const auto too_wide = [&] { return ImGui::CalcTextSize(shown.c_str()).x > width; };
+  if (too_wide()) {
+    do {
+      shown = shown.substr(0, shown.size() - 4) + "...";
+    } while (shown.size() > 4 && too_wide());
+  }
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
+  ImGui::TextUnformatted(shown.c_str());
+  ImGui::PopStyleColor();
+  if (shown != text) tooltip(text);
+}
+
+}  // namespace gpo

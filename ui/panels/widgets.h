@@ -1,0 +1,33 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/layout.h"
+
+#include <cstdint>
+#include <string>
+
+#include <imgui.h>
+
+namespace gpo {
+
+/// A part of the window, fixed in place, while it lives. What is drawn inside goes there.
+class PanelScope {
+ public:
+  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, ImGuiWindowFlags flags = 0);
+  ~PanelScope();
+  PanelScope(const PanelScope&) = delete;
+  PanelScope& operator=(const PanelScope&) = delete;
+};
+
+/// A small heading in dim capitals.
+void heading(const char* text);
+
+/// Shows `text` while the mouse rests on the item drawn last.
+void tooltip(const std::string& text);
+
+/// Text of one line; where it is wider than `width` it ends with "..." and its tooltip is all of
+/// it.
+void clipped_text(const std::string& text, float width, std::uint32_t rgb);
+
+}  // namespace gpo
