@@ -128,39 +128,39 @@ INSTANTIATE_TEST_SUITE_P(
     CalibrationErrors,
     testing::Values(
         BadCalibration{with("camera_model", "camera_model: omni"),
-                       ":13: key `camera_model`: found \"omni\", expected pinhole"},
+                       ":14: key `camera_model`: found \"omni\", expected pinhole"},
         BadCalibration{with("distortion_model", "distortion_model: fov"),
-                       ":15: key `distortion_model`: found \"fov\", expected radial-tangential, "
+                       ":16: key `distortion_model`: found \"fov\", expected radial-tangential, "
                        "equidistant or none"},
         BadCalibration{with("distortion_model", "distortion_model: none"),
-                       ":16: key `distortion_coefficients`: found 4 numbers, expected none for "
+                       ":17: key `distortion_coefficients`: found 4 numbers, expected none for "
                        "distortion model none"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, 3]"),
-                       ":16: key `distortion_coefficients`: found 3 numbers, expected 4, 5 or 8 "
+                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5 or 8 "
                        "(k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, .nan, 4]"),
-                       ":16: key `distortion_coefficients`: found \".nan\", expected finite "
+                       ":17: key `distortion_coefficients`: found \".nan\", expected finite "
                        "numbers"},
         BadCalibration{with("distortion_coefficients", ""),
                        ": key `distortion_coefficients`: found nothing, expected a list of "
                        "numbers"},
         BadCalibration{with("intrinsics", "intrinsics: [458, 457, 367]"),
-                       ":14: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
+                       ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
         BadCalibration{with("intrinsics", "intrinsics: [458, -457, 367, 248]"),
-                       ":14: key `intrinsics`: found a focal length that is not positive, "
+                       ":15: key `intrinsics`: found a focal length that is not positive, "
                        "expected fx, fy > 0 in pixels"},
         BadCalibration{with("intrinsics", "intrinsics: [458, 457, 367, 9000]"),
-                       ":14: key `intrinsics`: found a principal point far outside of the "
+                       ":15: key `intrinsics`: found a principal point far outside of the "
                        "picture, expected cx, cy in pixels, near the middle of it"},
         BadCalibration{with("intrinsics", ""),
                        ": key `intrinsics`: found nothing, expected [fx, fy, cx, cy]"},
         BadCalibration{with("resolution", "resolution: [752.5, 480]"),
-                       ":12: key `resolution`: found a size that no picture has, expected "
+                       ":13: key `resolution`: found a size that no picture has, expected "
                        "[width, height] in pixels"},
         BadCalibration{with("resolution", "resolution: 752x480"),
-                       ":12: key `resolution`: found \"752x480\", expected a list of numbers"},
+                       ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
         BadCalibration{with("rate_hz", "rate_hz: 0"),
-                       ":11: key `rate_hz`: found a rate that is not positive, expected pictures a "
+                       ":12: key `rate_hz`: found a rate that is not positive, expected pictures a "
                        "second"}));
 
 TEST(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
