@@ -16,14 +16,16 @@ namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-constexpr int kSearchWidth = 640;     // [px] the board is looked for in a picture of this width
-constexpr double kMostRmsPx = 2;      // a pose that fits worse is none
+constexpr int kSearchSize = 420;  // [px] long side of the picture in which the board is looked for
+constexpr double kMostRmsPx = 2;  // a pose that fits worse is none
+constexpr double kMostAstray = 0.12;  // of the distance to the next corner, before refinement
 constexpr double kSubPixReach = 0.3;  // of the distance to the next corner
 
 /// Corners by OpenCV in a reduced picture, row by row but in some order, back in full pixels.
 std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   cv::Mat reduced = gray;
-  const double scale = std::min(1.0, static_cast<double>(kSearchWidth) / gray.cols);
+  const double scale =
+      std::min(1.0, static_cast<double>(kSearchSize) / std::max(gray.cols, gray.rows));
   if (scale < 1) cv::resize(gray, reduced, {}, scale, scale, cv::INTER_AREA);
   std::vector<cv::Point2f> corners;
   const int flags =
@@ -46,6 +48,34 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
     }
   }
   return least;
+}
+
+/// The search in the reduced picture leaves single corners far off (a gap of the floor beside the
+/// board attracts them). Those that a homography of the whole board contradicts move onto it.
+void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
+  std::vector<cv::Point2f> grid;
+  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+    grid.emplace_back(static_cast<float>(i % board.columns), static_cast<float>(i / board.columns));
+  }
+  const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
+  if (H.empty()) return;
+  std::vector<cv::Point2f> expected;
+  cv::perspectiveTransform(grid, expected, H);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
+  }
+}
+
+/// Sub-pixel corners in the full picture; one that runs away from its start stays there.
+void refine(std::vector<cv::Point2f>& corners, const cv::Mat& gray, double spacing) {
+  const double reach = kSubPixReach * spacing;
+  const int half = std::clamp(static_cast<int>(std::lround(reach)), 2, 7);
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
+  const std::vector<cv::Point2f> starts = corners;
+  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (cv::norm(corners[i] - starts[i]) > reach) corners[i] = starts[i];
+  }
 }
 
 /// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
@@ -153,10 +183,9 @@ BoardPose refined(const std::vector<cv::Point3d>& points,
 Corners find_board(const cv::Mat& gray, const Board& board, const Corners& previous) {
   auto found = search(gray, board);
   if (found.empty()) return {};
-  const double reach = kSubPixReach * least_spacing(found, board);
-  const int half = std::clamp(static_cast<int>(std::lround(reach)), 2, 7);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
-  cv::cornerSubPix(gray, found, {half, half}, {-1, -1}, enough);
+  const double spacing = least_spacing(found, board);
+  mend(found, board, spacing);
+  refine(found, gray, spacing);
   Corners corners;
   for (const auto& corner : found) corners.emplace_back(corner.x, corner.y);
   return ordered(std::move(corners), gray, board, previous);

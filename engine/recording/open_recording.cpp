@@ -67,7 +67,7 @@ void add_sidecars(Recording& recording, const Found& found) {
   if (const auto file = beside("plane.yaml")) recording.plane = read_plane(*file);
   // Truth that comes from the board has the board's frame, z into the board.
   if (!recording.truth && recording.board && recording.pictures) {
-    recording.plane = Plane{-Eigen::Vector3d::UnitZ(), 0};
+    recording.plane = Plane{{0, 0, -1}, 0};
   }
 }
 

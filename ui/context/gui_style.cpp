@@ -84,7 +84,7 @@ void add_font(const unsigned char* begin, const unsigned char* end, float size_p
   config.FontDataOwnedByAtlas = false;
   config.OversampleH = 2;
   config.GlyphRanges = digits;
-  const float digit_width = std::round(0.62F * size_px);
+  const float digit_width = std::round(0.53F * size_px);
   config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = digit_width;
   auto* bytes = const_cast<unsigned char*>(begin);  // ImGui reads them only
   const int count = static_cast<int>(end - begin);

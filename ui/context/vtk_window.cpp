@@ -17,10 +17,11 @@ namespace {
 class CallbackOutputWindow : public vtkOutputWindow {
  public:
   static CallbackOutputWindow* New();
-  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow) void DisplayText(const char* text) override {
+  void DisplayText(const char* text) override {
     if (on_message && text != nullptr) on_message(text);
   }
   std::function<void(const std::string&)> on_message;
+  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow)
 };
 vtkStandardNewMacro(CallbackOutputWindow);
 

@@ -15,7 +15,7 @@ namespace gpo {
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
-  vtkTypeMacro(VtkWindow, vtkGenericOpenGLRenderWindow) VtkWindow(const VtkWindow&) = delete;
+  VtkWindow(const VtkWindow&) = delete;
   void operator=(const VtkWindow&) = delete;
 
   /// Loads OpenGL's functions once; VTK 9.1 takes GLEW's "no GLX display" for a failure, and then
@@ -24,6 +24,7 @@ class VtkWindow : public vtkGenericOpenGLRenderWindow {
 
  protected:
   VtkWindow();
+  vtkTypeMacro(VtkWindow, vtkGenericOpenGLRenderWindow)
 };
 
 /// Anti-aliased by four samples: llvmpipe's most, and the same bytes every time.

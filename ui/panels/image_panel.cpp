@@ -69,7 +69,7 @@ void image_panel(const PanelInput& input,
                   state.picture_zoom,
                   image_options(state, input.inspection));
   if (!views.picture_error.empty()) {
-    draw_badge(list, rect, palette::kBad, "no picture", views.picture_error, 40 * input.scale);
+    draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
   }
 }
 

@@ -1,0 +1,41 @@
+# Debian's packages by name, and how to install those that are missing. Sourced by run.sh and test.sh.
+
+build_packages=(
+  g++ cmake ninja-build pkg-config
+  libeigen3-dev libceres-dev libopencv-dev libvtk9-dev
+  libglfw3-dev libimgui-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
+  libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+)
+test_packages=(libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache)
+
+# install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the
+# one line to type and exits 2.
+install_packages() {
+  local missing=() name
+  for name in "$@"; do
+    dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  local line="apt-get install -y --no-install-recommends ${missing[*]}"
+  local as_root=()
+  if ! command -v apt-get >/dev/null; then
+    echo "missing packages, and no apt-get; on Debian: $line" >&2
+    exit 2
+  fi
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null || ! sudo -v 2>/dev/null; then
+      echo "missing packages; type: sudo $line" >&2
+      exit 2
+    fi
+    as_root=(sudo)
+  fi
+  echo "installing ${#missing[@]} packages" >&2
+  local log
+  log=$(mktemp)
+  if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive $line; } >"$log" 2>&1; then
+    tail -n 5 "$log" >&2
+    echo "could not install; type: sudo apt-get update && sudo $line" >&2
+    exit 2
+  fi
+  rm -f "$log"
+}

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace gpo {
+
+/// A pause in a series of time stamps.
+struct TimeGap {
+  int after = 0;        ///< index of the frame, or line of the sample, before the pause
+  double at_s = 0;      ///< its time, from the recording's first frame [s]
+  double length_s = 0;  ///< [s]
+};
+
+struct GyroscopeInfo {
+  int samples = 0;
+  double rate_hz = 0;
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  std::string bias_source;
+  double time_offset_ms = 0;   ///< gyroscope clock = camera clock + offset
+  bool covers_frames = false;  ///< from the first frame to the last
+  std::vector<TimeGap> gaps;   ///< longer than 5 median periods
+};
+
+struct TruthInfo {
+  std::string source;
+  int frames = 0;    ///< that have a pose, of those looked at
+  int examined = 0;  ///< fewer than the recording has where the board is sought in a sample only
+};
+
+struct TracksInfo {
+  int tracks = 0;
+  int observations = 0;
+  int longest = 0;  ///< observations of one track
+};
+
+/// What was found in a recording: what `info` prints.
+struct RecordingInfo {
+  std::string path;
+  std::string name;
+  std::string layout;
+  bool pictures = false;
+  int frames = 0;
+  double duration_s = 0;
+  double rate_hz = 0;         ///< 1 / median period; 0 for a single frame
+  std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
+  Camera camera;
+  std::optional<GyroscopeInfo> gyroscope;
+  std::optional<TruthInfo> truth;
+  std::optional<Plane> plane;
+  std::optional<Board> board;
+  std::optional<TracksInfo> tracks;
+  std::vector<std::string> notes;
+};
+
+/// Looks for the board in every frame (of a long recording: in a regular sample), which takes some
+/// 20 ms a frame. Throws InputError for pictures that cannot be decoded.
+RecordingInfo describe(const Recording& recording);
+
+nlohmann::json to_json(const RecordingInfo& info);
+/// A table for people, each line ended.
+std::string to_text(const RecordingInfo& info);
+
+}  // namespace gpo

@@ -1,0 +1,53 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/synthesis/random.h"
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// What prints and boxes are drawn with. Canvases are CV_8UC4 (blue, green, red, opacity); places
+/// and lengths are in units of the canvas' width, so that a drawing looks alike at any resolution.
+using Palette = std::vector<cv::Scalar>;
+
+cv::Scalar rgb(unsigned hex);
+/// Five or six colors that go together, the darkest first, the lightest last.
+const Palette& pick_palette(Random& random);
+cv::Mat blank_canvas(cv::Size size, const cv::Scalar& color);
+/// The part of a canvas, sharing its pixels.
+cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
+
+enum class Face { sans, bold, serif };
+/// Text whose capitals are `height` high, base line at y; shrunk to fit into `max_width`.
+void draw_text(cv::Mat& canvas,
+               const std::string& text,
+               cv::Point2d place,
+               double height,
+               const cv::Scalar& color,
+               Face face = Face::sans,
+               double max_width = 1e9);
+std::string pick_word(Random& random);
+std::string pick_title(Random& random);
+/// A column of lines of words, until `box` is full.
+void draw_paragraph(
+    cv::Mat& canvas, cv::Rect2d box, double height, const cv::Scalar& color, Random& random);
+
+/// A landscape: sky, sun, ridges, woods.
+void paint_landscape(cv::Mat canvas, Random& random);
+/// Stained glass: `cells` cells of a palette's colors with dark seams.
+void paint_mosaic(cv::Mat canvas, int cells, const Palette& palette, Random& random);
+/// Discs, bars and triangles in a palette's colors.
+void paint_shapes(cv::Mat canvas, int shapes, const Palette& palette, Random& random);
+/// Lines of equal height of a hilly country.
+void paint_contours(cv::Mat canvas, const Palette& palette, Random& random);
+/// Leaves and flowers over dark ground.
+void paint_flowers(cv::Mat canvas, Random& random);
+/// Slight grain of paper or print, standard deviation in gray levels.
+void add_grain(cv::Mat canvas, double sigma, Random& random);
+
+}  // namespace gpo

@@ -1,0 +1,31 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace gpo {
+
+/// Small generator with the same numbers on every platform (SplitMix64), unlike the standard
+/// library's distributions. `stream` tells generators of one seed apart: a frame, a row, a print.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
+  std::uint64_t bits();
+  double uniform(double low = 0, double high = 1);  ///< [low, high)
+  int below(int n);                                 ///< 0 .. n - 1
+  double normal();                                  ///< mean 0, standard deviation 1
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Smooth noise in [0, 1], about 0.5 in the mean; features of size 1, then 1/2, 1/4 ... weighted by
+/// their size.
+double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
+
+/// Calls `work(row)` for each row on some threads, in no particular order.
+void for_each_row(int rows, int threads, const std::function<void(int row)>& work);
+
+}  // namespace gpo

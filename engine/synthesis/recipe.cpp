@@ -1,0 +1,227 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/synthesis/recipe.h"
+
+#include "engine/synthesis/scene.h"
+#include "engine/synthesis/strict_yaml.h"
+#include "engine/synthesis/textures.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Range kAny{-kInfinity, kInfinity};
+const Range kMeters{-100, 100, "m"};
+const Range kLength{0.001, 20, "m"};
+const Range kDegrees{-3600, 3600, "deg"};
+const Range kSeed{0, 9e15};
+
+std::uint64_t read_seed(StrictMap& map, const std::string& key) {
+  return static_cast<std::uint64_t>(map.integer(key, kSeed, 1));
+}
+
+Camera read_camera(StrictMap& map) {
+  Camera camera;
+  const auto resolution = map.vector<2>("resolution", {16, 8192, "px"});
+  camera.width = static_cast<int>(resolution.x());
+  camera.height = static_cast<int>(resolution.y());
+  const auto k = map.vector<4>("intrinsics", {0, 1e5, "px"});
+  camera.fx = k[0];
+  camera.fy = k[1];
+  camera.cx = k[2];
+  camera.cy = k[3];
+  if (camera.fx < 1 || camera.fy < 1) {
+    map.fail("intrinsics", "a focal length below 1", "[fx, fy, cx, cy] in pixels");
+  }
+  const std::string model =
+      map.choice("distortion_model", {"none", "radial-tangential", "equidistant"});
+  if (model == "none") return camera;
+  camera.distortion =
+      model == "equidistant" ? Distortion::equidistant : Distortion::radial_tangential;
+  camera.coefficients =
+      map.numbers("distortion_coefficients", {-10, 10}, 4, model == "equidistant" ? 4 : 8);
+  return camera;
+}
+
+Pose read_pose(StrictMap& map, const std::string& key) {
+  const auto values = map.numbers(key, kMeters, 16, 16);
+  const Eigen::Matrix4d T =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  const bool rigid = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
+                     R.determinant() > 0 && T.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+  if (!rigid) map.fail(key, "no rotation in it", "a rigid 4x4 transformation, row by row");
+  return {R, T.topRightCorner<3, 1>()};
+}
+
+/// `scale` turns the file's unit into ours; `duration` is the time from start to end.
+template <int N>
+Path<N> read_path(StrictMap map, const Range& range, double scale, double duration) {
+  Path<N> path;
+  path.start = scale * map.vector<N>("start", range);
+  if (map.has("end")) {
+    const typename Path<N>::Vector end = scale * map.vector<N>("end", range);
+    if (duration > 0) path.velocity = (end - path.start) / duration;
+  }
+  for (StrictMap& entry : map.list("harmonics")) {
+    Harmonic<N> harmonic;
+    harmonic.amplitude = scale * entry.vector<N>("amplitude", range);
+    harmonic.frequency = entry.number("frequency", {0, 20, "Hz"});
+    harmonic.phase = radians(entry.number("phase", kDegrees, 0));
+    entry.finish();
+    path.harmonics.push_back(harmonic);
+  }
+  map.finish();
+  return path;
+}
+
+Trajectory read_trajectory(StrictMap map, double duration) {
+  Trajectory trajectory;
+  trajectory.position = read_path<3>(map.map("position"), kMeters, 1, duration);
+  trajectory.look_at = read_path<3>(map.map("look_at"), kMeters, 1, duration);
+  if (map.has("roll"))
+    trajectory.roll = read_path<1>(map.map("roll"), kDegrees, radians(1), duration);
+  if (map.has("up")) trajectory.up = map.vector<3>("up", kAny);
+  map.finish();
+  return trajectory;
+}
+
+BoardRecipe read_board(StrictMap map) {
+  BoardRecipe board;
+  board.columns = static_cast<int>(map.integer("columns", {2, 50}));
+  board.rows = static_cast<int>(map.integer("rows", {2, 50}));
+  board.square = map.number("square", kLength);
+  board.margin = map.number("margin", {0, 1, "m"}, 0.015);
+  board.center = map.vector<2>("center", kMeters);
+  board.angle = radians(map.number("angle", kDegrees, 0));
+  map.finish();
+  return board;
+}
+
+DeskRecipe read_desk(StrictMap map) {
+  DeskRecipe desk;
+  desk.size = map.vector<2>("size", {0.05, 5, "m"});
+  desk.texture_seed = read_seed(map, "texture_seed");
+  if (map.has("board")) desk.board = read_board(map.map("board"));
+  for (StrictMap& entry : map.list("prints")) {
+    PrintRecipe print;
+    print.kind = entry.choice("kind", print_kinds());
+    print.center = entry.vector<2>("center", kMeters);
+    print.size = entry.vector<2>("size", {0.01, 3, "m"});
+    print.angle = radians(entry.number("angle", kDegrees, 0));
+    entry.finish();
+    desk.prints.push_back(print);
+  }
+  for (StrictMap& entry : map.list("boxes")) {
+    BoxRecipe box;
+    box.kind = entry.choice("kind", box_kinds());
+    box.center = entry.vector<2>("center", kMeters);
+    box.size = entry.vector<3>("size", {0.005, 3, "m"});
+    box.angle = radians(entry.number("angle", kDegrees, 0));
+    box.base = entry.number("base", {0, 3, "m"}, 0);
+    entry.finish();
+    desk.boxes.push_back(box);
+  }
+  map.finish();
+  return desk;
+}
+
+PictureRecipe read_picture(StrictMap map) {
+  PictureRecipe picture;
+  picture.format = map.choice("format", {"jpg", "png"});
+  picture.quality = static_cast<int>(map.integer("quality", {1, 100}, picture.quality));
+  picture.samples = static_cast<int>(map.integer("samples", {1, 16}, picture.samples));
+  picture.noise = map.number("noise", {0, 100, "gray levels"}, 0);
+  picture.blur = map.number("blur", {0, 20, "px"}, 0);
+  picture.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
+  picture.exposure = map.number("exposure", {0, 1, "s"}, 0);
+  map.finish();
+  return picture;
+}
+
+GyroscopeRecipe read_gyroscope(StrictMap map) {
+  GyroscopeRecipe gyroscope;
+  gyroscope.rate = map.number("rate", {1, 10000, "Hz"});
+  gyroscope.noise_density = map.number("noise_density", {0, 1, "rad/s/sqrt(Hz)"}, 0);
+  gyroscope.bias = map.vector<3>("bias", {-1, 1, "rad/s"});
+  if (map.has("calibrated_bias")) {
+    gyroscope.calibrated_bias = map.vector<3>("calibrated_bias", {-1, 1, "rad/s"});
+  }
+  map.finish();
+  return gyroscope;
+}
+
+/// A path on which the camera has no direction of view, or dives below the desk, has no picture.
+void check_trajectory(StrictMap& top, const Recipe& recipe) {
+  for (int frame = 0; frame < recipe.frame_count; ++frame) {
+    const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
+    const CameraMotion motion = camera_motion(recipe.trajectory, t);
+    if (!motion.pose.R_wc.allFinite() || !motion.rate_c.allFinite() || motion.rate_c.norm() > 100) {
+      top.fail("trajectory",
+               "no direction of view in frame " + std::to_string(frame),
+               "look_at away from position, and not along up");
+    }
+    if (motion.pose.p_wc.z() <= 0) {
+      top.fail("trajectory",
+               "a camera below the desk in frame " + std::to_string(frame),
+               "position above z = 0");
+    }
+  }
+}
+
+}  // namespace
+
+Recipe read_recipe(const std::filesystem::path& file) {
+  StrictMap top = StrictMap::open(file);
+  Recipe recipe;
+  recipe.seed = read_seed(top, "seed");
+
+  StrictMap camera = top.map("camera");
+  recipe.camera = read_camera(camera);
+  recipe.T_body_camera = read_pose(camera, "T_BS");
+  camera.finish();
+
+  StrictMap frames = top.map("frames");
+  recipe.frame_count = static_cast<int>(frames.integer("count", {1, 100000}));
+  recipe.frame_rate = frames.number("rate", {0.1, 1000, "Hz"});
+  recipe.start_ns = frames.integer("start_ns", {1e9, 9e18, "ns"});
+  frames.finish();
+
+  recipe.trajectory =
+      read_trajectory(top.map("trajectory"), (recipe.frame_count - 1) / recipe.frame_rate);
+  recipe.desk = read_desk(top.map("desk"));
+  recipe.picture = read_picture(top.map("picture"));
+  recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
+  top.finish();
+  check_trajectory(top, recipe);
+  return recipe;
+}
+
+std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame) {
+  return recipe.start_ns + std::llround(frame * 1e9 / recipe.frame_rate);
+}
+
+double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns) {
+  return static_cast<double>(timestamp_ns - recipe.start_ns) * 1e-9;
+}
+
+std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board) {
+  std::vector<Eigen::Vector3d> corners;
+  const Eigen::Vector3d center(board.center.x(), board.center.y(), 0);
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      const Eigen::Vector3d in_board((column - (board.columns - 1) / 2.0) * board.square,
+                                     (row - (board.rows - 1) / 2.0) * board.square,
+                                     0);
+      corners.emplace_back(center + turn_into(-board.angle) * in_board);
+    }
+  }
+  return corners;
+}
+
+}  // namespace gpo

@@ -1,0 +1,41 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
+#include "engine/synthesis/recipe.h"
+#include "engine/synthesis/scene.h"
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// The rays of a camera's picture: samples x samples a pixel, on a regular grid about the pixel's
+/// center, through the exact lens model. Computed once for all frames.
+struct RayMap {
+  int width = 0;
+  int height = 0;
+  int samples = 1;
+  /// (x/z, y/z) in camera axes, pixel by pixel, sample by sample; NaN where the lens sees nothing.
+  std::vector<Eigen::Vector2f> rays;
+};
+RayMap make_ray_map(const Camera& camera, int samples, int threads);
+
+/// The light that falls on the picture, CV_32FC3 in gray levels, without lens blur and noise.
+/// Sample k of each pixel is seen from poses[k % size]: poses spread over the exposure make motion
+/// blur.
+cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
+
+/// Lens blur, vignette, gain and noise: CV_8UC3. Equal for equal seeds, whatever the threads.
+cv::Mat expose(const cv::Mat& light,
+               const PictureRecipe& picture,
+               double gain,
+               std::uint64_t seed,
+               int threads);
+
+}  // namespace gpo

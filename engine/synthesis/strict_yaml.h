@@ -1,0 +1,63 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <yaml-cpp/yaml.h>
+
+namespace gpo {
+
+/// Bounds of a number, both included, with the unit for people.
+struct Range {
+  double low;
+  double high;
+  std::string unit = "";
+};
+
+/// One map of a YAML file, read strictly: each getter throws InputError that names file, line, key,
+/// what was found and what was expected; `finish` refuses keys that nobody asked for.
+class StrictMap {
+ public:
+  /// The file's top level.
+  static StrictMap open(const std::filesystem::path& file);
+
+  bool has(const std::string& key) const;
+  double number(const std::string& key, const Range& range);
+  double number(const std::string& key, const Range& range, double otherwise);
+  std::int64_t integer(const std::string& key, const Range& range);
+  std::int64_t integer(const std::string& key, const Range& range, std::int64_t otherwise);
+  std::string choice(const std::string& key, const std::vector<std::string>& choices);
+  std::vector<double> numbers(const std::string& key, const Range& range, int least, int most);
+  template <int N>
+  Eigen::Matrix<double, N, 1> vector(const std::string& key, const Range& range) {
+    return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
+  }
+  StrictMap map(const std::string& key);
+  std::vector<StrictMap> list(const std::string& key);  ///< of maps; empty where the key is absent
+  void finish() const;
+  [[noreturn]] void fail(const std::string& key,
+                         const std::string& found,
+                         const std::string& expected) const;
+
+ private:
+  StrictMap(std::string file, std::string name, YAML::Node node);
+  YAML::Node take(const std::string& key, const std::string& expected);
+  double parse(const YAML::Node& node,
+               const std::string& key,
+               const Range& range,
+               bool integer) const;
+
+  std::string file_;
+  std::string name_;  ///< "desk.boxes[2]", empty at the top
+  YAML::Node node_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace gpo

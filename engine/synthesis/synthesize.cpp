@@ -1,0 +1,277 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/synthesis/synthesize.h"
+
+#include "engine/error.h"
+#include "engine/synthesis/random.h"
+#include "engine/synthesis/renderer.h"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMargin_s = 0.1;
+constexpr double kPhase = 0.37;  ///< of the samples' grid to the frames', in sample periods
+constexpr std::uint64_t kGyroscopeStream = 1;
+
+void write_file(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  if (!stream.flush()) {
+    throw InputError(fmt::format("{}: cannot be written, expected a writable disk", file.string()));
+  }
+}
+
+std::string join(const std::vector<double>& values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+std::string join(const Eigen::Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+}
+
+std::string transformation(const Pose& pose) {
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    rows += fmt::format("         {}, {}, {}, {},\n",
+                        pose.R_wc(i, 0),
+                        pose.R_wc(i, 1),
+                        pose.R_wc(i, 2),
+                        pose.p_wc[i]);
+  }
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
+}
+
+std::string camera_yaml(const Recipe& recipe) {
+  const Camera& camera = recipe.camera;
+  const char* model = camera.distortion == Distortion::none          ? "none"
+                      : camera.distortion == Distortion::equidistant ? "equidistant"
+                                                                     : "radial-tangential";
+  return fmt::format(
+      "# Synthesized: exact.\nsensor_type: camera\ncomment: synthesized\n\n"
+      "# Camera in the axes of the body (the IMU).\n{}\n"
+      "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
+      "intrinsics: {}  # fx, fy, cx, cy\n"
+      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      transformation(recipe.T_body_camera),
+      recipe.frame_rate,
+      camera.width,
+      camera.height,
+      join(std::vector{camera.fx, camera.fy, camera.cx, camera.cy}),
+      model,
+      join(camera.coefficients));
+}
+
+std::string imu_yaml(const GyroscopeRecipe& gyroscope) {
+  std::string text = fmt::format(
+      "# Synthesized: the gyroscope has white noise and a constant bias, the accelerometer is "
+      "perfect.\nsensor_type: imu\ncomment: synthesized\n\n{}\nrate_hz: {}\n"
+      "gyroscope_noise_density: {}  # [rad/s/sqrt(Hz)]\n"
+      "gyroscope_random_walk: 0.0\naccelerometer_noise_density: 0.0\n"
+      "accelerometer_random_walk: 0.0\n",
+      transformation(Pose{}),
+      gyroscope.rate,
+      gyroscope.noise_density);
+  if (gyroscope.calibrated_bias) {
+    text += fmt::format("gyroscope_bias: {}  # [rad/s], as calibrated, not as it is\n",
+                        join(*gyroscope.calibrated_bias));
+  }
+  return text;
+}
+
+std::string imu_csv(const Recipe& recipe) {
+  std::string text =
+      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+      "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+  for (const ImuSample& sample : simulate_imu(recipe)) {
+    const auto& w = sample.rate_b;
+    const auto& a = sample.specific_force_b;
+    text += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
+                        sample.timestamp_ns,
+                        w.x(),
+                        w.y(),
+                        w.z(),
+                        a.x(),
+                        a.y(),
+                        a.z());
+  }
+  return text;
+}
+
+std::string truth_csv(const Recipe& recipe) {
+  std::string text =
+      "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],"
+      "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
+      "b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
+      "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
+  for (int frame = 0; frame < recipe.frame_count; ++frame) {
+    const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
+    const BodyMotion body =
+        body_motion(recipe.trajectory, recipe.T_body_camera, trajectory_seconds(recipe, timestamp));
+    Eigen::Quaterniond q(body.pose.R_wc);
+    if (q.dot(previous) < 0) q.coeffs() *= -1;  // no jumps for who interpolates
+    previous = q;
+    const auto& p = body.pose.p_wc;
+    const auto& v = body.velocity_w;
+    const auto& b = recipe.gyroscope.bias;
+    text += fmt::format(
+        "{},{:.12f},{:.12f},{:.12f},{:.15f},{:.15f},{:.15f},{:.15f},{:.9f},{:.9f},{:.9f},"
+        "{:.9f},{:.9f},{:.9f},0,0,0\n",
+        timestamp,
+        p.x(),
+        p.y(),
+        p.z(),
+        q.w(),
+        q.x(),
+        q.y(),
+        q.z(),
+        v.x(),
+        v.y(),
+        v.z(),
+        b.x(),
+        b.y(),
+        b.z());
+  }
+  return text;
+}
+
+/// The camera's poses over the exposure; one where there is no motion blur.
+std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
+  const PictureRecipe& picture = recipe.picture;
+  const int count = picture.exposure > 0 ? picture.samples * picture.samples : 1;
+  std::vector<Pose> poses;
+  for (int k = 0; k < count; ++k) {
+    const double offset = picture.exposure * ((k + 0.5) / count - 0.5);
+    poses.push_back(camera_motion(recipe.trajectory, seconds + offset).pose);
+  }
+  return poses;
+}
+
+void write_picture(const fs::path& file, const cv::Mat& picture, int quality) {
+  std::vector<int> parameters;
+  if (file.extension() == ".jpg") {
+    parameters = {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
+  }
+  if (!cv::imwrite(file.string(), picture, parameters)) {
+    throw InputError(fmt::format("{}: cannot be written, expected a writable disk", file.string()));
+  }
+}
+
+void write_pictures(const Recipe& recipe,
+                    const fs::path& folder,
+                    const SynthesisProgress& progress,
+                    int threads) {
+  const Scene scene = make_scene(recipe.desk, threads);
+  const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
+  fs::create_directories(folder / "data");
+  std::string list = "#timestamp [ns],filename\n";
+  for (int frame = 0; frame < recipe.frame_count; ++frame) {
+    const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
+    const double seconds = trajectory_seconds(recipe, timestamp);
+    const cv::Mat light = render(scene, rays, exposure_poses(recipe, seconds), threads);
+    const double gain =
+        1 + recipe.picture.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
+    const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
+    const std::string name = fmt::format("{}.{}", timestamp, recipe.picture.format);
+    write_picture(folder / "data" / name,
+                  expose(light, recipe.picture, gain, noise_seed, threads),
+                  recipe.picture.quality);
+    list += fmt::format("{},{}\n", timestamp, name);
+    if (progress) progress(frame + 1, recipe.frame_count);
+  }
+  write_file(folder / "data.csv", list);
+}
+
+void write_recording(const Recipe& recipe,
+                     const fs::path& folder,
+                     const SynthesisProgress& progress,
+                     int threads) {
+  const fs::path mav = folder / "mav0";
+  write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recipe));
+  write_file(mav / "imu0" / "sensor.yaml", imu_yaml(recipe.gyroscope));
+  write_file(mav / "imu0" / "data.csv", imu_csv(recipe));
+  write_file(mav / "state_groundtruth_estimate0" / "data.csv", truth_csv(recipe));
+  write_file(folder / "plane.yaml",
+             "# The desk, in the world of the ground truth.\nnormal: [0, 0, 1]\ndistance: 0\n");
+  if (recipe.desk.board) {
+    const BoardRecipe& board = *recipe.desk.board;
+    write_file(folder / "board.yaml",
+               fmt::format("# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\n"
+                           "square: {}\n",
+                           board.columns,
+                           board.rows,
+                           board.square));
+  }
+  write_pictures(recipe, mav / "cam0", progress, threads);
+}
+
+/// A folder beside the output that goes away unless it became the output.
+struct TemporaryFolder {
+  fs::path path;
+  explicit TemporaryFolder(fs::path where) : path(std::move(where)) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    fs::create_directories(path, error);
+    if (error) {
+      throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
+                                   path.string(),
+                                   error.message()));
+    }
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
+}  // namespace
+
+std::vector<ImuSample> simulate_imu(const Recipe& recipe) {
+  const GyroscopeRecipe& gyroscope = recipe.gyroscope;
+  const double duration = (recipe.frame_count - 1) / recipe.frame_rate;
+  const double sigma = gyroscope.noise_density * std::sqrt(gyroscope.rate);
+  Random random(recipe.seed, kGyroscopeStream);
+  std::vector<ImuSample> samples;
+  const auto first = static_cast<std::int64_t>(-std::ceil(kMargin_s * gyroscope.rate));
+  const auto last = static_cast<std::int64_t>(std::ceil((duration + kMargin_s) * gyroscope.rate));
+  for (std::int64_t i = first; i <= last; ++i) {
+    const double ideal = (static_cast<double>(i) + kPhase) / gyroscope.rate;
+    const std::int64_t timestamp = recipe.start_ns + std::llround(ideal * 1e9);
+    const BodyMotion body =
+        body_motion(recipe.trajectory, recipe.T_body_camera, trajectory_seconds(recipe, timestamp));
+    Eigen::Vector3d noise;
+    for (double& n : noise) n = sigma * random.normal();
+    samples.push_back({timestamp, body.rate_b + gyroscope.bias + noise, body.specific_force_b});
+  }
+  return samples;
+}
+
+void synthesize(const Recipe& recipe,
+                const fs::path& output,
+                const SynthesisProgress& progress,
+                int threads) {
+  const fs::path target = fs::absolute(output / "").parent_path();
+  if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
+    throw InputError(fmt::format(
+        "{}: found something there already, expected no folder or an empty one", output.string()));
+  }
+  const TemporaryFolder unfinished(target.string() + ".unfinished");
+  write_recording(recipe, unfinished.path, progress, threads);
+  fs::remove(target);
+  fs::rename(unfinished.path, target);
+}
+
+}  // namespace gpo

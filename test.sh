@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with warnings as errors, runs every test; ends with CTest's summary
+# and its exit code. ./test.sh ARGS... passes ARGS to ctest (e.g. -R Gpo).
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source "$here/.ci/install.sh"
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+cd "$here"
+cmake --preset ci
+cmake --build --preset ci
+# llvmpipe is what the snapshots' baselines were made with.
+export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
+exec ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@"

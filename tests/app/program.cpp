@@ -1,0 +1,56 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/app/program.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace gpo::test {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+void write_file(const fs::path& file, const std::string& content) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+fs::path fresh_folder() {
+  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string(info->test_suite_name()) + "." + info->name();
+  std::ranges::replace(name, '/', '_');
+  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+Outcome shell(const std::string& command) {
+  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+  const fs::path log =
+      fs::path(GPO_TEST_OUTPUT_DIR) / (std::string(info->test_suite_name()) + "-" + info->name());
+  fs::create_directories(log.parent_path());
+  const std::string out = log.string() + ".out";
+  const std::string err = log.string() + ".err";
+  const std::string line = "cd '" GPO_SOURCE_DIR "' && unset DISPLAY WAYLAND_DISPLAY && { " +
+                           command + " ; } > '" + out + "' 2> '" + err + "' < /dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+Outcome program(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }
+
+fs::path desk() { return fs::path(GPO_SOURCE_DIR) / "sequences/desk"; }
+
+}  // namespace gpo::test

@@ -1,0 +1,31 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace gpo::test {
+
+struct Outcome {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+/// Runs a shell command in the source folder, without a display.
+Outcome shell(const std::string& command);
+
+/// Runs `gpo-inspector ARGUMENTS` that way.
+Outcome program(const std::string& arguments);
+
+/// An empty folder for the running test.
+std::filesystem::path fresh_folder();
+
+std::string read_file(const std::filesystem::path& file);
+void write_file(const std::filesystem::path& file, const std::string& content);
+
+/// The bundled recording.
+std::filesystem::path desk();
+
+}  // namespace gpo::test

@@ -1,0 +1,235 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/pose.h"
+#include "tests/app/program.h"
+
+#include <sstream>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::read_file;
+using ::testing::HasSubstr;
+
+json run_json(const std::string& arguments, int expected_exit = 0) {
+  const fs::path file = fresh_folder() / "result.json";
+  const Outcome outcome = program("run " + arguments + " --json " + file.string());
+  EXPECT_EQ(outcome.exit_code, expected_exit) << outcome.out << outcome.err;
+  return json::parse(read_file(file));
+}
+
+TEST(Run, DeskGivesWhatTheContractPromises) {
+  const json j = run_json(desk().string());
+  EXPECT_EQ(j["method"], "gpo");
+  EXPECT_EQ(j["status"], "ok");
+  EXPECT_EQ(j["reason"], "");
+  EXPECT_EQ(j["window"]["start"], 0);
+  EXPECT_EQ(j["window"]["frames"], 30);
+  EXPECT_EQ(j["settings"]["rotations"], "gyro");
+  EXPECT_EQ(j["settings"]["ransac"], true);
+  EXPECT_EQ(j["settings"]["ransac_threshold_px"], 2.0);
+  EXPECT_EQ(j["settings"]["seed"], 1);
+  EXPECT_EQ(j["plane"]["distance"], 1.0);
+  EXPECT_LT(j["plane"]["normal"][2], 0);
+  EXPECT_EQ(j["frames"].size(), 30U);
+  EXPECT_EQ(j["frames"][0]["p_wc"], json::parse("[0.0, 0.0, 0.0]"));
+  EXPECT_EQ(j["frames"][29]["index"], 29);
+  EXPECT_EQ(j["points"].size(), j["window"]["inliers"]);
+  EXPECT_EQ(j["solver"]["unknowns"], 89);
+  EXPECT_EQ(j["solver"]["termination"], "convergence");
+  for (const char* key : {"track", "ransac", "rotations", "initialize", "optimize", "total"}) {
+    EXPECT_GE(j["timing_ms"][key], 0) << key;
+  }
+  EXPECT_LE(j["timing_ms"]["optimize"], j["timing_ms"]["initialize"]);
+}
+
+TEST(Run, DeskIsAccurate) {
+  const json metrics = run_json(desk().string())["metrics"];
+  EXPECT_EQ(metrics["alignment"], "ok");
+  EXPECT_LT(metrics["pne_deg"], 1.0);
+  EXPECT_LT(metrics["pne_aligned_deg"], 1.5);
+  EXPECT_LT(metrics["ate_m"], 0.005);
+  EXPECT_LT(metrics["pde_m"], 0.02);
+  EXPECT_GT(metrics["pne_bound_deg"], 0);
+}
+
+TEST(Run, AllRotationSourcesOfTheDeskAgree) {
+  for (const char* source : {"gyro", "averaging", "truth"}) {
+    const json j = run_json(desk().string() + " --rotations " + source);
+    EXPECT_EQ(j["settings"]["rotations"], source);
+    EXPECT_LT(j["metrics"]["pne_deg"], 2.0) << source;
+  }
+}
+
+TEST(Run, SameInputSettingsAndSeedGiveTheSameFile) {
+  json a = run_json(desk().string() + " --seed 7");
+  json b = run_json(desk().string() + " --seed 7");
+  a.erase("timing_ms");
+  b.erase("timing_ms");
+  EXPECT_EQ(a.dump(), b.dump());
+}
+
+TEST(Run, TrajectoryIsTumAndPointsArePly) {
+  const fs::path folder = fresh_folder();
+  const std::string files = " --trajectory " + (folder / "t.txt").string() + " --points " +
+                            (folder / "p.ply").string() + " --json " + (folder / "r.json").string();
+  ASSERT_EQ(program("run " + desk().string() + files).exit_code, 0);
+  const json j = json::parse(read_file(folder / "r.json"));
+  std::istringstream trajectory(read_file(folder / "t.txt"));
+  std::string line;
+  std::getline(trajectory, line);
+  EXPECT_EQ(line[0], '#');
+  for (const json& frame : j["frames"]) {
+    ASSERT_TRUE(std::getline(trajectory, line));
+    std::istringstream row(line);
+    std::array<double, 8> v{};
+    for (double& x : v) row >> x;
+    EXPECT_NEAR(v[0], frame["timestamp_ns"].get<double>() * 1e-9, 1e-5);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(v[1 + k], frame["p_wc"][k], 1e-8);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(v[4 + k], frame["q_wc_xyzw"][k], 1e-8);
+  }
+  EXPECT_FALSE(std::getline(trajectory, line));
+  EXPECT_THAT(read_file(folder / "p.ply"),
+              HasSubstr("element vertex " + std::to_string(j["points"].size())));
+}
+
+TEST(Run, TableHasUnits) {
+  const Outcome outcome = program("run " + desk().string());
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* text : {"status      ok", " px RMS", " mm\n", " deg", "iterations"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(text));
+  }
+}
+
+TEST(Run, FailedInitializationExitsOneWithoutPoses) {
+  // The first two frames of the desk are too near to each other for any parallax.
+  const fs::path folder = fresh_folder();
+  const Outcome outcome =
+      program("run " + desk().string() + " --frames 2 --json " + (folder / "r.json").string() +
+              " --trajectory " + (folder / "t.txt").string());
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("failed: no parallax"));
+  EXPECT_FALSE(fs::exists(folder / "t.txt"));
+  const json j = json::parse(read_file(folder / "r.json"));
+  EXPECT_EQ(j["status"], "failed");
+  EXPECT_THAT(j["reason"], HasSubstr("no parallax"));
+  EXPECT_TRUE(j["plane"].is_null());
+  EXPECT_TRUE(j["frames"][0]["p_wc"].is_null());
+  EXPECT_TRUE(j["points"].empty());
+  EXPECT_FALSE(j.contains("metrics"));
+}
+
+struct BadInput {
+  std::string arguments;
+  std::string message;
+};
+
+class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
+
+TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
+  const fs::path folder = fresh_folder();
+  const Outcome outcome = program("run " + desk().string() + " " + GetParam().arguments +
+                                  " --json " + (folder / "r.json").string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage,
+    RunOnBadInput,
+    ::testing::Values(
+        BadInput{"--method gpoo", "unknown method 'gpoo', expected one of gpo"},
+        BadInput{"--start 60",
+                 "--start: frame 60 is not in the recording, which has frames 0 to 59"},
+        BadInput{"--start 40",
+                 "30 frames from frame 40 on do not fit, the recording has 60 frames"},
+        BadInput{"--frames 1", "--frames"},
+        BadInput{"--start -1", "--start"},
+        BadInput{"--start abc", "--start"},
+        BadInput{"--rotations gyr", "unknown source 'gyr'"},
+        BadInput{"--bogus", "--bogus"},
+        BadInput{"--tracks no-such-file.csv", "no-such-file.csv"}));
+
+TEST(Run, MissingRecordingIsBadInput) {
+  const Outcome outcome = program("run no/such/folder");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no/such/folder"));
+}
+
+TEST(Run, UnwritableOutputIsToldBeforeTheWork) {
+  const Outcome outcome = program("run " + desk().string() + " --json no/such/folder/r.json");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no folder no/such/folder"));
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST(Info, DeskHasEverything) {
+  const Outcome text = program("info " + desk().string());
+  EXPECT_EQ(text.exit_code, 0);
+  for (const char* found : {"60", "640", "480", "200"}) EXPECT_THAT(text.out, HasSubstr(found));
+  const Outcome outcome = program("info --json " + desk().string());
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(json::accept(outcome.out));
+}
+
+TEST(Help, EveryCommandExplainsItself) {
+  EXPECT_EQ(program("--help").exit_code, 0);
+  for (const char* command : {"view", "info", "run", "snapshot", "synthesize"}) {
+    const Outcome outcome = program(std::string(command) + " --help");
+    EXPECT_EQ(outcome.exit_code, 0) << command;
+    EXPECT_FALSE(outcome.out.empty()) << command;
+  }
+}
+
+TEST(View, WithoutADisplayPointsToSnapshot) {
+  const Outcome outcome = program("view " + desk().string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
+}
+
+/// The contract's real recordings; they are not part of the repository.
+class SharedRecordings : public ::testing::Test {
+ protected:
+  static fs::path shared(const std::string& name) {
+    return fs::path(GPO_SHARED_DIR) / "data" / name;
+  }
+};
+
+TEST_F(SharedRecordings, ChessboardFloorInitializesByAveraging) {
+  if (!fs::exists(shared("chessboard-floor")))
+    GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  const json j = run_json(shared("chessboard-floor").string() + " --start 180");
+  EXPECT_EQ(j["settings"]["rotations"], "averaging");
+  EXPECT_EQ(j["metrics"]["alignment"], "ok");
+  EXPECT_LT(j["metrics"]["pne_deg"], 2.0);
+  EXPECT_LT(j["metrics"]["ate_m"], 0.01);
+}
+
+TEST_F(SharedRecordings, CardsTracksInitializeByGyroscope) {
+  if (!fs::exists(shared("cards-tracks"))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  for (const int start : {1, 139, 259}) {
+    const json j = run_json(shared("cards-tracks").string() + " --tracks " +
+                            shared("cards-tracks/tracks.csv").string() + " --frames 12 --start " +
+                            std::to_string(start));
+    EXPECT_EQ(j["status"], "ok") << start;
+    EXPECT_EQ(j["settings"]["rotations"], "gyro");
+    const double squares = 2 * j["solver"]["final_cost"].get<double>();
+    EXPECT_LT(std::sqrt(2 * squares / j["solver"]["residuals"].get<double>()), 1.5) << start;
+    EXPECT_FALSE(j.contains("metrics"));
+  }
+}
+
+}  // namespace
+}  // namespace gpo

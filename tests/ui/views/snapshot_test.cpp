@@ -1,0 +1,78 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/snapshot.h"
+
+#include "tests/ui/gl_test.h"
+#include "tests/ui/made_inspection.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+class Snapshot : public DrawingTest {};
+
+/// Where pictures are kept: to look at, and for the test that starts another process.
+std::filesystem::path kept(const std::string& name) {
+  const char* other = std::getenv("GPO_TEST_KEEP");
+  return std::filesystem::path(other != nullptr ? other : GPO_TEST_OUTPUT_DIR) / (name + ".png");
+}
+
+void keep(const std::string& name, const cv::Mat& picture) {
+  std::filesystem::create_directories(kept(name).parent_path());
+  cv::imwrite(kept(name).string(), picture);
+}
+
+TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
+  const Inspection inspection = made_inspection();
+  const cv::Mat picture = snapshot_image(inspection, 34);
+  keep("image", picture);
+  EXPECT_EQ(picture.size(), cv::Size(640, 480));
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  EXPECT_TRUE(same_bytes(picture, snapshot_image(inspection, 34)));
+}
+
+TEST_F(Snapshot, SceneHasTheSameBytesAgain) {
+  const Inspection inspection = made_inspection({.estimate_error = 2});
+  const cv::Mat picture = snapshot_scene(inspection, 24);
+  keep("scene", picture);
+  EXPECT_EQ(picture.size(), cv::Size(960, 720));
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  EXPECT_TRUE(same_bytes(picture, snapshot_scene(inspection, 24)));
+}
+
+TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  const auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "another-process";
+  std::filesystem::remove_all(folder);
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string command = "GPO_TEST_KEEP='" + folder.string() + "' '" + self +
+                              "' --gtest_filter='Snapshot.*SameBytesAgain' >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT(concurrency-mt-unsafe)
+  const cv::Mat image = cv::imread((folder / "image.png").string());
+  const cv::Mat scene = cv::imread((folder / "scene.png").string());
+  EXPECT_TRUE(same_bytes(snapshot_image(made_inspection(), 34), image));
+  EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
+}
+
+TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
+  keep("image_error",
+       snapshot_image(made_inspection({.estimate_error = 3}), 30, {}, {.residuals = true}));
+  keep("image_large", snapshot_image(made_inspection(), 20, cv::Size(1280, 720)));
+  keep("image_reference", snapshot_image(made_inspection(), 5));
+  keep("image_outside", snapshot_image(made_inspection(), 38));
+  keep("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
+  keep("image_tracks_only",
+       snapshot_image(made_inspection({.pictures = false, .truth = false}), 20));
+  keep("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
+  keep("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
+  keep("scene_failed_blind", snapshot_scene(made_inspection({.ok = false, .truth = false}), 20));
+  keep("scene_outside", snapshot_scene(made_inspection(), 2, cv::Size(600, 900)));
+}
+
+}  // namespace
+}  // namespace gpo

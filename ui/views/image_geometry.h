@@ -1,0 +1,88 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
+#include "engine/inspection/inspection.h"
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// A part of the screen, y down [screen px].
+struct ScreenRect {
+  Eigen::Vector2d min = Eigen::Vector2d::Zero();
+  Eigen::Vector2d size = Eigen::Vector2d::Zero();
+};
+
+/// What a user looks at: the picture, times what fits it into the rectangle, around a point.
+struct PictureZoom {
+  double factor = 1;                                        ///< 1: all of it fits [-]
+  Eigen::Vector2d center = Eigen::Vector2d::Constant(0.5);  ///< in the middle [0..1 of the picture]
+};
+
+/// Picture <-> screen. The center of the top-left pixel is (0, 0) in the picture, so its top-left
+/// corner is (-0.5, -0.5) and lies at `origin`.
+struct PictureMapping {
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole screen pixels
+  double scale = 1;                                  ///< screen pixels a picture pixel
+};
+PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom);
+Eigen::Vector2d to_screen(const PictureMapping& mapping, const Eigen::Vector2d& picture_px);
+Eigen::Vector2d to_picture(const PictureMapping& mapping, const Eigen::Vector2d& screen_px);
+
+/// Zooms by `by`, within 1..64, such that what is under the pointer stays there.
+PictureZoom zoom_about(const PictureZoom& zoom,
+                       const Camera& camera,
+                       const ScreenRect& rect,
+                       const Eigen::Vector2d& pointer,
+                       double by);
+/// Moves the picture by so many screen pixels, its middle no further than its border.
+PictureZoom pan(const PictureZoom& zoom,
+                const Camera& camera,
+                const ScreenRect& rect,
+                const Eigen::Vector2d& by);
+
+/// An edge as a polyline in the picture; empty where it cannot be seen at all.
+struct CubeEdge {
+  std::array<int, 2> corners;  ///< as `cube_corners` counts them
+  bool base;                   ///< of the square on the plane
+  bool hidden;                 ///< behind the cube's own faces
+  std::vector<Eigen::Vector2d> raw_px;
+};
+
+/// A face's outline in the picture; empty where it is not wholly in front of the camera.
+struct CubeFace {
+  std::array<int, 4> corners;  ///< around the face
+  bool base;
+  bool facing;  ///< its outside is towards the camera
+  std::vector<Eigen::Vector2d> raw_px;
+};
+
+struct CubePicture {
+  std::vector<CubeEdge> edges;  ///< 12
+  std::vector<CubeFace> faces;  ///< 6
+};
+
+/// The cube with these corners (`cube_corners`) as the camera at `pose` sees it: straight edges
+/// bend through the lens, what is behind the camera is cut off.
+CubePicture cube_in_picture(const Camera& camera,
+                            const Pose& pose,
+                            const std::array<Eigen::Vector3d, 8>& corners_w);
+
+/// Where a track was seen, and where plane and poses put what the reference frame saw [raw px].
+struct ResidualVector {
+  int track;
+  Eigen::Vector2d observed_px;
+  Eigen::Vector2d predicted_px;
+};
+
+/// Of the inliers of a frame of the window, through H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty
+/// where the initialization failed.
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window);
+
+}  // namespace gpo

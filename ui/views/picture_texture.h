@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// A picture in the graphics memory, owned. Needs its context to be current.
+class PictureTexture {
+ public:
+  PictureTexture();
+  ~PictureTexture();
+  PictureTexture(const PictureTexture&) = delete;
+  PictureTexture& operator=(const PictureTexture&) = delete;
+
+  /// CV_8UC3, BGR; replaces what was there.
+  void upload(const cv::Mat& bgr);
+  /// How it will be drawn: pixels are squares from 200 % on, smooth below.
+  void set_screen_scale(double screen_pixels_a_pixel);
+  /// For Dear ImGui; null before the first upload.
+  void* id() const;
+
+ private:
+  unsigned texture_ = 0;
+  bool filled_ = false;
+};
+
+}  // namespace gpo

@@ -1,0 +1,68 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/snapshot.h"
+
+#include "ui/context/gui.h"
+#include "ui/context/offscreen_context.h"
+#include "ui/context/vtk_window.h"
+#include "ui/views/picture_texture.h"
+#include "ui/views/scene_geometry.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+/// Text as large as a person expects on a picture of this size.
+float text_scale(cv::Size size) {
+  return std::clamp(static_cast<float>(size.height) / 720.0F, 0.85F, 3.0F);
+}
+
+/// `Resource` is what the drawing needs in the graphics memory: it lives within the context.
+template <class Resource, class Draw>
+cv::Mat snapshot(cv::Size size, const Draw& draw) {
+  std::string complaint;
+  const VtkMessages vtk([&complaint](const std::string& message) { complaint += message; });
+  OffscreenContext context(size.width, size.height);
+  Gui gui(text_scale(size));
+  Resource resource;
+  context.bind();
+  gui.begin_frame(size.width, size.height);
+  draw(resource, *ImGui::GetBackgroundDrawList(), ScreenRect{{0, 0}, {size.width, size.height}});
+  gui.end_frame();
+  if (!complaint.empty()) throw std::runtime_error("VTK: " + complaint);
+  return context.read_bgr();
+}
+
+}  // namespace
+
+cv::Mat snapshot_image(const Inspection& inspection,
+                       int frame,
+                       std::optional<cv::Size> size,
+                       const ImageViewOptions& options) {
+  const Recording& recording = *inspection.recording;
+  const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
+  using Texture = PictureTexture;
+  return snapshot<Texture>(pixels, [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
+    if (recording.pictures) texture.upload(recording.pictures->bgr(frame));
+    draw_image_view(list, rect, inspection, frame, &texture, {}, options);
+  });
+}
+
+cv::Mat snapshot_scene(const Inspection& inspection,
+                       int frame,
+                       cv::Size size,
+                       const SceneViewOptions& options) {
+  const double aspect = static_cast<double>(size.width) / size.height;
+  const OrbitCamera camera =
+      default_scene_camera(inspection, cube_side(inspection, options.cube_side), aspect);
+  return snapshot<SceneView>(size, [&](SceneView& view, ImDrawList& list, const ScreenRect& rect) {
+    draw_scene_view(list, rect, view, inspection, frame, camera, options);
+  });
+}
+
+}  // namespace gpo
