@@ -1,0 +1,69 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/app/program.h"
+
+#include <sstream>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::shell;
+
+/// The lines of the README's shell blocks.
+std::vector<std::string> readme_commands() {
+  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  std::vector<std::string> commands;
+  bool in_block = false;
+  for (std::string line; std::getline(readme, line);) {
+    if (line.starts_with("```")) {
+      in_block = line == "```sh";
+    } else if (in_block) {
+      commands.push_back(line);
+    }
+  }
+  return commands;
+}
+
+// In order, because some use what others wrote. ./test.sh is what runs this test.
+TEST(Readme, EveryCommandWorks) {
+  const fs::path out = fs::path(GPO_SOURCE_DIR) / "out";
+  fs::remove_all(out);
+  const auto commands = readme_commands();
+  EXPECT_GE(commands.size(), 7U);
+  for (const std::string& command : commands) {
+    if (command == "./test.sh") continue;
+    const Outcome outcome = shell(command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.out << outcome.err;
+  }
+  for (const char* name :
+       {"image.png", "scene.png", "window.png", "desk.json", "desk.txt", "desk.ply", "cube.png"}) {
+    EXPECT_GT(fs::file_size(out / name), 0U) << name;
+  }
+  // The bundled recording is what its recipe makes.
+  const fs::path made = out / "desk/mav0";
+  const fs::path bundled = test::desk() / "mav0";
+  for (const char* name :
+       {"cam0/data.csv", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
+    EXPECT_EQ(test::read_file(made / name), test::read_file(bundled / name)) << name;
+  }
+  fs::remove_all(out / "desk");
+}
+
+TEST(Readme, WithoutADisplayRunPrintsTheTableAndNamesThePictures) {
+  const Outcome outcome = shell("./run.sh");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("status      ok"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("image.png, scene.png and window.png are in"));
+}
+
+TEST(RunScript, PassesExitCodesOn) {
+  EXPECT_EQ(shell("./run.sh run no/such/recording").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace gpo

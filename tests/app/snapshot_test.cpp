@@ -1,0 +1,117 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/app/program.h"
+
+#include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::read_file;
+using ::testing::HasSubstr;
+
+Outcome snapshot(const std::string& view, const fs::path& output, const std::string& more = "") {
+  return program("snapshot " + desk().string() + " --view " + view + " --output " +
+                 output.string() + " " + more);
+}
+
+class SnapshotOf : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SnapshotOf, IsTheSameToTheByteTwice) {
+  const fs::path folder = fresh_folder();
+  ASSERT_EQ(snapshot(GetParam(), folder / "a.png").exit_code, 0);
+  ASSERT_EQ(snapshot(GetParam(), folder / "b.png").exit_code, 0);
+  EXPECT_EQ(read_file(folder / "a.png"), read_file(folder / "b.png"));
+}
+
+// A failure leaves the picture and the difference beside it; their place is in the message.
+TEST_P(SnapshotOf, AgreesWithItsBaseline) {
+  const fs::path baseline = fs::path(GPO_SOURCE_DIR) / "tests/snapshots" / (GetParam() + ".png");
+  const Outcome outcome = snapshot(
+      GetParam(), fresh_folder() / (GetParam() + ".png"), "--baseline " + baseline.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, SnapshotOf, ::testing::Values("image", "scene", "window"));
+
+TEST(Snapshot, TakesTheSizeThatIsAskedFor) {
+  const fs::path file = fresh_folder() / "a.png";
+  ASSERT_EQ(snapshot("window", file, "--size 1000x600").exit_code, 0);
+  const cv::Mat picture = cv::imread(file.string());
+  EXPECT_EQ(picture.size(), cv::Size(1000, 600));
+}
+
+TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
+  const fs::path folder = fresh_folder();
+  const fs::path other = folder / "other.png";
+  ASSERT_EQ(snapshot("image", other, "--frame 20").exit_code, 0);
+  const Outcome outcome =
+      snapshot("image", folder / "a.png", "--frame 24 --baseline " + other.string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr((folder / "a.diff.png").string()));
+  EXPECT_TRUE(fs::exists(folder / "a.diff.png"));
+}
+
+TEST(Snapshot, DifferentCubeIsNoticed) {
+  const fs::path folder = fresh_folder();
+  ASSERT_EQ(snapshot("image", folder / "base.png").exit_code, 0);
+  // Another source of rotations moves the cube and the outliers by little.
+  const Outcome outcome = snapshot(
+      "image", folder / "a.png", "--rotations truth --baseline " + (folder / "base.png").string());
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+}
+
+TEST(Snapshot, ToleranceDecidesWhatCountsAsEqual) {
+  const fs::path folder = fresh_folder();
+  ASSERT_EQ(snapshot("image", folder / "a.png").exit_code, 0);
+  cv::imwrite((folder / "brighter.png").string(),
+              cv::imread((folder / "a.png").string()) + cv::Scalar::all(5));
+  const std::string baseline = "--baseline " + (folder / "brighter.png").string();
+  EXPECT_EQ(snapshot("image", folder / "b.png", baseline).exit_code, 1);
+  EXPECT_EQ(snapshot("image", folder / "c.png", baseline + " --tolerance 6").exit_code, 0);
+}
+
+struct BadInput {
+  std::string arguments;
+  std::string message;
+};
+
+class SnapshotOnBadInput : public ::testing::TestWithParam<BadInput> {};
+
+TEST_P(SnapshotOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
+  const fs::path folder = fresh_folder();
+  const Outcome outcome = program("snapshot " + desk().string() + " --output " +
+                                  (folder / "a.png").string() + " " + GetParam().arguments);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage,
+    SnapshotOnBadInput,
+    ::testing::Values(BadInput{"--view imgae", "--view"},
+                      BadInput{"", "--view"},
+                      BadInput{"--view image --size 100", "--size: '100'"},
+                      BadInput{"--view image --size 0x5", "--size: '0x5'"},
+                      BadInput{"--view image --frame 60", "--frame: 60 is not in the recording"},
+                      BadInput{"--view image --frame -1", "--frame: -1"},
+                      BadInput{"--view image --tolerance 300", "--tolerance"},
+                      BadInput{"--view image --baseline no.png", "--baseline: no.png"}));
+
+TEST(Snapshot, OutputMustBePng) {
+  const Outcome outcome = snapshot("image", fresh_folder() / "a.bmp");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("ends in .png"));
+}
+
+}  // namespace
+}  // namespace gpo
