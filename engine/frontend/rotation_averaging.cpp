@@ -179,7 +179,8 @@ std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relati
   return R_wc;
 }
 
-std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window) {
+std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window,
+                                                        std::stop_token stop) {
   std::vector<Pair> reference_pairs;
   for (int j = 1; j < window.frame_count(); ++j) {
     if (auto pair = decompose_pair(window, 0, j)) reference_pairs.push_back(std::move(*pair));
@@ -194,6 +195,7 @@ std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window) {
     R_wc.push_back(relative.back().R_ij);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
+    if (stop.stop_requested()) return std::nullopt;
     for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
       const auto pair = decompose_pair(window, i, j);
       if (pair)

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,7 +31,8 @@ std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation>
 /// are kept, and their rotations averaged. On a plane these are far better than five-point
 /// rotations
 /// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Nothing where the
-/// homographies allow no consistent choice.
-std::optional<std::vector<Eigen::Matrix3d>> averaged_rotations(const Window& window);
+/// homographies allow no consistent choice, or where stopped.
+std::optional<std::vector<Eigen::Matrix3d>> averaged_rotations(const Window& window,
+                                                               std::stop_token stop = {});
 
 }  // namespace gpo

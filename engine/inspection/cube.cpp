@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/cube.h"
 
+#include "engine/inspection/inspection.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -18,6 +21,23 @@ Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Eigen::V
   Eigen::Matrix3d axes;
   axes << x, x.cross(z), z;
   return axes;
+}
+
+std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
+                                              const std::vector<Eigen::Vector2d>& raw_px) {
+  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
+  std::vector<Eigen::Vector3d> rays;
+  for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
+  return rays;
+}
+
+/// The direction in which the inliers of the reference frame lie on average.
+Eigen::Vector3d centroid_ray(const Window& window) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.inlier[0][j]) sum += window.points_px[0].col(j);
+  }
+  return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
 }
 
 }  // namespace
@@ -55,6 +75,20 @@ std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double sid
     corners[k] = anchor.origin + anchor.axes * (side * unit);
   }
   return corners;
+}
+
+void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners) {
+  const Recording& recording = *inspection.recording;
+  const auto rays = undistorted_rays(recording.camera, board_corners);
+  const auto anchor = [&](const Plane& plane, const Pose& camera) {
+    return rays.empty() ? anchor_on_plane(plane, camera, centroid_ray(*inspection.window))
+                        : anchor_on_board(plane, camera, rays, *recording.board);
+  };
+  inspection.cube = anchor(inspection.initialization->plane, Pose{});
+  const WindowTruth* truth = inspection.truth.get();
+  if (truth != nullptr && truth->plane && truth->cameras.front()) {
+    inspection.true_cube = anchor(*truth->plane, *truth->cameras.front());
+  }
 }
 
 }  // namespace gpo

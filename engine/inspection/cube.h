@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -42,5 +43,12 @@ double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 
 /// Corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top).
 std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side);
+
+struct Inspection;
+
+/// Places `cube` on the estimated plane and `true_cube` on the true one, where the same rays of the
+/// reference camera meet them: those of the board's corners (row by row, raw pixels of the
+/// reference picture), or where there is no board that of the inliers' centroid.
+void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners_raw_px);
 
 }  // namespace gpo

@@ -18,6 +18,12 @@
 namespace gpo {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
 /// A stage's last result, kept until its inputs change.
 template <class Key, class Value>
 struct Kept {
@@ -30,12 +36,11 @@ struct Kept {
   bool update(const Key& wanted, Compute&& compute) {
     if (key == wanted) return true;
     key.reset();
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     auto computed = compute();
     if (!computed) return false;
     value = std::move(*computed);
-    milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    milliseconds = milliseconds_since(begin);
     key = wanted;
     return true;
   }
@@ -106,46 +111,31 @@ struct Rotations {
 Rotations compute_rotations(const Recording& recording,
                             const Window& window,
                             const WindowTruth* truth,
-                            RotationSource source) {
+                            RotationSource source,
+                            std::stop_token stop) {
   if (source == RotationSource::gyro) {
     return {gyro_rotations(*recording.gyroscope, window.timestamps_ns), ""};
   }
   if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
-  if (auto averaged = averaged_rotations(window)) return {std::move(*averaged), ""};
+  if (auto averaged = averaged_rotations(window, std::move(stop)))
+    return {std::move(*averaged), ""};
   const auto reason = reason_not_to_try(window);
   return {{},
           reason.value_or("rotation averaging: the homographies allow no consistent rotations")};
 }
 
-std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
-                                              const std::vector<Eigen::Vector2d>& raw_px) {
-  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
-  std::vector<Eigen::Vector3d> rays;
-  for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
-  return rays;
-}
+/// The plane z = 0 of a board.
+const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};
 
-/// The direction in which the inliers of the reference frame lie on average.
-Eigen::Vector3d centroid_ray(const Window& window) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (window.inlier[0][j]) sum += window.points_px[0].col(j);
-  }
-  return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
-}
-
-void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners) {
-  const Recording& recording = *inspection.recording;
-  const auto rays = undistorted_rays(recording.camera, board_corners);
-  const auto anchor = [&](const Plane& plane, const Pose& camera) {
-    return rays.empty() ? anchor_on_plane(plane, camera, centroid_ray(*inspection.window))
-                        : anchor_on_board(plane, camera, rays, *recording.board);
-  };
-  inspection.cube = anchor(inspection.initialization->plane, Pose{});
-  const WindowTruth* truth = inspection.truth.get();
-  if (truth != nullptr && truth->plane && truth->cameras.front()) {
-    inspection.true_cube = anchor(*truth->plane, *truth->cameras.front());
-  }
+/// The board's plane in the truth's world, as the reference picture shows it.
+std::optional<Plane> plane_of_board(const Recording& recording,
+                                    int frame,
+                                    const std::optional<Pose>& T_truth_camera) {
+  if (!recording.board || !recording.pictures || !T_truth_camera) return std::nullopt;
+  const auto corners = find_board(recording.pictures->gray(frame), *recording.board);
+  const auto found = board_pose(corners, *recording.board, recording.camera);
+  if (!found) return std::nullopt;
+  return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
 }
 
 }  // namespace
@@ -164,7 +154,8 @@ struct Inspector::Stages {
   std::shared_ptr<const WindowTruth> compute_truth(const Settings& settings,
                                                    std::stop_token stop,
                                                    const Progress& progress) const;
-  void update_window(const Settings& settings, RotationSource source);
+  void initialize(const Method& method, std::stop_token stop, Inspection& inspection) const;
+  bool update_window(const Settings& settings, RotationSource source, std::stop_token stop);
 };
 
 bool Inspector::Stages::update_tracks(const Settings& settings,
@@ -193,6 +184,8 @@ std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
   if (recording->truth) {
     const auto begin = recording->truth->poses.begin() + settings.start;
     WindowTruth truth{recording->truth->source, {begin, begin + settings.frames}, recording->plane};
+    if (!truth.plane)
+      truth.plane = plane_of_board(*recording, settings.start, truth.cameras.front());
     return std::make_shared<const WindowTruth>(std::move(truth));
   }
   if (!recording->board || !recording->pictures) return nullptr;
@@ -200,9 +193,8 @@ std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
     if (progress) progress("finding the board", done, of);
   };
   GroundTruth found = board_truth(*recording, settings.start, settings.frames, stop, told);
-  // The board's plane is z = 0 of its frame.
   return std::make_shared<const WindowTruth>(
-      WindowTruth{found.source, std::move(found.poses), Plane{-Eigen::Vector3d::UnitZ(), 0}});
+      WindowTruth{found.source, std::move(found.poses), kBoardPlane});
 }
 
 bool Inspector::Stages::update_truth(const Settings& settings,
@@ -222,16 +214,42 @@ bool Inspector::Stages::update_truth(const Settings& settings,
   });
 }
 
-void Inspector::Stages::update_window(const Settings& settings, RotationSource source) {
+bool Inspector::Stages::update_window(const Settings& settings,
+                                      RotationSource source,
+                                      std::stop_token stop) {
   const Span span(settings.start, settings.frames);
   const RansacOptions ransac = ransac_options(settings);
   outliers.update({span, ransac}, [&]() {
     return std::optional(std::make_shared<const Window>(
         make_window(*tracks.value, recording->camera, recording->timestamps_ns, ransac)));
   });
-  rotations.update({span, ransac, source}, [&]() {
-    return std::optional(compute_rotations(*recording, *outliers.value, truth.value.get(), source));
+  return rotations.update({span, ransac, source}, [&]() -> std::optional<Rotations> {
+    Rotations computed =
+        compute_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
+    return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
   });
+}
+
+void Inspector::Stages::initialize(const Method& method,
+                                   std::stop_token stop,
+                                   Inspection& inspection) const {
+  Window window = *outliers.value;
+  if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
+  const auto begin = Clock::now();
+  Initialization initialization = rotations.value.R_wc.empty()
+                                      ? failed(rotations.value.reason)
+                                      : method.initialize(window, std::move(stop));
+  Timing& t = inspection.timing;
+  t.track = tracks.milliseconds;
+  t.ransac = outliers.milliseconds;
+  t.rotations = rotations.milliseconds;
+  t.initialize = milliseconds_since(begin);
+  t.optimize = initialization.solver.milliseconds;
+  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  inspection.tracks = tracks.value;
+  inspection.truth = truth.value;
+  inspection.window = std::make_shared<const Window>(std::move(window));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(initialization));
 }
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
@@ -245,32 +263,19 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      std::stop_token stop,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
-  const Recording& recording = *stages.recording;
-  check_window(recording, settings);
+  check_window(*stages.recording, settings);
   const Method& method = find_method(settings.method);
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  inspection.rotations_used = choose_source(recording, settings.rotations);
-  if (!stages.update_tracks(settings, stop, progress)) return nullptr;
-  if (!stages.update_truth(settings, stop, progress)) return nullptr;
-  stages.update_window(settings, inspection.rotations_used);
+  inspection.rotations_used = choose_source(*stages.recording, settings.rotations);
+  const bool prepared = stages.update_tracks(settings, stop, progress) &&
+                        stages.update_truth(settings, stop, progress) &&
+                        stages.update_window(settings, inspection.rotations_used, stop);
+  if (!prepared) return nullptr;
   if (progress) progress("initializing", 0, 0);
-
-  Window window = *stages.outliers.value;
-  const Rotations& rotations = stages.rotations.value;
-  if (!rotations.R_wc.empty()) window.R_wc = rotations.R_wc;
-  const auto begin = std::chrono::steady_clock::now();
-  Initialization initialization =
-      rotations.R_wc.empty() ? failed(rotations.reason) : method.initialize(window, stop);
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - begin;
+  stages.initialize(method, stop, inspection);
   if (stop.stop_requested()) return nullptr;
-
-  inspection.tracks = stages.tracks.value;
-  inspection.truth = stages.truth.value;
-  inspection.window = std::make_shared<const Window>(std::move(window));
-  inspection.initialization = std::make_shared<const Initialization>(std::move(initialization));
   if (inspection.initialization->ok) {
     if (inspection.truth) {
       inspection.evaluation = evaluate(
@@ -278,14 +283,6 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     }
     place_cubes(inspection, stages.board_corners.value);
   }
-  inspection.timing = {stages.tracks.milliseconds,
-                       stages.outliers.milliseconds,
-                       stages.rotations.milliseconds,
-                       elapsed.count(),
-                       inspection.initialization->solver.milliseconds,
-                       0};
-  Timing& t = inspection.timing;
-  t.total = t.track + t.ransac + t.rotations + t.initialize;
   return std::make_shared<const Inspection>(std::move(inspection));
 }
 

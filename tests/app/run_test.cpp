@@ -64,6 +64,18 @@ TEST(Run, DeskIsAccurate) {
   EXPECT_GT(metrics["pne_bound_deg"], 0);
 }
 
+TEST(Run, BoardStandsInForAMissingPlaneFile) {
+  const fs::path copy = fresh_folder() / "desk";
+  fs::copy(desk(), copy, fs::copy_options::recursive);
+  fs::remove(copy / "plane.yaml");
+  const fs::path file = fs::path(GPO_TEST_OUTPUT_DIR) / "without_plane.json";
+  ASSERT_EQ(program("run " + copy.string() + " --json " + file.string()).exit_code, 0);
+  const json with = run_json(desk().string())["metrics"];
+  const json without = json::parse(read_file(file))["metrics"];
+  EXPECT_NEAR(without["pne_deg"], with["pne_deg"], 0.2);
+  EXPECT_NEAR(without["pde_m"], with["pde_m"], 0.002);
+}
+
 TEST(Run, AllRotationSourcesOfTheDeskAgree) {
   for (const char* source : {"gyro", "averaging", "truth"}) {
     const json j = run_json(desk().string() + " --rotations " + source);
