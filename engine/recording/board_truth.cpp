@@ -54,8 +54,11 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
 /// board attracts them). Those that a homography of the whole board contradicts move onto it.
 void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
   std::vector<cv::Point2f> grid;
-  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
-    grid.emplace_back(static_cast<float>(i % board.columns), static_cast<float>(i / board.columns));
+  grid.reserve(corners.size());
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      grid.emplace_back(static_cast<float>(column), static_cast<float>(row));
+    }
   }
   const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
   if (H.empty()) return;
@@ -229,7 +232,7 @@ std::optional<BoardPose> board_pose(const Corners& corners_raw_px,
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
-                        std::stop_token stop,
+                        const std::stop_token& stop,
                         const std::function<void(int done, int of)>& progress) {
   GroundTruth truth;
   truth.source = "chessboard";

@@ -44,7 +44,7 @@ std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
-                        std::stop_token stop = {},
+                        const std::stop_token& stop = {},
                         const std::function<void(int done, int of)>& progress = {});
 
 }  // namespace gpo

@@ -98,10 +98,10 @@ Camera euroc_camera(const YamlEntry& root) {
   set_intrinsics(camera, intrinsics, k[0], k[1], k[2], k[3]);
   camera.distortion =
       distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
-  auto coefficients = find(root, "distortion_coefficients");
-  if (!coefficients) coefficients = find(root, "distortion_coeffs");
-  if (coefficients) {
-    set_coefficients(camera, *coefficients);
+  const auto euroc_key = find(root, "distortion_coefficients");
+  const auto kalibr_key = find(root, "distortion_coeffs");
+  if (euroc_key || kalibr_key) {
+    set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
   } else if (camera.distortion != Distortion::none) {
     at(root, "distortion_coefficients", "a list of numbers");
   }
@@ -151,8 +151,9 @@ Pose rigid_motion(const YamlEntry& entry) {
 }
 
 Calibration read_calibration(const std::filesystem::path& file) {
-  YamlEntry root = load_yaml(file);
-  if (auto kalibr = find(root, "cam0")) root = *kalibr;
+  const YamlEntry whole = load_yaml(file);
+  const auto kalibr = find(whole, "cam0");
+  const YamlEntry& root = kalibr ? *kalibr : whole;
   check_model(root);
   Calibration result;
   result.camera = find(root, "camera_matrix") ? opencv_camera(root) : euroc_camera(root);

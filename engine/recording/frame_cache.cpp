@@ -23,7 +23,7 @@ cv::Mat FrameCache::bgr(int index) const {
     recent_.splice(recent_.begin(), recent_, found->second);
     return recent_.front().picture;
   }
-  const cv::Mat picture = decode_(index);
+  cv::Mat picture = decode_(index);
   recent_.push_front({index, picture});
   by_index_[index] = recent_.begin();
   bytes_ += size_in_bytes(picture);

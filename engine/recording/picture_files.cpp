@@ -96,7 +96,8 @@ bool is_whole_pnm(Bytes bytes) {
       number = number * 10 + (byte_at(bytes, i) - '0');
     }
   }
-  const std::size_t bytes_a_pixel = (bytes[1] == '6' ? 3 : 1) * (header[2] > 255 ? 2 : 1);
+  const std::size_t channels = bytes[1] == '6' ? 3 : 1;
+  const std::size_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
   return bytes.size() >= i + 1 + header[0] * header[1] * bytes_a_pixel;
 }
 

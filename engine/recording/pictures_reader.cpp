@@ -49,6 +49,7 @@ std::optional<std::vector<std::int64_t>> stored_times(const fs::path& file) {
 
 std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   std::vector<std::int64_t> times;
+  times.reserve(count);
   for (int i = 0; i < count; ++i) times.push_back(std::llround(i * 1e9 / rate_hz));
   return times;
 }

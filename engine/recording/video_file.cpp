@@ -139,6 +139,7 @@ VideoFile open_video(const std::filesystem::path& file,
   const auto decoder = std::make_shared<SequentialDecoder>(file, camera);
   const auto decode = [decoder](int index) { return decoder->decode(index); };
   std::vector<std::int64_t> times_ns;
+  times_ns.reserve(times_ms.size());
   for (const double ms : times_ms) times_ns.push_back(std::llround(ms * 1e6));
   return {
       std::move(times_ns),
