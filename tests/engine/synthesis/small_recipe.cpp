@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 
@@ -63,6 +66,29 @@ Recipe recipe_of(const std::string& text) {
   const auto file = test_folder("recipe") / "small.yaml";
   std::ofstream(file) << text;
   return read_recipe(file);
+}
+
+CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& picture) {
+  std::vector<cv::Point2f> corners;
+  std::vector<Eigen::Vector2d> projections;
+  for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
+    projections.push_back(project(recipe.camera, to_camera(pose, corner)));
+    corners.emplace_back(static_cast<float>(projections.back().x()),
+                         static_cast<float>(projections.back().y()));
+  }
+  cv::Mat gray;
+  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
+  cv::cornerSubPix(gray, corners, {8, 8}, {-1, -1}, criteria);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double squares = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d error = Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i];
+    sum += error;
+    squares += error.squaredNorm();
+  }
+  const auto n = static_cast<double>(corners.size());
+  return {sum.norm() / n, std::sqrt(squares / n)};
 }
 
 }  // namespace gpo

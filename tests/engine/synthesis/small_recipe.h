@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include <opencv2/core.hpp>
+
 namespace gpo {
 
 /// A recipe that takes a moment: 160x120, 4 frames, one of each sort of thing on a small desk.
@@ -20,5 +22,12 @@ std::filesystem::path test_folder(const std::string& name);
 
 /// Writes the text to a file in a folder of its own and reads it as a recipe.
 Recipe recipe_of(const std::string& text);
+
+/// How far the board's corners found in a picture are from their projections [px].
+struct CornerError {
+  double mean = 0;  ///< length of the mean vector
+  double rms = 0;
+};
+CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& picture);
 
 }  // namespace gpo

@@ -234,6 +234,20 @@ TEST_F(Desk, CommittedRecordingIsWhatTheRecipeMakes) {
   EXPECT_LT(cv::norm(made, committed, cv::NORM_L1) / pixels, 4);
 }
 
+TEST_F(Desk, CommittedPicturesShowTheBoardWhereTheTruthSays) {
+  const Table truth = read_table(folder / "mav0/state_groundtruth_estimate0/data.csv");
+  for (const std::size_t frame : {0U, 20U, 40U, 59U}) {
+    const auto& row = truth.rows[frame];
+    const Pose body{Eigen::Quaterniond(row[3], row[4], row[5], row[6]).toRotationMatrix(),
+                    {row[0], row[1], row[2]}};
+    const cv::Mat picture = cv::imread(
+        (folder / "mav0/cam0/data" / (std::to_string(truth.timestamps[frame]) + ".jpg")).string());
+    const CornerError error = corner_error(recipe, body * recipe.T_body_camera, picture);
+    EXPECT_LT(error.rms, 0.1);
+    EXPECT_LT(error.mean, 0.03);
+  }
+}
+
 TEST_F(Desk, BoardIsWithinEveryFrame) {
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
