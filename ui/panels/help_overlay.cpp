@@ -21,7 +21,8 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
   std::vector<KeyRow> rows;
   for (const Action& action : actions()) {
     if (action.shortcuts.empty()) continue;
-    KeyRow row{"", action.title, "", action.tooltip};
+    const bool method = action.menu == "Method" && action.name.starts_with("method-");
+    KeyRow row{"", (method ? "Method " : "") + action.title, "", action.tooltip};
     for (const Shortcut& shortcut : action.shortcuts) {
       row.keys += (row.keys.empty() ? "" : " or ") + shortcut.label;
     }
@@ -66,19 +67,27 @@ void draw_table(const char* id, const std::vector<KeyRow>& rows, std::size_t fro
   ImGui::EndTable();
 }
 
+/// Over all panels, which never come to the front, and below the list. A click on it closes the
+/// list.
+void dim_window(const Rectangle& window, Commands& commands) {
+  ImGui::SetNextWindowFocus();
+  ImGui::SetNextWindowPos({window.x, window.y});
+  ImGui::SetNextWindowSize({window.width, window.height});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kBackground, 0.6));
+  ImGui::Begin(
+      "dim",
+      nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) push(commands, RunAction{"escape"});
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
 }  // namespace
 
 void help_overlay(const PanelInput& input, const Rectangle& window, Commands& commands) {
   const float s = input.scale;
-  ImGui::SetNextWindowFocus();
-  {
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kBackground, 0.6));
-    const PanelScope dim("dim", window, {0, 0});
-    ImGui::PopStyleColor();
-    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) {
-      push(commands, RunAction{"escape"});
-    }
-  }
+  dim_window(window, commands);
   ImGui::SetNextWindowFocus();
   ImGui::SetNextWindowPos(
       {window.x + window.width / 2, window.y + window.height / 2}, 0, {0.5F, 0.5F});
