@@ -30,6 +30,7 @@ struct Canvas {
   ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
   std::vector<ImVec2> at(const std::vector<Vector2d>& raw_px) const {
     std::vector<ImVec2> points;
+    points.reserve(raw_px.size());
     for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
     return points;
   }

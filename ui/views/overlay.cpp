@@ -32,9 +32,12 @@ std::string wrapped(Font which, const std::string& text, float width) {
   std::string lines, line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!longer.empty()) longer += ' ';
+    longer += word;
     if (!line.empty() && measure(which, longer).width > width) {
-      lines += line + "\n";
+      lines += line;
+      lines += '\n';
       line = word;
     } else {
       line = longer;

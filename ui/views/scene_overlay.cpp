@@ -5,6 +5,7 @@
 #include "ui/views/image_view.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
+#include "ui/views/picture_texture.h"
 #include "ui/views/scene_geometry.h"
 #include "ui/views/scene_view.h"
 
@@ -141,11 +142,7 @@ void draw_scene_view(ImDrawList& list,
   if (texture == 0) return;
   const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
   list.PushClipRect(low, high, true);
-  list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)),
-                low,
-                high,
-                ImVec2(0, 1),
-                ImVec2(1, 0));
+  list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
   const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
   const int frame_in_window = frame - inspection.window->start;
