@@ -30,6 +30,7 @@ struct Canvas {
   ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
   std::vector<ImVec2> at(const std::vector<Vector2d>& raw_px) const {
     std::vector<ImVec2> points;
+    points.reserve(raw_px.size());
     for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
     return points;
   }
@@ -159,6 +160,10 @@ void draw_true_cube(const Canvas& canvas) {
   }
 }
 
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ImageViewOptions& options = canvas.options;
@@ -168,8 +173,8 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
     for (int track = 0; track < inspection.tracks->track_count(); ++track)
       if (inspection.tracks->seen(canvas.frame, track))
         ++(inspection.window->inlier[canvas.frame][track] ? inliers : outliers);
-    rows.push_back({Sign::circle, palette::kInlier, fmt::format("{} inliers", inliers)});
-    rows.push_back({Sign::cross, palette::kOutlier, fmt::format("{} outliers", outliers)});
+    rows.push_back({Sign::circle, palette::kInlier, counted(inliers, "inlier")});
+    rows.push_back({Sign::cross, palette::kOutlier, counted(outliers, "outlier")});
   }
   if (inspection.initialization->ok && options.residuals)
     rows.push_back({Sign::line,

@@ -20,18 +20,22 @@ double half_tangent(const OrbitCamera& camera) {
   return std::tan(radians(camera.view_angle_deg) / 2);
 }
 
-/// How far the eye may go forward and where it has to be sideways, so that all of the points are
-/// within a slope `tangent` of the forward direction along one axis of the view.
+/// Where the eye may be along one axis of the view, so that all of the points are within the slopes
+/// -`before` and `after` of the forward direction: least + after z <= x <= most - before z.
 struct Reach {
-  double forward, sideways;
+  double least, most, before, after;
+
+  double forward() const { return (most - least) / (before + after); }
+  double sideways(double z) const { return (least + after * z + most - before * z) / 2; }
 };
-Reach reach(std::span<const Eigen::Vector3d> points_v, int axis, double tangent) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+Reach reach(std::span<const Eigen::Vector3d> points_v, int axis, double before, double after) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Reach result{-kInfinity, kInfinity, before, after};
   for (const Eigen::Vector3d& p : points_v) {
-    high = std::max(high, p[axis] - tangent * p.z());
-    low = std::min(low, p[axis] + tangent * p.z());
+    result.least = std::max(result.least, p[axis] - after * p.z());
+    result.most = std::min(result.most, p[axis] + before * p.z());
   }
-  return {(low - high) / (2 * tangent), (low + high) / 2};
+  return result;
 }
 
 }  // namespace
@@ -76,7 +80,7 @@ OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps) {
 OrbitCamera fitted(const OrbitCamera& camera,
                    std::span<const Eigen::Vector3d> points,
                    double aspect,
-                   double margin) {
+                   const FitMargins& margins) {
   if (points.empty()) return camera;
   const Eigen::Matrix3d axes = view_axes(camera);
   std::vector<Eigen::Vector3d> points_v;
@@ -85,12 +89,14 @@ OrbitCamera fitted(const OrbitCamera& camera,
     points_v.push_back(axes.transpose() * point);
     depth += points_v.back().z() / static_cast<double>(points.size());
   }
-  const double tangent = half_tangent(camera) * (1 - margin);
-  const Reach x = reach(points_v, 0, tangent * aspect), y = reach(points_v, 1, tangent);
+  const double tangent = half_tangent(camera), wide = aspect * tangent;
+  const Reach x = reach(points_v, 0, wide * (1 - margins.left), wide * (1 - margins.right));
+  const Reach y = reach(points_v, 1, tangent * (1 - margins.top), tangent * (1 - margins.bottom));
   OrbitCamera result = camera;
-  const double forward = std::min(x.forward, y.forward);
+  const double forward = std::min(x.forward(), y.forward());
   result.distance = std::max(depth - forward, 1e-3);
-  result.target = axes * Eigen::Vector3d(x.sideways, y.sideways, forward + result.distance);
+  result.target =
+      axes * Eigen::Vector3d(x.sideways(forward), y.sideways(forward), forward + result.distance);
   return result;
 }
 

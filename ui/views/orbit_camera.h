@@ -30,12 +30,16 @@ OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, d
 OrbitCamera panned(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
 /// Nearer by a sixth for each step of the wheel, farther for negative ones.
 OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps);
-/// Same direction, as near as it goes with all points in view and a margin around them (a share of
-/// the view's half size). `aspect` is width / height. Unchanged without points.
+/// Room around what is fitted, as shares of the view's half size.
+struct FitMargins {
+  double left = 0.08, right = 0.08, top = 0.08, bottom = 0.08;
+};
+/// Same direction, as near as it goes with all points in view and the margins around them. `aspect`
+/// is width / height. Unchanged without points.
 OrbitCamera fitted(const OrbitCamera& camera,
                    std::span<const Eigen::Vector3d> points,
                    double aspect,
-                   double margin = 0.1);
+                   const FitMargins& margins = {});
 
 /// Pixel (y down, the view's top-left corner is (0, 0)) where a point appears; nothing behind the
 /// eye.

@@ -32,9 +32,12 @@ std::string wrapped(Font which, const std::string& text, float width) {
   std::string lines, line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!longer.empty()) longer += ' ';
+    longer += word;
     if (!line.empty() && measure(which, longer).width > width) {
-      lines += line + "\n";
+      lines += line;
+      lines += '\n';
       line = word;
     } else {
       line = longer;
@@ -138,6 +141,39 @@ ScreenRect draw_legend(ImDrawList& list,
     at.y += line;
   }
   return {{min.x, min.y}, {size.x, size.y}};
+}
+
+void draw_legend_strip(ImDrawList& list,
+                       const ScreenRect& rect,
+                       const std::vector<LegendRow>& rows) {
+  if (rows.empty()) return;
+  const float s = overlay_scale();
+  const ImFont* f = font(Font::small);
+  const float padding = 8 * s, line = f->FontSize + 5 * s, sign_width = 18 * s, gap = 16 * s;
+  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
+  std::vector<ImVec2> places;  // relative to the strip's corner
+  ImVec2 at(padding, padding);
+  for (const LegendRow& row : rows) {
+    const float indent = row.sign == Sign::none ? 0 : sign_width;
+    const float width = indent + measure(Font::small, row.text).width;
+    if (at.x > padding && at.x + width + padding > high.x - low.x) at = {padding, at.y + line};
+    places.push_back(at);
+    at.x += width + gap;
+  }
+  const ImVec2 corner(low.x, std::round(high.y - at.y - f->FontSize - padding));
+  list.AddRectFilled(corner, high, imgui_color(palette::kBackground, kGround));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ImVec2 place(corner.x + places[i].x, corner.y + places[i].y);
+    const bool sign = rows[i].sign != Sign::none;
+    if (sign)
+      draw_sign(
+          list, rows[i].sign, ImVec2(place.x + 6 * s, place.y + f->FontSize / 2), rows[i].rgb);
+    list.AddText(f,
+                 f->FontSize,
+                 ImVec2(place.x + (sign ? sign_width : 0), place.y),
+                 imgui_color(palette::kText),
+                 rows[i].text.c_str());
+  }
 }
 
 void draw_badge(ImDrawList& list,

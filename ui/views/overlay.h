@@ -40,6 +40,12 @@ ScreenRect draw_legend(ImDrawList& list,
                        const std::string& heading,
                        const std::vector<LegendRow>& rows);
 
+/// The rows side by side on a strip along the lower edge of the rectangle; as many lines as it
+/// takes.
+void draw_legend_strip(ImDrawList& list,
+                       const ScreenRect& rect,
+                       const std::vector<LegendRow>& rows);
+
 /// A message in a colored frame, wrapped, at the lower middle of the rectangle.
 void draw_badge(ImDrawList& list,
                 const ScreenRect& rect,

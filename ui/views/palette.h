@@ -48,7 +48,7 @@ constexpr double blue(std::uint32_t rgb) { return (rgb & 0xFF) / 255.0; }
 
 /// As Dear ImGui packs a color (IM_COL32). `alpha` in 0..1.
 constexpr std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {
-  return static_cast<std::uint32_t>(alpha * 255 + 0.5) << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) |
+  return static_cast<std::uint32_t>(alpha * 255.999) << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) |
          ((rgb >> 16) & 0xFF);
 }
 

@@ -8,6 +8,11 @@
 
 namespace gpo {
 
+void* imgui_texture(unsigned texture) {
+  // Dear ImGui names textures by pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  return reinterpret_cast<void*>(static_cast<std::intptr_t>(texture));
+}
+
 PictureTexture::PictureTexture() { glGenTextures(1, &texture_); }
 PictureTexture::~PictureTexture() { glDeleteTextures(1, &texture_); }
 
@@ -32,8 +37,6 @@ void PictureTexture::set_screen_scale(double screen_pixels_a_pixel) {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void* PictureTexture::id() const {
-  return filled_ ? reinterpret_cast<void*>(static_cast<std::intptr_t>(texture_)) : nullptr;
-}
+void* PictureTexture::id() const { return filled_ ? imgui_texture(texture_) : nullptr; }
 
 }  // namespace gpo

@@ -6,6 +6,9 @@
 
 namespace gpo {
 
+/// An OpenGL texture as Dear ImGui names it (ImTextureID).
+void* imgui_texture(unsigned texture);
+
 /// A picture in the graphics memory, owned. Needs its context to be current.
 class PictureTexture {
  public:

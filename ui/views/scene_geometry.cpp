@@ -117,8 +117,10 @@ double frustum_depth(const Inspection& inspection) {
     high = high.cwiseMax(pose.p_wc);
   }
   return std::clamp(
-      0.25 * (high - low).norm(), 0.05 * estimate.plane.distance, 0.1 * estimate.plane.distance);
+      0.3 * (high - low).norm(), 0.06 * estimate.plane.distance, 0.11 * estimate.plane.distance);
 }
+
+double axes_length(const Inspection& inspection) { return 1.6 * frustum_depth(inspection); }
 
 int frustum_stride(const Inspection& inspection) {
   return std::max(1, (inspection.window->frame_count() + 5) / 10);
@@ -171,6 +173,8 @@ std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspe
 std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_side) {
   std::vector<Vector3d> extent;
   add_frusta(inspection, extent);
+  for (int axis = 0; axis < 3; ++axis)
+    extent.push_back(axes_length(inspection) * Vector3d::Unit(axis));
   if (!inspection.initialization->ok) return extent;
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   for (const int i : {grid.low[0], grid.high[0]})
@@ -194,7 +198,7 @@ OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side,
   camera.front = ahead.normalized();
   camera.yaw_deg = 40;
   camera.pitch_deg = 26;
-  return fitted(camera, scene_extent(inspection, cube_side), aspect);
+  return fitted(camera, scene_extent(inspection, cube_side), aspect, {.bottom = 0.24});
 }
 
 }  // namespace gpo

@@ -33,6 +33,9 @@ std::array<Eigen::Vector3d, 6> frustum(const Camera& camera, const Pose& pose, d
 /// How deep the frusta are drawn, so that they neither hide each other nor vanish.
 double frustum_depth(const Inspection& inspection);
 
+/// Of the world's axes, as they are drawn.
+double axes_length(const Inspection& inspection);
+
 /// Every so many frames a frustum is drawn, so that some ten make the path.
 int frustum_stride(const Inspection& inspection);
 

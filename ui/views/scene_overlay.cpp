@@ -5,6 +5,7 @@
 #include "ui/views/image_view.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
+#include "ui/views/picture_texture.h"
 #include "ui/views/scene_geometry.h"
 #include "ui/views/scene_view.h"
 
@@ -40,7 +41,7 @@ void draw_axes(ImDrawList& list,
                const ScreenRect& rect,
                const Inspection& inspection,
                const OrbitCamera& camera) {
-  const double length = 1.6 * frustum_depth(inspection);
+  const double length = axes_length(inspection);
   const auto on_screen = [&](const Vector3d& point) -> std::optional<Vector2d> {
     const auto pixel = view_pixel(camera, point, rect.size);
     return pixel ? std::optional<Vector2d>(rect.min + *pixel) : std::nullopt;
@@ -66,7 +67,7 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
   if (inspection.initialization->ok) {
     rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});
     if (frame_in_window > 0)
-      rows.push_back({Sign::frustum, palette::kReference, "reference frame, world axes"});
+      rows.push_back({Sign::frustum, palette::kReference, "reference frame"});
     rows.push_back({Sign::square, palette::kPlane, "estimated plane"});
     if (options.points)
       rows.push_back({Sign::dot,
@@ -106,7 +107,7 @@ void draw_scale_bar(ImDrawList& list,
   const double pixels = pixels_a_unit(camera, rect.size.y()) / meters.value_or(1);
   const double length = nice_length(140 * s / pixels);
   const auto width = static_cast<float>(length * pixels);
-  const ImVec2 end = to_imgui(rect.min + rect.size - Vector2d(16 * s, 16 * s));
+  const ImVec2 end = to_imgui(rect.min + Vector2d(rect.size.x() - 16 * s, 36 * s));
   const ImU32 color = imgui_color(palette::kText);
   const ImVec2 start(end.x - width, end.y);
   list.AddLine(start, end, color, 2 * s);
@@ -141,20 +142,12 @@ void draw_scene_view(ImDrawList& list,
   if (texture == 0) return;
   const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
   list.PushClipRect(low, high, true);
-  list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)),
-                low,
-                high,
-                ImVec2(0, 1),
-                ImVec2(1, 0));
+  list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
   const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
   const int frame_in_window = frame - inspection.window->start;
   if (options.legend)
-    draw_legend(list,
-                rect,
-                Corner::top_left,
-                fmt::format("frame {}", frame),
-                legend_rows(inspection, frame_in_window, options));
+    draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);
   if (!inspection.initialization->ok)
     draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);

@@ -85,8 +85,7 @@ TEST(ImageGeometry, CubeSeenFromAboveHidesItsFarEdges) {
   int hidden = 0;
   for (const CubeEdge& edge : cube.edges) hidden += edge.hidden;
   EXPECT_EQ(hidden, 5);  // two faces are seen: top and front
-  for (const CubeFace& face : cube.faces)
-    EXPECT_FALSE(face.base && face.facing);
+  for (const CubeFace& face : cube.faces) EXPECT_FALSE(face.base && face.facing);
 }
 
 TEST(ImageGeometry, CubeSeenAtItsCornerHidesThreeEdges) {

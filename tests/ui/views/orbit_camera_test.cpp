@@ -119,18 +119,26 @@ TEST(OrbitCamera, WheelComesNearerAndGoesBack) {
   EXPECT_NEAR(zoomed(zoomed(camera, 3), -3).distance, camera.distance, 1e-12);
 }
 
-TEST(OrbitCamera, FitShowsEverythingAndNoMoreThanNeeded) {
+TEST(OrbitCamera, FitShowsEverythingWithinTheMarginsAndNoMoreThanNeeded) {
   const auto points = made_points(40, 2);
+  const FitMargins margins{.left = 0.3, .right = 0.1, .top = 0.05, .bottom = 0.4};
   for (const double aspect : {0.5, 1.0, 2.0}) {
-    const OrbitCamera camera = fitted(made_camera(), points, aspect, 0.1);
-    const Vector2d size(600 * aspect, 600);
-    double widest = 0;
+    const OrbitCamera camera = fitted(made_camera(), points, aspect, margins);
+    const Vector2d half(300 * aspect, 300);
+    Vector2d least(2, 2), most(-2, -2);
     for (const Vector3d& point : points) {
-      const auto pixel = view_pixel(camera, point, size);
+      const auto pixel = view_pixel(camera, point, 2 * half);
       ASSERT_TRUE(pixel);
-      widest = std::max(widest, (*pixel - size / 2).cwiseQuotient(size / 2).cwiseAbs().maxCoeff());
+      const Vector2d normalized = (*pixel - half).cwiseQuotient(half);
+      least = least.cwiseMin(normalized);
+      most = most.cwiseMax(normalized);
     }
-    EXPECT_NEAR(widest, 0.9, 1e-9);
+    // Within the margins, and touching both of them along the tighter axis.
+    const double gap_x = std::max(least.x() + 0.7, 0.9 - most.x());
+    const double gap_y = std::max(least.y() + 0.95, 0.6 - most.y());
+    EXPECT_GT(std::min(least.x() + 0.7, 0.9 - most.x()), -1e-9);
+    EXPECT_GT(std::min(least.y() + 0.95, 0.6 - most.y()), -1e-9);
+    EXPECT_LT(std::min(gap_x, gap_y), 1e-9);
     EXPECT_EQ(camera.yaw_deg, made_camera().yaw_deg);
   }
 }
