@@ -4,6 +4,7 @@
 #include "engine/recording/recording_info.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace gpo {
 
