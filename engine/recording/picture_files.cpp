@@ -84,10 +84,36 @@ bool is_whole_png(Bytes bytes) {
   return false;
 }
 
+/// Whether the pixels that the header of a binary PGM or PPM announces are all there.
+bool is_whole_pnm(Bytes bytes) {
+  std::array<std::size_t, 3> header{};  // width, height, largest value
+  std::size_t i = 2;
+  for (auto& number : header) {
+    while (i < bytes.size() && std::isdigit(byte_at(bytes, i)) == 0) {
+      i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
+    }
+    for (; i < bytes.size() && std::isdigit(byte_at(bytes, i)) != 0 && number < 1'000'000; ++i) {
+      number = number * 10 + (byte_at(bytes, i) - '0');
+    }
+  }
+  const std::size_t bytes_a_pixel = (bytes[1] == '6' ? 3 : 1) * (header[2] > 255 ? 2 : 1);
+  return bytes.size() >= i + 1 + header[0] * header[1] * bytes_a_pixel;
+}
+
+/// Cut files are told here, before a library decodes half of them or complains on stderr.
 bool is_whole(Bytes bytes) {
+  const auto little_endian_4 = [&](std::size_t i) {
+    return byte_at(bytes, i) | byte_at(bytes, i + 1) << 8 | byte_at(bytes, i + 2) << 16 |
+           byte_at(bytes, i + 3) << 24;
+  };
+  constexpr std::size_t kShortest = 12;
+  if (bytes.size() < kShortest) return false;
   if (bytes.starts_with("\xFF\xD8")) return is_whole_jpeg(bytes);
   if (bytes.starts_with("\x89PNG\r\n\x1A\n")) return is_whole_png(bytes);
-  return !bytes.empty();
+  if (bytes.starts_with("P5") || bytes.starts_with("P6")) return is_whole_pnm(bytes);
+  if (bytes.starts_with("BM")) return bytes.size() >= little_endian_4(2);
+  if (bytes.starts_with("RIFF")) return bytes.size() >= little_endian_4(4);
+  return true;
 }
 
 /// Numbers in a name are compared as numbers, whatever their count of digits.

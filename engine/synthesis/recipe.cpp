@@ -10,6 +10,7 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {

@@ -174,9 +174,9 @@ cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& p
     for (int col = 0; col < map.width; ++col) {
       cv::Vec3f sum(0, 0, 0);
       for (std::size_t k = 0; k < per_pixel; ++k) {
-        // 7 is prime to any number of samples but its own multiples: a sample's time has nothing
-        // to do with its place in the pixel.
-        sum += trace(scene, eyes[(k * 7) % eyes.size()], *ray++);
+        // 23 has no factor in common with any number of samples: each pose gets its sample, and a
+        // sample's time has little to do with its place in the pixel.
+        sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
       }
       light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
     }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -112,10 +113,18 @@ TEST(Run, TableHasUnits) {
 }
 
 TEST(Run, FailedInitializationExitsOneWithoutPoses) {
-  // The first two frames of the desk are too near to each other for any parallax.
   const fs::path folder = fresh_folder();
+  std::string tracks = "frame,track,x,y\n";
+  for (int frame = 0; frame < 30; ++frame) {
+    for (int track = 0; track < 40; ++track) {
+      tracks +=
+          fmt::format("{},{},{},{}\n", frame, track, 50 + 70 * (track % 8), 60 + 80 * (track / 8));
+    }
+  }
+  test::write_file(folder / "still.csv", tracks);
   const Outcome outcome =
-      program("run " + desk().string() + " --frames 2 --json " + (folder / "r.json").string() +
+      program("run " + desk().string() + " --rotations averaging --tracks " +
+              (folder / "still.csv").string() + " --json " + (folder / "r.json").string() +
               " --trajectory " + (folder / "t.txt").string());
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
   EXPECT_THAT(outcome.out, HasSubstr("failed: no parallax"));

@@ -29,7 +29,7 @@ Camera equidistant() {
 
 std::vector<Camera> cameras() {
   return {{640, 480, 500, 510, 320, 240, Distortion::none, {}},
-          radial_tangential({0.13729, -0.60795, -0.005645, 0.004256}),
+          radial_tangential({0.13729, -0.30795, -0.005645, 0.004256}),
           radial_tangential({-0.28, 0.07, 0.0002, 0.00002, -0.01}),
           radial_tangential({0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003}),
           equidistant()};

@@ -98,7 +98,7 @@ TEST(HomographyRansac, AgreesWithOpenCvOnTheInliers) {
   cv::cv2eigen(H_cv, theirs);
   int different = 0;
   for (int j = 0; j < 150; ++j) {
-    const auto error =
+    const Eigen::Vector2d error =
         transfer(theirs, s.window.points_px[0].col(j)) - s.window.points_px[29].col(j);
     different += ours->inlier[j] != (error.norm() <= 2.0) ? 1 : 0;
   }

@@ -1,0 +1,61 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/recording.h"
+
+#include <cmath>
+
+#include <opencv2/core.hpp>
+
+namespace gpo::test {
+
+/// Gray of the board's plane at a point [m]: squares with a white margin, mid-gray around it.
+inline double board_gray(const Board& board, double x, double y) {
+  const double column = x / board.square_m;
+  const double row = y / board.square_m;
+  if (column < -2 || row < -2 || column > board.columns + 1 || row > board.rows + 1) return 110;
+  if (column < -1 || row < -1 || column > board.columns || row > board.rows) return 230;
+  const int parity = static_cast<int>(std::floor(column)) + static_cast<int>(std::floor(row));
+  return parity % 2 == 0 ? 25 : 230;
+}
+
+/// A picture of the board (its frame as in board_points) by casting 4 x 4 rays a pixel through the
+/// exact lens model: no interpolation that could shift a corner.
+inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
+  constexpr int kSamples = 4;
+  const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
+  cv::Mat picture(camera.height, camera.width, CV_8UC1);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      double sum = 0;
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const Eigen::Vector2d raw(u - 0.5 + (k % kSamples + 0.5) / kSamples,
+                                  v - 0.5 + (k / kSamples + 0.5) / kSamples);
+        const Eigen::Vector2d ideal =
+            camera.distortion == Distortion::none ? raw : undistort(camera, raw);
+        const Eigen::Vector3d ray(
+            (ideal.x() - camera.cx) / camera.fx, (ideal.y() - camera.cy) / camera.fy, 1);
+        const auto point = intersect(plane, pose, ray);
+        sum += point ? board_gray(board, point->x(), point->y()) : 110;
+      }
+      picture.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
+    }
+  }
+  return picture;
+}
+
+/// A camera that looks at the middle of the board from `distance` [m], tilted and rolled [deg].
+inline Pose looking_at(const Board& board, double distance, double tilt_deg, double roll_deg) {
+  const Eigen::Vector3d middle(
+      0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
+  const Eigen::Matrix3d R =
+      so3_exp({radians(tilt_deg), 0.3 * radians(tilt_deg), 0}) * so3_exp({0, 0, radians(roll_deg)});
+  return {R, middle - distance * R.col(2)};
+}
+
+}  // namespace gpo::test

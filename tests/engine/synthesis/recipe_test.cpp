@@ -1,0 +1,147 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/synthesis/recipe.h"
+
+#include "engine/error.h"
+#include "tests/engine/synthesis/small_recipe.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+std::string message_of(const std::string& text) {
+  try {
+    recipe_of(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string message_with(const std::string& from, const std::string& to) {
+  return message_of(small_recipe_with(from, to));
+}
+
+TEST(Recipe, ReadsEveryPart) {
+  const Recipe recipe = recipe_of(small_recipe_text());
+  EXPECT_EQ(recipe.seed, 3U);
+  EXPECT_EQ(recipe.camera.width, 160);
+  EXPECT_EQ(recipe.camera.fy, 124);
+  EXPECT_EQ(recipe.camera.distortion, Distortion::radial_tangential);
+  EXPECT_EQ(recipe.camera.coefficients.size(), 4U);
+  EXPECT_EQ(recipe.T_body_camera.p_wc, Eigen::Vector3d(0.02, 0.06, -0.004));
+  EXPECT_EQ(recipe.T_body_camera.R_wc(0, 1), -1);
+  EXPECT_EQ(recipe.frame_count, 4);
+  EXPECT_EQ(recipe.start_ns, 5000000000);
+  EXPECT_NEAR(recipe.trajectory.position.velocity.x(), 0.8, 1e-12);
+  ASSERT_EQ(recipe.trajectory.position.harmonics.size(), 1U);
+  EXPECT_NEAR(recipe.trajectory.position.harmonics[0].phase, radians(30), 1e-12);
+  EXPECT_NEAR(recipe.trajectory.roll.start(0), radians(-2), 1e-12);
+  ASSERT_TRUE(recipe.desk.board);
+  EXPECT_EQ(recipe.desk.board->columns, 5);
+  ASSERT_EQ(recipe.desk.prints.size(), 1U);
+  EXPECT_EQ(recipe.desk.prints[0].kind, "card");
+  ASSERT_EQ(recipe.desk.boxes.size(), 1U);
+  EXPECT_NEAR(recipe.desk.boxes[0].angle, radians(30), 1e-12);
+  EXPECT_EQ(recipe.picture.format, "png");
+  EXPECT_EQ(recipe.picture.exposure, 0.004);
+  EXPECT_EQ(recipe.gyroscope.bias, Eigen::Vector3d(0.006, -0.004, 0.003));
+  ASSERT_TRUE(recipe.gyroscope.calibrated_bias);
+}
+
+TEST(Recipe, KeepsEveryDigitOfATimeStamp) {
+  const Recipe recipe =
+      recipe_of(small_recipe_with("start_ns: 5000000000", "start_ns: 1520530308199447627"));
+  EXPECT_EQ(frame_timestamp_ns(recipe, 0), 1520530308199447627);
+  EXPECT_EQ(frame_timestamp_ns(recipe, 3), 1520530308299447627);
+}
+
+TEST(Recipe, NamesAMissingFile) {
+  try {
+    read_recipe("/no/such/recipe.yaml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "/no/such/recipe.yaml: found no readable file, expected a recipe");
+  }
+}
+
+TEST(Recipe, NamesTheLineOfBrokenYaml) {
+  EXPECT_THAT(message_with("seed: 3", "seed: [3"), HasSubstr("small.yaml:"));
+  EXPECT_THAT(message_with("seed: 3", "seed: [3"), HasSubstr("broken YAML"));
+  EXPECT_THAT(message_of("just words"),
+              EndsWith("small.yaml:1: found \"just words\", expected a "
+                       "map of keys and values"));
+}
+
+TEST(Recipe, NamesAnUnknownKeyAndTheKnownOnes) {
+  EXPECT_THAT(message_with("  texture_seed: 5", "  texture_sed: 5"),
+              EndsWith("small.yaml:19: desk.texture_sed: found an unknown key, expected one of "
+                       "board, boxes, prints, size, texture_seed"));
+  EXPECT_THAT(message_with("{kind: card,", "{kind: card, color: red,"),
+              HasSubstr("small.yaml:22: desk.prints[0].color: found an unknown key"));
+}
+
+TEST(Recipe, NamesAMissingKey) {
+  EXPECT_THAT(message_with("  rate: 200\n", ""),
+              EndsWith("gyroscope.rate: found nothing, expected a number [Hz] from 1 to 10000"));
+}
+
+TEST(Recipe, NamesARepeatedKey) {
+  EXPECT_THAT(message_with("seed: 3\n", "seed: 3\nseed: 4\n"),
+              EndsWith("small.yaml:2: seed: found a second time, expected each key once"));
+}
+
+TEST(Recipe, NamesAWrongType) {
+  EXPECT_THAT(
+      message_with("rate: 200", "rate: fast"),
+      EndsWith(
+          "small.yaml:27: gyroscope.rate: found \"fast\", expected a number [Hz] from 1 to 10000"));
+  EXPECT_THAT(message_with("count: 4", "count: 4.5"),
+              EndsWith("frames.count: found \"4.5\", expected a whole number from 1 to 100000"));
+  EXPECT_THAT(message_with("size: [0.7, 0.6]", "size: [0.7]"),
+              EndsWith("desk.size: found a list of 1, expected a list of 2 numbers"));
+  EXPECT_THAT(message_with("size: [0.7, 0.6]", "size: 0.7"),
+              EndsWith("desk.size: found \"0.7\", expected a list of 2 numbers"));
+  EXPECT_THAT(message_with("frames: {count: 4, rate: 30, start_ns: 5000000000}", "frames: 4"),
+              EndsWith("frames: found \"4\", expected a map of keys and values"));
+}
+
+TEST(Recipe, NamesAValueOutOfRange) {
+  EXPECT_THAT(message_with("samples: 2", "samples: 0"),
+              EndsWith("picture.samples: found \"0\", expected a whole number from 1 to 16"));
+  EXPECT_THAT(message_with("noise: 1,", "noise: .nan,"),
+              EndsWith("found \".nan\", expected a number [gray levels] from 0 to 100"));
+  EXPECT_THAT(message_with("start_ns: 5000000000", "start_ns: 0"), HasSubstr("frames.start_ns"));
+}
+
+TEST(Recipe, NamesTheKnownChoices) {
+  EXPECT_THAT(message_with("format: png", "format: bmp"),
+              EndsWith("picture.format: found \"bmp\", expected one of jpg, png"));
+  EXPECT_THAT(message_with("radial-tangential", "fov"),
+              EndsWith("found \"fov\", expected one of none, radial-tangential, equidistant"));
+  EXPECT_THAT(message_with("kind: cube", "kind: sphere"),
+              EndsWith("desk.boxes[0].kind: found \"sphere\", expected one of book, carton, cube"));
+}
+
+TEST(Recipe, RefusesAnExtrinsicThatIsNotRigid) {
+  EXPECT_THAT(message_with("[0, -1, 0, 0.02,", "[0, -2, 0, 0.02,"),
+              EndsWith("camera.T_BS: found no rotation in it, expected a rigid 4x4 transformation, "
+                       "row by row"));
+}
+
+TEST(Recipe, RefusesAPathWithoutAPicture) {
+  EXPECT_THAT(message_with("start: [-0.05, -0.35, 0.42]\n    end: [0.03, -0.35, 0.42]",
+                           "start: [0, 0, -0.4]"),
+              HasSubstr("trajectory: found a camera below the desk in frame 0"));
+  EXPECT_THAT(
+      message_with("look_at: {start: [0, 0, 0], end: [0.02, 0.01, 0]}",
+                   "look_at: {start: [-0.045, -0.34, 0.4275], end: [0, 0, 0]}\n  up: [0, 0, 0]"),
+      HasSubstr("trajectory: found no direction of view in frame 0"));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,68 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/engine/synthesis/small_recipe.h"
+
+#include <fstream>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+
+std::string small_recipe_text() {
+  return R"(seed: 3
+camera:
+  resolution: [160, 120]
+  intrinsics: [125, 124, 80.4, 59.2]
+  distortion_model: radial-tangential
+  distortion_coefficients: [0.1, -0.2, 0.001, -0.001]
+  T_BS: [0, -1, 0, 0.02, -1, 0, 0, 0.06, 0, 0, -1, -0.004, 0, 0, 0, 1]
+frames: {count: 4, rate: 30, start_ns: 5000000000}
+trajectory:
+  position:
+    start: [-0.05, -0.35, 0.42]
+    end: [0.03, -0.35, 0.42]
+    harmonics:
+      - {amplitude: [0.01, 0.02, 0.015], frequency: 1.1, phase: 30}
+  look_at: {start: [0, 0, 0], end: [0.02, 0.01, 0]}
+  roll: {start: [-2], end: [3]}
+desk:
+  size: [0.7, 0.6]
+  texture_seed: 5
+  board: {columns: 5, rows: 4, square: 0.03, margin: 0.01, center: [0, 0], angle: 8}
+  prints:
+    - {kind: card, center: [0.2, 0.1], size: [0.06, 0.09], angle: 20}
+  boxes:
+    - {kind: cube, center: [-0.18, 0.1], size: [0.06, 0.06, 0.06], angle: 30}
+picture: {format: png, samples: 2, noise: 1, blur: 0.5, gain_variation: 0.02, exposure: 0.004}
+gyroscope:
+  rate: 200
+  noise_density: 0.0002
+  bias: [0.006, -0.004, 0.003]
+  calibrated_bias: [0.0065, -0.0045, 0.0033]
+)";
+}
+
+std::string small_recipe_with(const std::string& from, const std::string& to) {
+  std::string text = small_recipe_text();
+  const std::size_t place = text.find(from);
+  if (place == std::string::npos) throw std::logic_error("not in the small recipe: " + from);
+  return text.replace(place, from.size(), to);
+}
+
+std::filesystem::path test_folder(const std::string& name) {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "synthesis" /
+                      (std::string(test->test_suite_name()) + "." + test->name()) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+Recipe recipe_of(const std::string& text) {
+  const auto file = test_folder("recipe") / "small.yaml";
+  std::ofstream(file) << text;
+  return read_recipe(file);
+}
+
+}  // namespace gpo
