@@ -27,6 +27,7 @@ window_is_there() { window=$(xdotool search --name 'GPO Inspector' 2> /dev/null 
 key() { xdotool key --window "$window" "$@"; }
 saved() { [ -s "$name-$1.png" ] && identify "$name-$1.png" > /dev/null 2>&1; }
 other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
+at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
 same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
 later_frame_is_saved() { key s; sleep 0.1; ls "$name"-*.png 2> /dev/null | grep -qv -- -0000; }
 
@@ -44,7 +45,7 @@ key shift+Left s
 until_true "Shift+Left to go ten frames back" saved 0020
 cmp -s "$name-0029.png" "$name-0030.png" && fail "pictures of two frames to differ"
 
-import -window "$window" before.png
+until_true "a window that comes to rest" at_rest
 key F1
 until_true "F1 to list the keys" other_than before.png
 key Escape
