@@ -26,6 +26,7 @@ using Clock = std::chrono::steady_clock;
 /// Dear ImGui needs a frame to see what the mouse hovers, and another one to size what it opens.
 constexpr int kFramesAfterEvent = 3;
 constexpr double kIdle_s = 3600;
+constexpr const char* kTitle = "GPO Inspector";
 
 /// The recording that comes with the program: beside the sources it was built from, else beside the
 /// executable or where it is run.
@@ -64,7 +65,8 @@ void save_picture(WorkbenchState& state, const cv::Mat& picture) {
 
 /// Everything between opening the window and closing it.
 struct Session {
-  WindowContext window{"GPO Inspector", 1280, 720};
+  std::string title = kTitle;
+  WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
   Gui gui{window};
   Views views;
@@ -88,6 +90,16 @@ struct Session {
     for (const Command& command : commands) apply(state, command);
   }
 
+  /// Tells the desktop, and who drives the window, what is open and whether it is being computed.
+  void update_title() {
+    std::string now = state.recording ? state.recording->name + " \u2013 " : "";
+    if (link.status.busy) now += "computing \u2013 ";
+    now += kTitle;
+    if (now == title) return;
+    title = now;
+    glfwSetWindowTitle(window.glfw(), title.c_str());
+  }
+
   /// Sleeps until something happens or the next frame is due. Time goes on before the keys are
   /// heeded: what begins to play now has not slept.
   void wait(bool settled) {
@@ -106,6 +118,7 @@ struct Session {
   void run() {
     for (int frames = kFramesAfterEvent; !window.should_close() && !state.wishes.quit;) {
       synchronize(state, link, worker, example);
+      update_title();
       if (std::exchange(state.wishes.save_picture, false)) {
         save_picture(state, draw_picture(panel_input(), gui, views));
       }

@@ -39,9 +39,10 @@ Commands WindowInput::take() { return std::exchange(commands_, {}); }
 void WindowInput::on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
   WindowInput& input = input_of(window);
   input.repeating_ = action == GLFW_REPEAT;
-  input.shortcut_ = (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0;
-  if (action == GLFW_RELEASE || input.shortcut_ || typing()) return;
-  const Action* found = action_of_key(key, (modifiers & GLFW_MOD_SHIFT) != 0);
+  const auto held = [modifiers](int modifier) { return (modifiers & modifier) != 0; };
+  input.shortcut_ = held(GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
+  if (action == GLFW_RELEASE || held(GLFW_MOD_ALT | GLFW_MOD_SUPER) || typing()) return;
+  const Action* found = action_of_key(key, held(GLFW_MOD_SHIFT), held(GLFW_MOD_CONTROL));
   if (found == nullptr || (input.repeating_ && !found->repeats)) return;
   push(input.commands_, RunAction{found->name});
 }

@@ -142,7 +142,7 @@ ResultGroup timing_group(const Timing& timing, bool known) {
   add("RANSAC", timing.ransac, "Homographies from the reference frame, outliers rejected");
   add("Rotations", timing.rotations, "From the gyroscope, averaging or truth");
   add("Initialize", timing.initialize, "The method, with checks and map points");
-  add("of it solver", timing.optimize, "The solver's share of initialize");
+  add("Solver", timing.optimize, "The solver's share of initialize");
   add("Total", timing.total, "All stages, each when it was last computed");
   return group;
 }
@@ -186,10 +186,9 @@ std::string why_no_rotations(const Recording& recording, RotationSource source) 
 
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings) {
   if (!inspection || !inspection->initialization || !inspection->window) {
-    return {
-        nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
-        nothing("AGAINST THE TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
-        nothing("TIME", {"Track", "RANSAC", "Rotations", "Initialize", "of it solver", "Total"})};
+    return {nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
+            nothing("AGAINST THE TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
+            nothing("TIME", {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
   }
   return {result_group(*inspection),
           metrics_group(*inspection),

@@ -61,13 +61,15 @@ void image_panel(const PanelInput& input,
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool shown = state.recording->pictures && views.picture_error.empty();
   const Inspection waiting = input.inspection ? Inspection{} : nothing_inspected(state.recording);
+  ImageViewOptions options = image_options(state, input.inspection);
+  options.legend = options.legend && room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
                   input.inspection ? *input.inspection : waiting,
                   state.frame,
                   shown ? &views.picture : nullptr,
                   state.picture_zoom,
-                  image_options(state, input.inspection));
+                  options);
   if (!views.picture_error.empty()) {
     draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
   }

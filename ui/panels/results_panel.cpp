@@ -86,8 +86,7 @@ void draw_state(const PanelInput& input, float right) {
 
 void results_panel(const PanelInput& input, const Rectangle& place) {
   const float s = input.scale;
-  const PanelScope panel(
-      "results", place, {12 * s, 4 * s}, ImGuiWindowFlags_AlwaysUseWindowPadding);
+  const PanelScope panel("results", place, {12 * s, 4 * s}, true);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   const float left = ImGui::GetCursorPosX();
   const float right = left + ImGui::GetContentRegionAvail().x;

@@ -56,13 +56,15 @@ void scene_panel(const PanelInput& input,
   const OrbitCamera camera =
       state.orbit.value_or(default_scene_camera(inspection, side, place.width / place.height));
   handle_mouse(camera, place.height, commands);
+  SceneViewOptions options = scene_options(state);
+  options.legend = room_for_legend(place, input.scale);
   draw_scene_view(*ImGui::GetWindowDrawList(),
                   screen_rect(place),
                   views.scene,
                   inspection,
                   state.frame,
                   camera,
-                  scene_options(state));
+                  options);
 }
 
 }  // namespace gpo

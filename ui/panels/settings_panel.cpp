@@ -161,8 +161,7 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
 
 void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const float s = input.scale;
-  const PanelScope panel(
-      "settings", place, {12 * s, 8 * s}, ImGuiWindowFlags_AlwaysUseWindowPadding);
+  const PanelScope panel("settings", place, {12 * s, 8 * s}, true);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * s, 3 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
   heading("SETTINGS");

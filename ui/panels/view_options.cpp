@@ -26,6 +26,10 @@ SceneViewOptions scene_options(const WorkbenchState& state) {
   return options;
 }
 
+bool room_for_legend(const Rectangle& place, float scale) {
+  return place.width >= 300 * scale && place.height >= 240 * scale;
+}
+
 ScreenRect screen_rect(const Rectangle& place) {
   return {{place.x, place.y}, {place.width, place.height}};
 }

@@ -16,6 +16,9 @@ namespace gpo {
 ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection);
 SceneViewOptions scene_options(const WorkbenchState& state);
 
+/// Whether a legend leaves enough of the view to be seen.
+bool room_for_legend(const Rectangle& place, float scale);
+
 ScreenRect screen_rect(const Rectangle& place);
 
 /// For the views, while nothing has been computed: a recording with an empty window.

@@ -7,10 +7,7 @@
 
 namespace gpo {
 
-PanelScope::PanelScope(const char* name,
-                       const Rectangle& place,
-                       ImVec2 padding,
-                       ImGuiWindowFlags flags) {
+PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, bool scrolls) {
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
@@ -19,9 +16,10 @@ PanelScope::PanelScope(const char* name,
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
   ImGui::Begin(name,
                nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoNav | flags);
+                   ImGuiWindowFlags_NoNav | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar));
 }
 
 PanelScope::~PanelScope() {

@@ -11,10 +11,11 @@
 
 namespace gpo {
 
-/// A part of the window, fixed in place, while it lives. What is drawn inside goes there.
+/// A part of the window, fixed in place, while it lives. What is drawn inside goes there. One that
+/// `scrolls` gets a bar where its content is higher than it is.
 class PanelScope {
  public:
-  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, ImGuiWindowFlags flags = 0);
+  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, bool scrolls = false);
   ~PanelScope();
   PanelScope(const PanelScope&) = delete;
   PanelScope& operator=(const PanelScope&) = delete;

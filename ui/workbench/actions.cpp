@@ -16,12 +16,12 @@ namespace {
 using State = WorkbenchState;
 
 Shortcut key(int glfw_key, std::string label, bool shift = false) {
-  return {glfw_key, shift, 0, std::move(label)};
+  return {glfw_key, shift, false, 0, std::move(label)};
 }
 
 Shortcut letter(char character) {
   const char lower = character >= 'A' && character <= 'Z' ? char(character - 'A' + 'a') : character;
-  return {0, false, static_cast<char32_t>(lower), std::string(1, character)};
+  return {0, false, false, static_cast<char32_t>(lower), std::string(1, character)};
 }
 
 auto frame_text(std::function<int(const State&)> frame) {
@@ -87,8 +87,12 @@ void add_file_actions(std::vector<Action>& table) {
                    {letter('S')},
                    "Writes the current frame with its overlays as a PNG into the current folder",
                    [](State& s) { s.wishes.save_picture = true; }});
-  Action quit{
-      "quit", "Quit", "File", {}, "Closes the window", [](State& s) { s.wishes.quit = true; }};
+  Action quit{"quit",
+              "Quit",
+              "File",
+              {{GLFW_KEY_Q, false, true, 0, "Ctrl+Q"}},
+              "Closes the window",
+              [](State& s) { s.wishes.quit = true; }};
   quit.needs_recording = false;
   table.push_back(quit);
 }
@@ -131,7 +135,7 @@ void add_time_actions(std::vector<Action>& table) {
   Action play_action{"play",
                      "Play / pause",
                      "Time",
-                     {{0, false, U' ', "Space"}},
+                     {{0, false, false, U' ', "Space"}},
                      "Plays at the recording's own rate",
                      play};
   play_action.value = [](const State& s) { return s.playing ? "playing" : "paused"; };
@@ -256,9 +260,10 @@ const Action* find_action(const std::string& name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-const Action* action_of_key(int glfw_key, bool shift) {
-  return find_shortcut(
-      [&](const Shortcut& s) { return s.character == 0 && s.key == glfw_key && s.shift == shift; });
+const Action* action_of_key(int glfw_key, bool shift, bool control) {
+  return find_shortcut([&](const Shortcut& s) {
+    return s.character == 0 && s.key == glfw_key && s.shift == shift && s.control == control;
+  });
 }
 
 const Action* action_of_character(char32_t character) {

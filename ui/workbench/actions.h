@@ -16,6 +16,7 @@ namespace gpo {
 struct Shortcut {
   int key = 0;  ///< GLFW_KEY_*
   bool shift = false;
+  bool control = false;
   char32_t character = 0;  ///< lower case
   std::string label = {};  ///< for people
 };
@@ -39,8 +40,8 @@ std::span<const Action> actions();
 /// Null where no action has that name.
 const Action* find_action(const std::string& name);
 
-/// The action of a key without Ctrl, Alt or Super; null where it has none.
-const Action* action_of_key(int glfw_key, bool shift);
+/// The action of a key without Alt or Super; null where it has none.
+const Action* action_of_key(int glfw_key, bool shift, bool control = false);
 const Action* action_of_character(char32_t character);
 
 /// Runs the action named so; where it needs a recording and none is open, a message says that.

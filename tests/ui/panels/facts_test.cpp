@@ -156,8 +156,7 @@ TEST(Results, FailureShowsItsReason) {
 TEST(Results, PicturesLeaveTimingsOutAndSayWhy) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection, false);
-  for (const char* label :
-       {"Track", "RANSAC", "Rotations", "Initialize", "of it solver", "Total"}) {
+  for (const char* label : {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"}) {
     EXPECT_EQ(rows.at(label).value, "\u2013");
     EXPECT_THAT(rows.at(label).tooltip, HasSubstr("left out of pictures"));
   }

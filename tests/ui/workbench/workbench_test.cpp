@@ -298,6 +298,8 @@ TEST(Actions, AreFoundByTheKeysThatTheDesignNames) {
   EXPECT_EQ(action_of_key(GLFW_KEY_END, false)->name, "last");
   EXPECT_EQ(action_of_key(GLFW_KEY_F1, false)->name, "help");
   EXPECT_EQ(action_of_key(GLFW_KEY_ESCAPE, false)->name, "escape");
+  EXPECT_EQ(action_of_key(GLFW_KEY_Q, false, true)->name, "quit");
+  EXPECT_EQ(action_of_key(GLFW_KEY_Q, false), nullptr);
   EXPECT_EQ(action_of_key(GLFW_KEY_UNKNOWN, false), nullptr);
   for (const auto& [character, name] : {std::pair{U' ', "play"},
                                         {U'[', "window-start"},
