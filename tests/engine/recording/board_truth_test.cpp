@@ -56,7 +56,7 @@ TEST(BoardTruth, FindsCornersAndPoseThroughALens) {
 
 TEST(BoardTruth, TellsTheTwoEndsByColor) {
   // Whatever way the camera is rolled, and without a previous frame.
-  for (double roll = 0; roll < 360; roll += 45) {
+  for (int roll = 0; roll < 360; roll += 45) {
     const Pose truth = looking_at(kBoard, 0.4, 15, roll);
     const auto corners = find_board(render_board(kBoard, pinhole(), truth), kBoard);
     ASSERT_FALSE(corners.empty()) << roll;
@@ -66,7 +66,7 @@ TEST(BoardTruth, TellsTheTwoEndsByColor) {
 
 TEST(BoardTruth, KeepsTheOrderWhileTheCameraRolls) {
   std::vector<Eigen::Vector2d> previous;
-  for (double roll = 0; roll <= 360; roll += 30) {
+  for (int roll = 0; roll <= 360; roll += 30) {
     const Pose truth = looking_at(kTwin, 0.4, 15, roll);
     const auto corners = find_board(render_board(kTwin, pinhole(), truth), kTwin, previous);
     ASSERT_FALSE(corners.empty()) << roll;
@@ -78,7 +78,7 @@ TEST(BoardTruth, KeepsTheOrderWhileTheCameraRolls) {
 TEST(BoardTruth, KeepsTheOrderOfASquareBoard) {
   const Board board{5, 5, 0.03};
   std::vector<Eigen::Vector2d> previous;
-  for (double roll = 0; roll <= 360; roll += 30) {
+  for (int roll = 0; roll <= 360; roll += 30) {
     const Pose truth = looking_at(board, 0.4, 15, roll);
     const auto corners = find_board(render_board(board, pinhole(), truth), board, previous);
     ASSERT_FALSE(corners.empty()) << roll;

@@ -33,8 +33,9 @@ inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose
     for (int u = 0; u < camera.width; ++u) {
       double sum = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
+        const int row = k / kSamples;
         const Eigen::Vector2d raw(u - 0.5 + (k % kSamples + 0.5) / kSamples,
-                                  v - 0.5 + (k / kSamples + 0.5) / kSamples);
+                                  v - 0.5 + (row + 0.5) / kSamples);
         const Eigen::Vector2d ideal =
             camera.distortion == Distortion::none ? raw : undistort(camera, raw);
         const Eigen::Vector3d ray(
