@@ -104,7 +104,8 @@ std::string pick_title(Random& random) {
 
 void draw_paragraph(
     cv::Mat& canvas, cv::Rect2d box, double height, const cv::Scalar& color, Random& random) {
-  for (double y = box.y + height; y < box.y + box.height; y += 1.9 * height) {
+  double y = box.y + height;
+  while (y < box.y + box.height) {
     const bool last = random.uniform() < 0.15;
     const double end = box.x + box.width * (last ? random.uniform(0.3, 0.8) : 1.0);
     double x = box.x;
@@ -118,7 +119,7 @@ void draw_paragraph(
       draw_text(canvas, word, {x, y}, height, color);
       x += width + 0.55 * height;
     }
-    if (last) y += height;
+    y += (last ? 2.9 : 1.9) * height;
   }
 }
 

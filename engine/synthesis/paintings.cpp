@@ -88,7 +88,7 @@ void paint_mosaic(cv::Mat canvas, int cells, const Palette& palette, Random& ran
   const double ratio = static_cast<double>(canvas.rows) / canvas.cols;
   std::vector<Cell> seeds;
   for (int i = 0; i < cells; ++i) {
-    const auto color = static_cast<std::size_t>(1 + random.below(palette.size() - 1));
+    const std::size_t color = 1 + random.below(palette.size() - 1);
     seeds.push_back(
         {random.uniform(), random.uniform(0, ratio), palette[color] * random.uniform(0.8, 1.1)});
   }
@@ -172,7 +172,8 @@ void paint_flowers(cv::Mat canvas, Random& random) {
   const auto petal = [&](cv::Point2d at, double r, double angle, const cv::Scalar& color) {
     const cv::Point2d middle = at + r * cv::Point2d(std::cos(angle), std::sin(angle));
     std::vector<cv::Point> outline;
-    for (double a = 0; a < 6.28; a += 0.35) {
+    for (int k = 0; k < 18; ++k) {
+      const double a = 0.35 * k;
       const cv::Point2d p(r * std::cos(a), 0.42 * r * std::sin(a));
       outline.push_back(fixed(canvas,
                               middle + cv::Point2d(p.x * std::cos(angle) - p.y * std::sin(angle),
@@ -189,8 +190,8 @@ void paint_flowers(cv::Mat canvas, Random& random) {
   for (int i = 0; i < 26; ++i) {
     const cv::Point2d at(random.uniform(), random.uniform(0, ratio));
     const double r = random.uniform(0.025, 0.055);
-    const cv::Scalar& color =
-        palette[static_cast<std::size_t>(1 + random.below(palette.size() - 1))];
+    const std::size_t which = 1 + random.below(palette.size() - 1);
+    const cv::Scalar& color = palette[which];
     for (int k = 0; k < 6; ++k) petal(at, r, k * 1.0472, mixed(color, rgb(0xffffff), 0.08 * k));
     cv::circle(canvas,
                fixed(canvas, at),
