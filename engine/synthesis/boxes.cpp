@@ -89,9 +89,10 @@ void draw_cube(BoxFaces& faces, Random& random) {
   const auto draw_face = [&](cv::Mat& face) {
     face.setTo(rgb(0x161616));
     for (int i = 0; i < 9; ++i) {
+      const int row = i / 3;
       part(face,
            (i % 3 + 0.08) / 3,
-           ratio_of(face) * (i / 3 + 0.08) / 3,
+           ratio_of(face) * (row + 0.08) / 3,
            0.84 / 3,
            ratio_of(face) * 0.84 / 3)
           .setTo(stickers[static_cast<std::size_t>(random.below(6))]);
@@ -122,6 +123,7 @@ void shade_side(cv::Mat& side) {
 
 std::vector<std::string> box_kinds() {
   std::vector<std::string> keys;
+  keys.reserve(kBoxKinds.size());
   for (const BoxKind& kind : kBoxKinds) keys.emplace_back(kind.key);
   return keys;
 }

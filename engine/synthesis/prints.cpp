@@ -17,7 +17,8 @@ const cv::Scalar kInk(46, 40, 38, 255);
 
 double ratio_of(const cv::Mat& canvas) { return static_cast<double>(canvas.rows) / canvas.cols; }
 
-void bar(cv::Mat& canvas, double x, double y, double width, double height, cv::Scalar color) {
+void bar(
+    cv::Mat& canvas, double x, double y, double width, double height, const cv::Scalar& color) {
   part(canvas, x, y, width, height).setTo(color);
 }
 
@@ -128,8 +129,9 @@ void draw_pip(cv::Mat& canvas, cv::Point2d at, double size, int suit, const cv::
                cv::FILLED,
                cv::LINE_AA);
   };
-  const auto polygon = [&](std::vector<cv::Point2d> shape) {
+  const auto polygon = [&](const std::vector<cv::Point2d>& shape) {
     std::vector<cv::Point> points;
+    points.reserve(shape.size());
     for (const auto& p : shape) points.emplace_back(cvRound(c.x + p.x * s), cvRound(c.y + p.y * s));
     cv::fillPoly(canvas, std::vector<std::vector<cv::Point>>{points}, color, cv::LINE_AA);
   };
@@ -192,7 +194,9 @@ void draw_map(cv::Mat& canvas, Random& random) {
   paint_mosaic(canvas, 190, blocks, random);
   std::vector<cv::Point> river;
   const std::uint64_t seed = random.bits();
-  for (double t = -0.05; t <= 1.06; t += 0.01) {
+  river.reserve(112);
+  for (int i = -5; i <= 106; ++i) {
+    const double t = 0.01 * i;
     river.emplace_back(cvRound(t * canvas.cols),
                        cvRound((0.15 + 0.7 * fractal_noise(t * 2.2, 0, 3, seed)) * canvas.rows));
   }
@@ -264,6 +268,7 @@ constexpr std::array<PrintKind, 8> kPrintKinds = {{{"magazine", draw_magazine},
 
 std::vector<std::string> print_kinds() {
   std::vector<std::string> keys;
+  keys.reserve(kPrintKinds.size());
   for (const PrintKind& kind : kPrintKinds) keys.emplace_back(kind.key);
   return keys;
 }

@@ -153,8 +153,9 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
     auto* ray = map.rays.data() + per_pixel * camera.width * row;
     for (int col = 0; col < camera.width; ++col) {
       for (int k = 0; k < samples * samples; ++k) {
+        const int line = k / samples;
         const Eigen::Vector2d offset((k % samples + 0.5) / samples - 0.5,
-                                     (k / samples + 0.5) / samples - 0.5);
+                                     (line + 0.5) / samples - 0.5);
         const Eigen::Vector2d px = undistort(camera, Eigen::Vector2d(col, row) + offset);
         *ray++ =
             Eigen::Vector2f((px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy);
@@ -166,6 +167,7 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
 
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads) {
   std::vector<Eye> eyes;
+  eyes.reserve(poses.size());
   for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
   const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
   cv::Mat light(map.height, map.width, CV_32FC3);

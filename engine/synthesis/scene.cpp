@@ -25,7 +25,7 @@ Eigen::Vector2d texel_place(const DeskRecipe& desk, double col, double row, doub
 }
 
 cv::Mat empty_map(const DeskRecipe& desk, double per_meter, int type) {
-  return {cvCeil(desk.size.y() * per_meter), cvCeil(desk.size.x() * per_meter), type};
+  return cv::Mat(cvCeil(desk.size.y() * per_meter), cvCeil(desk.size.x() * per_meter), type);
 }
 
 /// Oiled oak in planks along x.
@@ -141,8 +141,9 @@ cv::Mat cast_shadows(const DeskRecipe& desk) {
   sum.setTo(0);
   constexpr int kLights = 25;
   for (int i = 0; i < kLights; ++i) {
+    const int line = i / 5;
     cv::Mat shadow(sum.size(), CV_8UC1, cv::Scalar(0));
-    const Eigen::Vector2d slope(0.35 + 0.10 * (i % 5), -0.10 - 0.08 * (i / 5));
+    const Eigen::Vector2d slope(0.35 + 0.10 * (i % 5), -0.10 - 0.08 * line);
     for (const BoxRecipe& box : desk.boxes) {
       auto corners = footprint(desk, box, slope * box.base);
       const auto high = footprint(desk, box, slope * (box.base + box.size.z()));

@@ -38,8 +38,8 @@ std::string expectation(const Range& range, bool integer) {
 
 }  // namespace
 
-StrictMap::StrictMap(std::string file, std::string name, YAML::Node node)
-    : file_(std::move(file)), name_(std::move(name)), node_(std::move(node)) {
+StrictMap::StrictMap(std::string file, std::string name, const YAML::Node& node)
+    : file_(std::move(file)), name_(std::move(name)), node_(node) {
   if (!node_.IsMap()) {
     throw InputError(fmt::format("{}:{}: {}found {}, expected a map of keys and values",
                                  file_,

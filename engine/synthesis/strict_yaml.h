@@ -47,7 +47,7 @@ class StrictMap {
                          const std::string& expected) const;
 
  private:
-  StrictMap(std::string file, std::string name, YAML::Node node);
+  StrictMap(std::string file, std::string name, const YAML::Node& node);
   YAML::Node take(const std::string& key, const std::string& expected);
   double parse(const YAML::Node& node,
                const std::string& key,

@@ -59,6 +59,7 @@ TEST(Renderer, MotionBlurIsCenteredAtTheTimeStamp) {
   const Scene scene = make_scene(recipe.desk, 2);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   std::vector<Pose> poses;
+  poses.reserve(16);
   for (int k = 0; k < 16; ++k) {
     poses.push_back(camera_motion(recipe.trajectory, 0.05 + 0.005 * ((k + 0.5) / 16 - 0.5)).pose);
   }

@@ -55,8 +55,8 @@ std::string small_recipe_with(const std::string& from, const std::string& to) {
 
 std::filesystem::path test_folder(const std::string& name) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "synthesis" /
-                      (std::string(test->test_suite_name()) + "." + test->name()) / name;
+  auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "synthesis" /
+                (std::string(test->test_suite_name()) + "." + test->name()) / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
