@@ -33,7 +33,7 @@ constexpr const char* kTitle = "GPO Inspector";
 std::filesystem::path example_recording() {
   std::error_code none;
   const auto executable = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
-  const std::filesystem::path example = std::filesystem::path("sequences") / "desk";
+  std::filesystem::path example = std::filesystem::path("sequences") / "desk";
   for (const auto& root : {std::filesystem::path(GPO_SOURCE_DIR),
                            executable,
                            executable.parent_path(),

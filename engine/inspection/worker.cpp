@@ -38,7 +38,7 @@ Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path) {
 Worker::Worker(Open open, std::function<void()> changed)
     : open_(std::move(open)),
       changed_(std::move(changed)),
-      thread_([this](std::stop_token stop) { run(std::move(stop)); }) {}
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Worker::~Worker() {
   cancel();
@@ -85,7 +85,7 @@ Published Worker::latest() const {
   return published_;
 }
 
-void Worker::run(std::stop_token stop) {
+void Worker::run(const std::stop_token& stop) {
   while (true) {
     std::optional<std::filesystem::path> path;
     std::optional<Settings> settings;

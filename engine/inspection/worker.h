@@ -68,7 +68,7 @@ class Worker {
   static Opened open_with_inspector(const std::filesystem::path& path);
 
  private:
-  void run(std::stop_token stop);
+  void run(const std::stop_token& stop);
   void do_open(const std::filesystem::path& path, const std::stop_token& stop);
   void do_inspect(const Settings& settings, const std::stop_token& stop);
   void report(const std::string& stage, int done, int of, const std::stop_token& stop);

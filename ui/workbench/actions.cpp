@@ -24,7 +24,7 @@ Shortcut letter(char character) {
   return {0, false, false, static_cast<char32_t>(lower), std::string(1, character)};
 }
 
-auto frame_text(std::function<int(const State&)> frame) {
+auto frame_text(int (*frame)(const State&)) {
   return [frame](const State& s) { return s.recording ? std::to_string(frame(s)) : ""; };
 }
 
