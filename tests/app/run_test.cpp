@@ -153,6 +153,9 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
 struct BadInput {
   std::string arguments;
   std::string message;
+  friend std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
+    return stream << bad.arguments;
+  }
 };
 
 class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};

@@ -81,6 +81,9 @@ TEST(Snapshot, ToleranceDecidesWhatCountsAsEqual) {
 struct BadInput {
   std::string arguments;
   std::string message;
+  friend std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
+    return stream << bad.arguments;
+  }
 };
 
 class SnapshotOnBadInput : public ::testing::TestWithParam<BadInput> {};
