@@ -96,7 +96,7 @@ ResultGroup result_group(const Inspection& inspection) {
   const Window& window = *inspection.window;
   ResultGroup group{"RESULT", {}};
   group.rows.push_back({"Status",
-                        result.ok ? "ready" : "failed",
+                        result.ok ? "ok" : "failed",
                         "",
                         result.ok ? "The window could be initialized" : result.reason,
                         result.ok ? Tone::good : Tone::bad});

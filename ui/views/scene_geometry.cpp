@@ -117,7 +117,7 @@ double frustum_depth(const Inspection& inspection) {
     high = high.cwiseMax(pose.p_wc);
   }
   return std::clamp(
-      0.3 * (high - low).norm(), 0.06 * estimate.plane.distance, 0.11 * estimate.plane.distance);
+      0.3 * (high - low).norm(), 0.09 * estimate.plane.distance, 0.14 * estimate.plane.distance);
 }
 
 double axes_length(const Inspection& inspection) { return 1.6 * frustum_depth(inspection); }
@@ -145,8 +145,8 @@ PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
   const double least = 0.5 * inspection.initialization->plane.distance;
   grid.cell = nice_length(std::max({x[1] - x[0], y[1] - y[0], least}) / kCellsAcross * 1.5);
   const auto below = [&](double value) { return static_cast<int>(std::floor(value / grid.cell)); };
-  grid.low = {below(x[0]) - 1, below(y[0]) - 1};
-  grid.high = {below(x[1]) + 2, below(y[1]) + 2};
+  grid.low = {below(x[0]), below(y[0])};
+  grid.high = {below(x[1]) + 1, below(y[1]) + 1};
   return grid;
 }
 
@@ -196,8 +196,9 @@ OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side,
   Vector3d ahead = Vector3d::UnitZ() - camera.up * camera.up.z();
   if (ahead.norm() < 0.2) ahead = -Vector3d::UnitY() + camera.up * camera.up.y();
   camera.front = ahead.normalized();
-  camera.yaw_deg = 40;
-  camera.pitch_deg = 26;
+  camera.yaw_deg = 35;
+  // A plane seen at a slant is wide and low: the taller the view, the steeper it is looked upon.
+  camera.pitch_deg = std::clamp(42 - 13 * aspect, 25.0, 32.0);
   return fitted(camera, scene_extent(inspection, cube_side), aspect, {.bottom = 0.24});
 }
 

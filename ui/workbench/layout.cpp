@@ -10,6 +10,8 @@ namespace gpo {
 namespace {
 
 // At scale 1.
+constexpr float kPictureShare =
+    0.57F;  // of the views' width: a picture fills it, a scene is mostly empty
 constexpr float kMenuHeight = 26;
 constexpr float kStatusHeight = 26;
 constexpr float kTimelineHeight = 76;
@@ -44,7 +46,7 @@ WindowLayout window_layout(float width, float height, float scale) {
   const Rectangle views{column + gap, top, width - column - gap, bottom - top};
   layout.picture = layout.scene = views;
   if (views.width >= 1.2f * views.height) {
-    layout.picture.width = std::round((views.width - gap) / 2);
+    layout.picture.width = std::round((views.width - gap) * kPictureShare);
     layout.scene.x = layout.picture.right() + gap;
     layout.scene.width = views.right() - layout.scene.x;
   } else {

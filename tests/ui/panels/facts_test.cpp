@@ -98,7 +98,7 @@ TEST(Rotations, WhatTheRecordingLacksIsExplained) {
 TEST(Results, CarryUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection);
-  EXPECT_EQ(rows.at("Status").value, "ready");
+  EXPECT_EQ(rows.at("Status").value, "ok");
   EXPECT_EQ(rows.at("Inliers").value, "2 / 3");
   EXPECT_EQ(rows.at("RMS").value, "0.43 px");
   EXPECT_EQ(rows.at("Iterations").value, "9");
