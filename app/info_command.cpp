@@ -16,7 +16,6 @@ int info_command(const std::filesystem::path& recording, bool json) {
     return kDone;
   }
   fmt::print("{}", to_text(info));
-  for (const std::string& note : opened->notes) fmt::print("{}\n", note);
   return kDone;
 }
 

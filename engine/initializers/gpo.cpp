@@ -168,7 +168,8 @@ Initialization deliver(const Window& window, const Unknowns& unknowns) {
   const double sign = in_front > 0 ? 1 : -1;
   result.plane = {sign * n, 1};
   for (int i = 0; i < window.frame_count(); ++i) {
-    result.cameras.push_back({window.R_wc[i], -sign * unknowns.tau[i]});  // p_wci = -d tau_i
+    const Vector3d p_wc = Vector3d::Zero() - sign * unknowns.tau[i];  // p_wci = -d tau_i, no -0
+    result.cameras.push_back({window.R_wc[i], p_wc});
   }
   return result;
 }

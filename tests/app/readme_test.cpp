@@ -65,5 +65,35 @@ TEST(RunScript, PassesExitCodesOn) {
   EXPECT_EQ(shell("./run.sh run no/such/recording").exit_code, 2);
 }
 
+/// Debian's tools as a user without rights and without packages has them.
+Outcome install_without_rights(const std::string& sudo) {
+  const fs::path tools = test::fresh_folder();
+  const auto tool = [&](const std::string& name, const std::string& body) {
+    test::write_file(tools / name, "#!/bin/sh\n" + body + "\n");
+    fs::permissions(tools / name, fs::perms::owner_all);
+  };
+  tool("dpkg-query", "exit 1");
+  tool("id", "echo 1000");
+  tool("apt-get", "echo \"$@\" >> " + (tools / "log").string());
+  tool("sudo", sudo);
+  const Outcome outcome = shell("PATH=" + tools.string() +
+                                ":$PATH bash -c 'source .ci/install.sh; install_packages one two'");
+  return {outcome.exit_code, test::read_file(tools / "log"), outcome.err};
+}
+
+TEST(Install, WithoutRightsPrintsTheLineToTypeAndExitsTwo) {
+  const Outcome outcome = install_without_rights("exit 1");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");  // nothing was tried
+  EXPECT_EQ(outcome.err,
+            "missing packages; type: sudo apt-get install -y --no-install-recommends one two\n");
+}
+
+TEST(Install, WithSudoInstallsWhatIsMissing) {
+  const Outcome outcome = install_without_rights(R"([ "$1" = -v ] || exec "$@")");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "update\ninstall -y --no-install-recommends one two\n");
+}
+
 }  // namespace
 }  // namespace gpo
