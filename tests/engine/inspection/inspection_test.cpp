@@ -1,0 +1,110 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/inspection.h"
+
+#include "engine/error.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::shared_ptr<const Recording> desk() {
+  return open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+}
+
+TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
+  Inspector inspector(desk());
+  Settings settings;
+  settings.frames = 12;
+  const auto first = inspector.inspect(settings);
+  settings.ransac_threshold_px = 1.0;
+  const auto threshold = inspector.inspect(settings);
+  EXPECT_EQ(first->tracks, threshold->tracks);
+  EXPECT_EQ(first->truth, threshold->truth);
+  EXPECT_LT(threshold->window->inlier_count(0), first->window->inlier_count(0));
+  settings.start = 3;
+  const auto moved = inspector.inspect(settings);
+  EXPECT_NE(first->tracks, moved->tracks);
+  EXPECT_EQ(moved->window->start, 3);
+}
+
+TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
+  const auto recording = desk();
+  Inspector used(recording);
+  Settings settings;
+  settings.frames = 12;
+  settings.ransac = false;
+  used.inspect(settings);
+  settings.ransac = true;
+  const auto kept = used.inspect(settings);
+  const auto fresh = Inspector(recording).inspect(settings);
+  EXPECT_EQ(kept->initialization->plane.normal, fresh->initialization->plane.normal);
+  EXPECT_EQ(kept->initialization->solver.final_cost, fresh->initialization->solver.final_cost);
+}
+
+TEST(Inspector, StopsInTheMiddleAndStartsAnewAfterwards) {
+  Inspector inspector(desk());
+  Settings settings;
+  settings.frames = 12;
+  std::stop_source source;
+  int told = 0;
+  const auto stopped =
+      inspector.inspect(settings, source.get_token(), [&](const std::string&, int done, int) {
+        told = done;
+        if (done == 4) source.request_stop();
+      });
+  EXPECT_EQ(stopped, nullptr);
+  EXPECT_EQ(told, 4);
+  EXPECT_NE(inspector.inspect(settings), nullptr);
+}
+
+TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {
+  const auto inspection = Inspector(desk()).inspect({});
+  ASSERT_TRUE(inspection->cube && inspection->true_cube);
+  EXPECT_TRUE(inspection->cube->on_board);
+  // The bundled recording's squares measure 25 mm.
+  EXPECT_NEAR(inspection->true_cube->unit, 0.025, 0.0002);
+  EXPECT_NEAR(inspection->cube->unit * *inspection->evaluation->scale, 0.025, 0.0005);
+  const Plane& plane = inspection->initialization->plane;
+  EXPECT_NEAR(plane.normal.dot(inspection->cube->origin) + plane.distance, 0, 1e-12);
+}
+
+std::string message(const std::shared_ptr<const Recording>& recording, const Settings& settings) {
+  try {
+    Inspector(recording).inspect(settings);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Inspector, SaysWhatARecordingLacks) {
+  Recording bare = *desk();
+  bare.gyroscope.reset();
+  bare.truth.reset();
+  bare.board.reset();
+  const auto recording = std::make_shared<const Recording>(bare);
+  Settings settings;
+  settings.rotations = RotationSource::gyro;
+  EXPECT_EQ(message(recording, settings), "--rotations gyro: desk has no gyroscope");
+  settings.rotations = RotationSource::truth;
+  EXPECT_EQ(message(recording, settings), "--rotations truth: desk has no ground truth");
+  bare.pictures.reset();
+  EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
+              HasSubstr("no pictures and no tracks"));
+}
+
+TEST(Inspector, NamesTheFrameWithoutTruth) {
+  Recording holed = *desk();
+  holed.truth->poses[7].reset();
+  Settings settings;
+  settings.rotations = RotationSource::truth;
+  EXPECT_THAT(message(std::make_shared<const Recording>(holed), settings),
+              HasSubstr("frame 7 has no ground truth"));
+}
+
+}  // namespace
+}  // namespace gpo
