@@ -6,8 +6,6 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
 namespace gpo {
 
 namespace {
@@ -15,9 +13,9 @@ namespace {
 int corner_count(const YamlEntry& root, const std::string& key) {
   const std::string expected = "a number of inner corners, 3 to 100";
   const auto entry = at(root, key, expected);
-  const int count = integer(entry, expected);
+  const std::int64_t count = integer(entry, expected);
   if (count < 3 || count > 100) yaml_fail(entry, std::to_string(count), expected);
-  return count;
+  return static_cast<int>(count);
 }
 
 }  // namespace
@@ -25,9 +23,7 @@ int corner_count(const YamlEntry& root, const std::string& key) {
 Board read_board(const std::filesystem::path& file) {
   const auto root = load_yaml(file);
   const auto pattern = at(root, "pattern", "chessboard");
-  if (text(pattern, "chessboard") != "chessboard") {
-    yaml_fail(pattern, fmt::format("\"{}\"", text(pattern, "")), "chessboard");
-  }
+  if (text(pattern, "chessboard") != "chessboard") yaml_fail(pattern, "chessboard");
   const auto square = at(root, "square", "the side of a square in meters");
   const Board board{corner_count(root, "columns"), corner_count(root, "rows"), number(square)};
   if (board.square_m <= 0) {

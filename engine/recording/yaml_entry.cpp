@@ -23,9 +23,7 @@ void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<
     for (const auto& item : node) append_numbers(entry, item, result);
     return;
   }
-  const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
-  if (!value) yaml_fail({entry.file, entry.key, node}, shown(node), "finite numbers");
-  result.push_back(*value);
+  result.push_back(number({entry.file, entry.key, node}, "finite numbers"));
 }
 
 }  // namespace
@@ -51,35 +49,41 @@ void yaml_fail(const YamlEntry& entry, const std::string& found, const std::stri
   throw InputError(place + ": found " + found + ", expected " + expected);
 }
 
+void yaml_fail(const YamlEntry& entry, const std::string& expected) {
+  yaml_fail(entry, shown(entry.node), expected);
+}
+
+YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node) {
+  return {map.file, map.key.empty() ? key : map.key + "." + key, node};
+}
+
 std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key) {
-  if (!map.node.IsMap()) yaml_fail(map, shown(map.node), "keys and values");
+  if (!map.node.IsMap()) yaml_fail(map, "keys and values");
   const YAML::Node node = map.node[key];
-  if (!node) return std::nullopt;
-  return YamlEntry{map.file, map.key.empty() ? key : map.key + "." + key, node};
+  return node ? std::optional(below(map, key, node)) : std::nullopt;
 }
 
 YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected) {
   if (auto entry = find(map, key)) return *entry;
-  const std::string full = map.key.empty() ? key : map.key + "." + key;
-  throw InputError(map.file.string() + ": key `" + full + "`: found nothing, expected " + expected);
+  // A key that the whole file lacks has no line.
+  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "nothing", expected);
 }
 
 std::string text(const YamlEntry& entry, const std::string& expected) {
-  if (!entry.node.IsScalar()) yaml_fail(entry, shown(entry.node), expected);
+  if (!entry.node.IsScalar()) yaml_fail(entry, expected);
   return entry.node.Scalar();
 }
 
-double number(const YamlEntry& entry) {
+double number(const YamlEntry& entry, const std::string& expected) {
   const auto value = entry.node.IsScalar() ? parse_number(entry.node.Scalar()) : std::nullopt;
-  if (!value) yaml_fail(entry, shown(entry.node), "a finite number");
+  if (!value) yaml_fail(entry, expected);
   return *value;
 }
 
-int integer(const YamlEntry& entry, const std::string& expected) {
+std::int64_t integer(const YamlEntry& entry, const std::string& expected) {
   const auto value = entry.node.IsScalar() ? parse_integer(entry.node.Scalar()) : std::nullopt;
-  constexpr int kMost = 1'000'000;
-  if (!value || *value < -kMost || *value > kMost) yaml_fail(entry, shown(entry.node), expected);
-  return static_cast<int>(*value);
+  if (!value) yaml_fail(entry, expected);
+  return *value;
 }
 
 std::vector<double> numbers(const YamlEntry& entry) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,14 +26,18 @@ YamlEntry load_yaml(const std::filesystem::path& file);
 [[noreturn]] void yaml_fail(const YamlEntry& entry,
                             const std::string& found,
                             const std::string& expected);
+/// The same, with what stands there as FOUND.
+[[noreturn]] void yaml_fail(const YamlEntry& entry, const std::string& expected);
 
+/// A node below a map, with its full key: "MAP.KEY".
+YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node);
 std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key);
 /// The same, or an InputError that says what was expected.
 YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected);
 
 std::string text(const YamlEntry& entry, const std::string& expected);
-double number(const YamlEntry& entry);
-int integer(const YamlEntry& entry, const std::string& expected);
+double number(const YamlEntry& entry, const std::string& expected = "a finite number");
+std::int64_t integer(const YamlEntry& entry, const std::string& expected);
 /// All numbers of a list, of a list of lists, or of a matrix ({rows, cols, data}), row by row.
 std::vector<double> numbers(const YamlEntry& entry);
 std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std::string& expected);

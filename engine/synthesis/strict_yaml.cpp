@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/strict_yaml.h"
 
-#include "engine/error.h"
-
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,22 +12,8 @@
 namespace gpo {
 namespace {
 
-std::string describe(const YAML::Node& node) {
-  if (!node.IsDefined()) return "nothing";
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      return fmt::format("\"{}\"", node.Scalar());
-    case YAML::NodeType::Sequence:
-      return fmt::format("a list of {}", node.size());
-    case YAML::NodeType::Map:
-      return "a map";
-    default:
-      return "nothing";
-  }
-}
-
-std::string expectation(const Range& range, bool integer) {
-  std::string text = integer ? "a whole number" : "a number";
+std::string expectation(const char* what, const Range& range) {
+  std::string text = what;
   if (!range.unit.empty()) text += fmt::format(" [{}]", range.unit);
   if (std::isfinite(range.low) && std::isfinite(range.high)) {
     return text + fmt::format(" from {} to {}", range.low, range.high);
@@ -36,115 +21,75 @@ std::string expectation(const Range& range, bool integer) {
   return std::isfinite(range.low) ? text + fmt::format(" of at least {}", range.low) : text;
 }
 
+double number_within(const YamlEntry& entry, const Range& range) {
+  const std::string expected = expectation("a number", range);
+  const double value = number(entry, expected);
+  if (value < range.low || value > range.high) yaml_fail(entry, expected);
+  return value;
+}
+
 }  // namespace
 
-StrictMap::StrictMap(std::string file, std::string name, const YAML::Node& node)
-    : file_(std::move(file)), name_(std::move(name)), node_(node) {
-  if (!node_.IsMap()) {
-    throw InputError(fmt::format("{}:{}: {}found {}, expected a map of keys and values",
-                                 file_,
-                                 node_.Mark().line + 1,
-                                 name_.empty() ? "" : name_ + ": ",
-                                 describe(node_)));
-  }
+StrictMap::StrictMap(YamlEntry map) : map_(std::move(map)) {
+  if (!map_.node.IsMap()) yaml_fail(map_, "keys and values");
   std::set<std::string> keys;
-  for (const auto& entry : node_) {
+  for (const auto& entry : map_.node) {
     const auto key = entry.first.as<std::string>("");
     if (!keys.insert(key).second) {
-      throw InputError(fmt::format("{}:{}: {}{}: found a second time, expected each key once",
-                                   file_,
-                                   entry.first.Mark().line + 1,
-                                   name_.empty() ? "" : name_ + ".",
-                                   key));
+      yaml_fail(below(map_, key, entry.first), "a second time", "each key once");
     }
   }
 }
 
-StrictMap StrictMap::open(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError(fmt::format("{}: found no readable file, expected a recipe", file.string()));
-  }
-  try {
-    return {file.string(), "", YAML::Load(stream)};
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: found broken YAML ({}), expected a recipe",
-                                 file.string(),
-                                 error.mark.line + 1,
-                                 error.msg));
-  }
-}
+StrictMap StrictMap::open(const std::filesystem::path& file) { return StrictMap(load_yaml(file)); }
 
 void StrictMap::fail(const std::string& key,
                      const std::string& found,
                      const std::string& expected) const {
-  const YAML::Node value = node_[key];
-  const int line = (value.IsDefined() ? value : node_).Mark().line + 1;
-  throw InputError(fmt::format("{}:{}: {}{}: found {}, expected {}",
-                               file_,
-                               line,
-                               name_.empty() ? "" : name_ + ".",
-                               key,
-                               found,
-                               expected));
+  yaml_fail(at(map_, key, expected), found, expected);
 }
 
-bool StrictMap::has(const std::string& key) const {
-  return static_cast<const YAML::Node&>(node_)[key].IsDefined();
-}
-
-YAML::Node StrictMap::take(const std::string& key, const std::string& expected) {
+bool StrictMap::has(const std::string& key) {
   asked_.insert(key);
-  if (!has(key)) fail(key, "nothing", expected);
-  return node_[key];
+  return find(map_, key).has_value();
 }
 
-double StrictMap::parse(const YAML::Node& node,
-                        const std::string& key,
-                        const Range& range,
-                        bool integer) const {
-  double value = 0;
-  const bool read = node.IsScalar() && YAML::convert<double>::decode(node, value);
-  const bool whole = !integer || value == std::floor(value);
-  if (!read || !whole || !std::isfinite(value) || value < range.low || value > range.high) {
-    fail(key, describe(node), expectation(range, integer));
-  }
-  return value;
+YamlEntry StrictMap::take(const std::string& key, const std::string& expected) {
+  asked_.insert(key);
+  return at(map_, key, expected);
 }
 
 double StrictMap::number(const std::string& key, const Range& range) {
-  return parse(take(key, expectation(range, false)), key, range, false);
+  return number_within(take(key, expectation("a number", range)), range);
 }
 
 double StrictMap::number(const std::string& key, const Range& range, double otherwise) {
-  asked_.insert(key);
   return has(key) ? number(key, range) : otherwise;
 }
 
 std::int64_t StrictMap::integer(const std::string& key, const Range& range) {
-  const YAML::Node node = take(key, expectation(range, true));
-  parse(node, key, range, true);
-  std::int64_t value = 0;  // A double would lose the last digits of a time stamp.
-  if (!YAML::convert<std::int64_t>::decode(node, value)) {
-    fail(key, describe(node), expectation(range, true));
-  }
+  const std::string expected = expectation("a whole number", range);
+  const YamlEntry entry = take(key, expected);
+  const std::int64_t value = gpo::integer(entry, expected);
+  const auto rounded = static_cast<double>(value);
+  if (rounded < range.low || rounded > range.high) yaml_fail(entry, expected);
   return value;
 }
 
 std::int64_t StrictMap::integer(const std::string& key,
                                 const Range& range,
                                 std::int64_t otherwise) {
-  asked_.insert(key);
   return has(key) ? integer(key, range) : otherwise;
 }
 
 std::string StrictMap::choice(const std::string& key, const std::vector<std::string>& choices) {
   const std::string expected = fmt::format("one of {}", fmt::join(choices, ", "));
-  const YAML::Node node = take(key, expected);
-  for (const std::string& known : choices) {
-    if (node.IsScalar() && node.Scalar() == known) return known;
+  const YamlEntry entry = take(key, expected);
+  std::string chosen = text(entry, expected);
+  if (std::find(choices.begin(), choices.end(), chosen) == choices.end()) {
+    yaml_fail(entry, expected);
   }
-  fail(key, describe(node), expected);
+  return chosen;
 }
 
 std::vector<double> StrictMap::numbers(const std::string& key,
@@ -154,44 +99,36 @@ std::vector<double> StrictMap::numbers(const std::string& key,
   const std::string count =
       least == most ? std::to_string(least) : fmt::format("{} to {}", least, most);
   const std::string expected = fmt::format("a list of {} numbers", count);
-  const YAML::Node node = take(key, expected);
-  if (!node.IsSequence() || static_cast<int>(node.size()) < least ||
-      static_cast<int>(node.size()) > most) {
-    fail(key, describe(node), expected);
-  }
+  const YamlEntry list = take(key, expected);
+  const int size = static_cast<int>(list.node.size());
+  if (!list.node.IsSequence() || size < least || size > most) yaml_fail(list, expected);
   std::vector<double> values;
-  for (const auto& entry : node) values.push_back(parse(entry, key, range, false));
+  for (const auto& node : list.node) {
+    values.push_back(number_within({list.file, list.key, node}, range));
+  }
   return values;
 }
 
-StrictMap StrictMap::map(const std::string& key) {
-  const YAML::Node node = take(key, "a map");
-  return {file_, name_.empty() ? key : name_ + "." + key, node};
-}
+StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key, "a map")); }
 
 std::vector<StrictMap> StrictMap::list(const std::string& key) {
-  asked_.insert(key);
   if (!has(key)) return {};
-  const YAML::Node node = node_[key];
-  if (!node.IsSequence()) fail(key, describe(node), "a list");
+  const YamlEntry list = take(key, "a list");
+  if (!list.node.IsSequence()) yaml_fail(list, "a list");
   std::vector<StrictMap> maps;
-  const std::string name = name_.empty() ? key : name_ + "." + key;
-  for (std::size_t i = 0; i < node.size(); ++i) {
-    maps.push_back(StrictMap(file_, fmt::format("{}[{}]", name, i), node[i]));
+  for (std::size_t i = 0; i < list.node.size(); ++i) {
+    maps.push_back(StrictMap({list.file, fmt::format("{}[{}]", list.key, i), list.node[i]}));
   }
   return maps;
 }
 
 void StrictMap::finish() const {
-  for (const auto& entry : node_) {
+  for (const auto& entry : map_.node) {
     const auto key = entry.first.as<std::string>("");
     if (asked_.count(key) == 0) {
-      throw InputError(fmt::format("{}:{}: {}{}: found an unknown key, expected one of {}",
-                                   file_,
-                                   entry.first.Mark().line + 1,
-                                   name_.empty() ? "" : name_ + ".",
-                                   key,
-                                   fmt::join(asked_, ", ")));
+      yaml_fail(below(map_, key, entry.first),
+                "an unknown key",
+                fmt::format("one of {}", fmt::join(asked_, ", ")));
     }
   }
 }

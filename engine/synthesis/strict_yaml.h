@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/yaml_entry.h"
+
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
-#include <yaml-cpp/yaml.h>
 
 namespace gpo {
 
@@ -28,7 +28,7 @@ class StrictMap {
   /// The file's top level.
   static StrictMap open(const std::filesystem::path& file);
 
-  bool has(const std::string& key) const;
+  bool has(const std::string& key);
   double number(const std::string& key, const Range& range);
   double number(const std::string& key, const Range& range, double otherwise);
   std::int64_t integer(const std::string& key, const Range& range);
@@ -47,16 +47,10 @@ class StrictMap {
                          const std::string& expected) const;
 
  private:
-  StrictMap(std::string file, std::string name, const YAML::Node& node);
-  YAML::Node take(const std::string& key, const std::string& expected);
-  double parse(const YAML::Node& node,
-               const std::string& key,
-               const Range& range,
-               bool integer) const;
+  explicit StrictMap(YamlEntry map);
+  YamlEntry take(const std::string& key, const std::string& expected);
 
-  std::string file_;
-  std::string name_;  ///< "desk.boxes[2]", empty at the top
-  YAML::Node node_;
+  YamlEntry map_;
   std::set<std::string> asked_;
 };
 
