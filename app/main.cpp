@@ -135,8 +135,10 @@ int main_with_errors(int argc, char** argv) {
   CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
                "gpo-inspector");
   Arguments arguments;
-  declare(app, arguments);
   try {
+    cv::ocl::setUseOpenCL(false);  // its results differ from the CPU's
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    declare(app, arguments);
     app.parse(argc, argv);
     return dispatch(app, arguments);
   } catch (const CLI::CallForHelp& help) {
@@ -154,7 +156,9 @@ int main_with_errors(int argc, char** argv) {
 }  // namespace gpo
 
 int main(int argc, char** argv) {
-  cv::ocl::setUseOpenCL(false);  // its results differ from the CPU's
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  return gpo::main_with_errors(argc, argv);
+  try {
+    return gpo::main_with_errors(argc, argv);
+  } catch (...) {
+    return gpo::kBadInput;  // not even the message could be written
+  }
 }

@@ -3,6 +3,7 @@
 #include "engine/frontend/rotations.h"
 
 #include "engine/error.h"
+#include "engine/recording/timestamps.h"
 
 #include <algorithm>
 #include <array>
@@ -18,23 +19,13 @@ constexpr double kMarginPeriods = 1.5;  // beyond the first and the last sample 
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-std::int64_t median_period_ns(const Gyroscope& gyroscope) {
-  std::vector<std::int64_t> periods;
-  for (std::size_t k = 1; k < gyroscope.timestamps_ns.size(); ++k) {
-    periods.push_back(gyroscope.timestamps_ns[k] - gyroscope.timestamps_ns[k - 1]);
-  }
-  std::ranges::nth_element(periods,
-                           periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2));
-  return periods[periods.size() / 2];
-}
-
 /// Refuses a window whose times the samples do not cover closely. Times on the gyroscope's clock.
 void check_coverage(const Gyroscope& gyroscope, std::int64_t first_ns, std::int64_t last_ns) {
   const auto& t = gyroscope.timestamps_ns;
   const std::string file = gyroscope.file.string();
   if (t.size() < 2)
     throw InputError(fmt::format("{}: {} samples, expected at least 2", file, t.size()));
-  const auto period_ns = static_cast<double>(median_period_ns(gyroscope));
+  const auto period_ns = static_cast<double>(median_period_ns(t));
   const double margin_ns = kMarginPeriods * period_ns;
   if (static_cast<double>(t.front() - first_ns) > margin_ns) {
     throw InputError(

@@ -3,7 +3,7 @@
 #include "engine/recording/recording_info.h"
 
 #include "engine/recording/board_truth.h"
-#include "engine/recording/truth_file.h"
+#include "engine/recording/timestamps.h"
 
 #include <algorithm>
 #include <map>
@@ -33,11 +33,6 @@ const char* distortion_name(Distortion distortion) {
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-double rate_hz(std::span<const std::int64_t> times) {
-  const auto period = median_period_ns(times);
-  return period > 0 ? 1 / seconds(period) : 0;
-}
-
 /// `label(i)` names sample i.
 template <class Label>
 std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
@@ -61,7 +56,7 @@ GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& re
   const auto offset = gyroscope.time_offset_ns;
   GyroscopeInfo info;
   info.samples = static_cast<int>(times.size());
-  info.rate_hz = rate_hz(times);
+  info.rate_hz = gpo::rate_hz(times);
   info.bias_rad_s = gyroscope.bias_rad_s;
   info.bias_source = gyroscope.bias_source;
   info.time_offset_ms = static_cast<double>(offset) * 1e-6;
@@ -200,7 +195,7 @@ RecordingInfo describe(const Recording& recording) {
   info.pictures = recording.pictures != nullptr;
   info.frames = recording.frame_count();
   info.duration_s = seconds(times.back() - times.front());
-  info.rate_hz = rate_hz(times);
+  info.rate_hz = gpo::rate_hz(times);
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
   info.camera = recording.camera;
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);

@@ -3,6 +3,7 @@
 #include "engine/recording/truth_file.h"
 
 #include "engine/recording/csv_table.h"
+#include "engine/recording/timestamps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,17 +65,6 @@ std::optional<Pose> pose_at(const BodyPath& path, std::int64_t time_ns) {
   const Eigen::Quaterniond q =
       Eigen::Quaterniond(T_a.R_wc).slerp(s, Eigen::Quaterniond(T_b.R_wc)).normalized();
   return Pose{q.toRotationMatrix(), (1 - s) * T_a.p_wc + s * T_b.p_wc};
-}
-
-std::int64_t median_period_ns(std::span<const std::int64_t> timestamps_ns) {
-  if (timestamps_ns.size() < 2) return 0;
-  std::vector<std::int64_t> periods;
-  for (std::size_t i = 1; i < timestamps_ns.size(); ++i) {
-    periods.push_back(timestamps_ns[i] - timestamps_ns[i - 1]);
-  }
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
 }
 
 }  // namespace gpo

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,8 +28,5 @@ BodyPath read_body_path(const std::filesystem::path& file);
 /// The pose at a time, slerp and linear between the two samples around it; nothing where these are
 /// more than three (median) sample periods apart, or the time is outside of the path.
 std::optional<Pose> pose_at(const BodyPath& path, std::int64_t time_ns);
-
-/// Median of the differences between successive time stamps; 0 for fewer than two.
-std::int64_t median_period_ns(std::span<const std::int64_t> timestamps_ns);
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "ui/panels/facts.h"
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/recording/timestamps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +15,6 @@ namespace gpo {
 namespace {
 
 constexpr const char* kDash = "\u2013";
-
-/// Mean rate of samples [Hz]; 0 where there are fewer than two.
-double rate_hz(const std::vector<std::int64_t>& timestamps_ns) {
-  if (timestamps_ns.size() < 2) return 0;
-  const double seconds = static_cast<double>(timestamps_ns.back() - timestamps_ns.front()) * 1e-9;
-  return static_cast<double>(timestamps_ns.size() - 1) / seconds;
-}
 
 /// Three significant digits, but none beyond `most` behind the point.
 std::string digits(double value, int most) {
