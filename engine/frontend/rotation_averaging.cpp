@@ -180,7 +180,7 @@ std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relati
 }
 
 std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window,
-                                                        std::stop_token stop) {
+                                                        const std::stop_token& stop) {
   std::vector<Pair> reference_pairs;
   for (int j = 1; j < window.frame_count(); ++j) {
     if (auto pair = decompose_pair(window, 0, j)) reference_pairs.push_back(std::move(*pair));

@@ -33,6 +33,6 @@ std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation>
 /// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Nothing where the
 /// homographies allow no consistent choice, or where stopped.
 std::optional<std::vector<Eigen::Matrix3d>> averaged_rotations(const Window& window,
-                                                               std::stop_token stop = {});
+                                                               const std::stop_token& stop = {});
 
 }  // namespace gpo

@@ -148,7 +148,7 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
                                    int start,
                                    int frames,
                                    const TrackerOptions& options,
-                                   std::stop_token stop,
+                                   const std::stop_token& stop,
                                    const FrameProgress& progress) {
   Tracks tracks;
   tracks.start = start;

@@ -46,7 +46,7 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
                                    int start,
                                    int frames,
                                    const TrackerOptions& options = {},
-                                   std::stop_token stop = {},
+                                   const std::stop_token& stop = {},
                                    const FrameProgress& progress = {});
 
 /// Other people's tracks that are seen in frame `start`, over `frames` frames; NaN where not seen.

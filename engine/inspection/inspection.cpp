@@ -112,13 +112,12 @@ Rotations compute_rotations(const Recording& recording,
                             const Window& window,
                             const WindowTruth* truth,
                             RotationSource source,
-                            std::stop_token stop) {
+                            const std::stop_token& stop) {
   if (source == RotationSource::gyro) {
     return {gyro_rotations(*recording.gyroscope, window.timestamps_ns), ""};
   }
   if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
-  if (auto averaged = averaged_rotations(window, std::move(stop)))
-    return {std::move(*averaged), ""};
+  if (auto averaged = averaged_rotations(window, stop)) return {std::move(*averaged), ""};
   const auto reason = reason_not_to_try(window);
   return {{},
           reason.value_or("rotation averaging: the homographies allow no consistent rotations")};
@@ -149,17 +148,21 @@ struct Inspector::Stages {
   Kept<std::tuple<Span, RansacOptions>, std::shared_ptr<const Window>> outliers;
   Kept<std::tuple<Span, RansacOptions, RotationSource>, Rotations> rotations;
 
-  bool update_tracks(const Settings& settings, std::stop_token stop, const Progress& progress);
-  bool update_truth(const Settings& settings, std::stop_token stop, const Progress& progress);
+  bool update_tracks(const Settings& settings,
+                     const std::stop_token& stop,
+                     const Progress& progress);
+  bool update_truth(const Settings& settings,
+                    const std::stop_token& stop,
+                    const Progress& progress);
   std::shared_ptr<const WindowTruth> compute_truth(const Settings& settings,
-                                                   std::stop_token stop,
+                                                   const std::stop_token& stop,
                                                    const Progress& progress) const;
-  void initialize(const Method& method, std::stop_token stop, Inspection& inspection) const;
-  bool update_window(const Settings& settings, RotationSource source, std::stop_token stop);
+  void initialize(const Method& method, const std::stop_token& stop, Inspection& inspection) const;
+  bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
 };
 
 bool Inspector::Stages::update_tracks(const Settings& settings,
-                                      std::stop_token stop,
+                                      const std::stop_token& stop,
                                       const Progress& progress) {
   const auto [start, frames] = Span(settings.start, settings.frames);
   return tracks.update({start, frames}, [&]() -> std::optional<std::shared_ptr<const Tracks>> {
@@ -180,7 +183,7 @@ bool Inspector::Stages::update_tracks(const Settings& settings,
 }
 
 std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
-    const Settings& settings, std::stop_token stop, const Progress& progress) const {
+    const Settings& settings, const std::stop_token& stop, const Progress& progress) const {
   if (recording->truth) {
     const auto begin = recording->truth->poses.begin() + settings.start;
     WindowTruth truth{recording->truth->source, {begin, begin + settings.frames}, recording->plane};
@@ -198,7 +201,7 @@ std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
 }
 
 bool Inspector::Stages::update_truth(const Settings& settings,
-                                     std::stop_token stop,
+                                     const std::stop_token& stop,
                                      const Progress& progress) {
   const bool done = truth.update(
       {settings.start, settings.frames},
@@ -216,7 +219,7 @@ bool Inspector::Stages::update_truth(const Settings& settings,
 
 bool Inspector::Stages::update_window(const Settings& settings,
                                       RotationSource source,
-                                      std::stop_token stop) {
+                                      const std::stop_token& stop) {
   const Span span(settings.start, settings.frames);
   const RansacOptions ransac = ransac_options(settings);
   outliers.update({span, ransac}, [&]() {
@@ -231,14 +234,13 @@ bool Inspector::Stages::update_window(const Settings& settings,
 }
 
 void Inspector::Stages::initialize(const Method& method,
-                                   std::stop_token stop,
+                                   const std::stop_token& stop,
                                    Inspection& inspection) const {
   Window window = *outliers.value;
   if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
   const auto begin = Clock::now();
-  Initialization initialization = rotations.value.R_wc.empty()
-                                      ? failed(rotations.value.reason)
-                                      : method.initialize(window, std::move(stop));
+  Initialization initialization = rotations.value.R_wc.empty() ? failed(rotations.value.reason)
+                                                               : method.initialize(window, stop);
   Timing& t = inspection.timing;
   t.track = tracks.milliseconds;
   t.ransac = outliers.milliseconds;
@@ -260,7 +262,7 @@ Inspector::Inspector(std::shared_ptr<const Recording> recording)
 Inspector::~Inspector() = default;
 
 std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
-                                                     std::stop_token stop,
+                                                     const std::stop_token& stop,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
   check_window(*stages.recording, settings);

@@ -52,7 +52,7 @@ class Inspector {
   /// The whole chain. Null where it was stopped (within 50 ms). Throws InputError, e.g. for a
   /// window that does not fit or an unknown method.
   std::shared_ptr<const Inspection> inspect(const Settings& settings,
-                                            std::stop_token stop = {},
+                                            const std::stop_token& stop = {},
                                             const Progress& progress = {});
 
  private:
