@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/wait.h>
 
 namespace gpo::test {
@@ -50,6 +50,17 @@ Outcome shell(const std::string& command) {
 }
 
 Outcome program(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }
+
+std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
+  return stream << bad.arguments;
+}
+
+void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path& folder) {
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr(bad.message));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder));
+}
 
 fs::path desk() { return fs::path(GPO_SOURCE_DIR) / "sequences/desk"; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <ostream>
 #include <string>
 
 namespace gpo::test {
@@ -18,6 +19,18 @@ Outcome shell(const std::string& command);
 
 /// Runs `gpo-inspector ARGUMENTS` that way.
 Outcome program(const std::string& arguments);
+
+/// Arguments that the program refuses, and what its one line must say.
+struct BadInput {
+  std::string arguments;
+  std::string message;
+};
+std::ostream& operator<<(std::ostream& stream, const BadInput& bad);
+
+/// Expects exit code 2, one line that holds the message, and nothing in the folder.
+void expect_refused(const Outcome& outcome,
+                    const BadInput& bad,
+                    const std::filesystem::path& folder);
 
 /// An empty folder for the running test.
 std::filesystem::path fresh_folder();

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using test::BadInput;
 using test::desk;
 using test::fresh_folder;
 using test::Outcome;
@@ -150,24 +151,13 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
   EXPECT_FALSE(j.contains("metrics"));
 }
 
-struct BadInput {
-  std::string arguments;
-  std::string message;
-  friend std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
-    return stream << bad.arguments;
-  }
-};
-
 class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
   const Outcome outcome = program("run " + desk().string() + " " + GetParam().arguments +
                                   " --json " + (folder / "r.json").string());
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
-  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-  EXPECT_TRUE(fs::is_empty(folder));
+  expect_refused(outcome, GetParam(), folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(

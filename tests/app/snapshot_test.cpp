@@ -10,6 +10,7 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+using test::BadInput;
 using test::desk;
 using test::fresh_folder;
 using test::Outcome;
@@ -78,24 +79,13 @@ TEST(Snapshot, ToleranceDecidesWhatCountsAsEqual) {
   EXPECT_EQ(snapshot("image", folder / "c.png", baseline + " --tolerance 6").exit_code, 0);
 }
 
-struct BadInput {
-  std::string arguments;
-  std::string message;
-  friend std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
-    return stream << bad.arguments;
-  }
-};
-
 class SnapshotOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
 TEST_P(SnapshotOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
   const Outcome outcome = program("snapshot " + desk().string() + " --output " +
                                   (folder / "a.png").string() + " " + GetParam().arguments);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
-  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-  EXPECT_TRUE(fs::is_empty(folder));
+  expect_refused(outcome, GetParam(), folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(
