@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <optional>
+#include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -27,6 +29,7 @@ constexpr int kLongestPair = 20;  // frames apart; pairs with the reference fram
 constexpr double kNormalCapDeg =
     10;  // a candidate farther from the common normal is the false twin
 constexpr double kSmallestRad = 1e-4;   // keeps the weight of a perfect pair finite
+constexpr double kClearlyWorse = 2.25;  // cost of a second plane: else the two cannot be told apart
 constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
 
 struct Pair {
@@ -93,35 +96,59 @@ Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   return rotation_given_normal(pair.H_ji, normal);
 }
 
-/// The plane's normal in the reference frame on which most decompositions agree. The false twin of
-/// each decomposition moves with the translation, the true one does not.
-std::optional<Vector3d> common_normal(std::span<const Pair> reference_pairs) {
-  std::optional<Vector3d> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Pair& seed_pair : reference_pairs) {
-    for (const HomographyMotion& seed : seed_pair.motions) {
-      Vector3d normal = seed.normal;
-      double cost = 0;
-      for (int round = 0; round < 10; ++round) {
-        Vector3d sum = Vector3d::Zero();
-        cost = 0;
-        for (const Pair& pair : reference_pairs) {
-          if (pair.motions.empty()) continue;
-          const HomographyMotion& motion = nearest(pair.motions, normal);
-          const double angle = angle_deg(motion.normal, normal);
-          cost += weight_of(motion) * std::min(angle * angle, kNormalCapDeg * kNormalCapDeg);
-          if (angle < kNormalCapDeg) sum += weight_of(motion) * motion.normal;
-        }
-        if (sum.norm() < 1e-12) break;
-        normal = sum.normalized();
-      }
-      if (cost < least) {
-        least = cost;
-        best = normal;
-      }
+/// A plane's normal in the reference frame, and how far the decompositions' nearest candidates are
+/// from it: a mean square angle, weighted by parallax [deg^2].
+struct Consensus {
+  Vector3d normal;
+  double cost;
+};
+
+/// Mean shift from one candidate. The false twin of each decomposition moves with the translation,
+/// the true one does not, so that it gathers at lower cost.
+Consensus gather(std::span<const Pair> pairs, Vector3d normal) {
+  double cost = 0;
+  for (int round = 0; round < 10; ++round) {
+    Vector3d sum = Vector3d::Zero();
+    double weights = 0;
+    cost = 0;
+    for (const Pair& pair : pairs) {
+      if (pair.motions.empty()) continue;
+      const HomographyMotion& motion = nearest(pair.motions, normal);
+      const double angle = angle_deg(motion.normal, normal);
+      cost += weight_of(motion) * std::min(angle * angle, kNormalCapDeg * kNormalCapDeg);
+      weights += weight_of(motion);
+      if (angle < kNormalCapDeg) sum += weight_of(motion) * motion.normal;
     }
+    cost /= std::max(weights, 1e-12);
+    if (sum.norm() < 1e-12) break;
+    normal = sum.normalized();
   }
-  return best;
+  return {normal, cost};
+}
+
+/// All points at which candidates gather, the best first.
+std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
+  std::vector<Consensus> found;
+  for (const Pair& pair : pairs) {
+    for (const HomographyMotion& seed : pair.motions) found.push_back(gather(pairs, seed.normal));
+  }
+  std::ranges::stable_sort(found, {}, &Consensus::cost);
+  return found;
+}
+
+/// Why no one plane can be told from the homographies; nothing where it can.
+std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) {
+  if (found.empty()) return "rotation averaging: the homographies allow no consistent rotations";
+  for (const Consensus& other : found) {
+    const double apart_deg = angle_deg(other.normal, found.front().normal);
+    if (apart_deg < kNormalCapDeg || other.cost > kClearlyWorse * found.front().cost) continue;
+    return fmt::format(
+        "rotation averaging: two planes, {:.0f} degrees apart, explain the homographies alike; a "
+        "gyroscope "
+        "or more sideways motion would tell",
+        apart_deg);
+  }
+  return std::nullopt;
 }
 
 /// One step of averaging: x of length frames x 3 that minimizes sum w |x_j - x_i - r|^2, x_0 = 0.
@@ -179,30 +206,37 @@ std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relati
   return R_wc;
 }
 
-std::optional<std::vector<Matrix3d>> averaged_rotations(const Window& window,
-                                                        const std::stop_token& stop) {
+Rotations averaged_rotations(const Window& window, const std::stop_token& stop) {
   std::vector<Pair> reference_pairs;
   for (int j = 1; j < window.frame_count(); ++j) {
-    if (auto pair = decompose_pair(window, 0, j)) reference_pairs.push_back(std::move(*pair));
+    auto pair = decompose_pair(window, 0, j);
+    if (!pair) {
+      return {{},
+              fmt::format("rotation averaging: too few tracks join frame {} to the reference frame "
+                          "(at least {})",
+                          window.start + j,
+                          kLeastPairTracks)};
+    }
+    reference_pairs.push_back(std::move(*pair));
   }
-  const auto normal = common_normal(reference_pairs);
-  if (!normal || static_cast<int>(reference_pairs.size()) + 1 < window.frame_count())
-    return std::nullopt;
+  const std::vector<Consensus> found = consensuses(reference_pairs);
+  if (auto reason = reason_to_doubt(found)) return {{}, *reason};
+  const Vector3d& normal = found.front().normal;
   std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
   std::vector<RelativeRotation> relative;
   for (const Pair& pair : reference_pairs) {
-    relative.push_back({pair.i, pair.j, rotation_of(pair, *normal).transpose()});
+    relative.push_back({pair.i, pair.j, rotation_of(pair, normal).transpose()});
     R_wc.push_back(relative.back().R_ij);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (stop.stop_requested()) return std::nullopt;
+    if (stop.stop_requested()) return {{}, "stopped"};
     for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
       const auto pair = decompose_pair(window, i, j);
       if (pair)
-        relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * *normal).transpose()});
+        relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * normal).transpose()});
     }
   }
-  return average_rotations(relative, std::move(R_wc));
+  return {average_rotations(relative, std::move(R_wc)), ""};
 }
 
 }  // namespace gpo

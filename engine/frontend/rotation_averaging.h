@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/rotations.h"
 #include "engine/frontend/window.h"
 
-#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -26,13 +26,12 @@ struct RelativeRotation {
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                                std::vector<Eigen::Matrix3d> R_wc);
 
-/// Rotations of a window's cameras from its pictures alone, R_wc of frame 0 is I: homographies
-/// between pairs of frames are decomposed, the candidates whose plane normal agrees over the window
-/// are kept, and their rotations averaged. On a plane these are far better than five-point
-/// rotations
-/// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Nothing where the
-/// homographies allow no consistent choice, or where stopped.
-std::optional<std::vector<Eigen::Matrix3d>> averaged_rotations(const Window& window,
-                                                               const std::stop_token& stop = {});
+/// Rotations of a window's cameras from its pictures alone: homographies between pairs of frames
+/// are decomposed, the candidates whose plane normal agrees over the window are kept, and their
+/// rotations averaged. On a plane these are far better than five-point rotations
+/// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Where the homographies
+/// allow no consistent choice, or two planes alike, there are none and a reason; none either where
+/// stopped.
+Rotations averaged_rotations(const Window& window, const std::stop_token& stop = {});
 
 }  // namespace gpo

@@ -13,6 +13,12 @@
 
 namespace gpo {
 
+/// Camera rotations of a window, one a frame, R_wc of its first frame is I; or why there are none.
+struct Rotations {
+  std::vector<Eigen::Matrix3d> R_wc;
+  std::string reason;
+};
+
 enum class RotationSource { automatic, gyro, averaging, truth };
 
 /// Keys of the sources on the command line and in files, in the order of the enumeration.

@@ -102,12 +102,6 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   return R_wc;
 }
 
-/// Either the rotations, or why there are none.
-struct Rotations {
-  std::vector<Eigen::Matrix3d> R_wc;
-  std::string reason;
-};
-
 Rotations compute_rotations(const Recording& recording,
                             const Window& window,
                             const WindowTruth* truth,
@@ -117,10 +111,8 @@ Rotations compute_rotations(const Recording& recording,
     return {gyro_rotations(*recording.gyroscope, window.timestamps_ns), ""};
   }
   if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
-  if (auto averaged = averaged_rotations(window, stop)) return {std::move(*averaged), ""};
-  const auto reason = reason_not_to_try(window);
-  return {{},
-          reason.value_or("rotation averaging: the homographies allow no consistent rotations")};
+  if (auto reason = reason_not_to_try(window)) return {{}, *reason};
+  return averaged_rotations(window, stop);
 }
 
 /// The plane z = 0 of a board.
