@@ -27,6 +27,7 @@ std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
                                               const std::vector<Eigen::Vector2d>& raw_px) {
   const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
   std::vector<Eigen::Vector3d> rays;
+  rays.reserve(raw_px.size());
   for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
   return rays;
 }

@@ -156,7 +156,8 @@ struct Inspector::Stages {
 bool Inspector::Stages::update_tracks(const Settings& settings,
                                       const std::stop_token& stop,
                                       const Progress& progress) {
-  const auto [start, frames] = Span(settings.start, settings.frames);
+  const int start = settings.start;
+  const int frames = settings.frames;
   return tracks.update({start, frames}, [&]() -> std::optional<std::shared_ptr<const Tracks>> {
     if (!recording->tracks.empty()) {
       return std::make_shared<const Tracks>(select_tracks(recording->tracks, start, frames));

@@ -29,10 +29,11 @@ std::string error_of(Work&& work) {
 Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path) {
   const auto recording = open_recording(path);
   const auto inspector = std::make_shared<Inspector>(recording);
-  return {recording,
-          [inspector](const Settings& settings, std::stop_token stop, const Progress& progress) {
-            return inspector->inspect(settings, std::move(stop), progress);
-          }};
+  return {
+      recording,
+      [inspector](const Settings& settings, const std::stop_token& stop, const Progress& progress) {
+        return inspector->inspect(settings, stop, progress);
+      }};
 }
 
 Worker::Worker(Open open, std::function<void()> changed)

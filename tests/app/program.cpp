@@ -30,7 +30,7 @@ fs::path fresh_folder() {
   const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(info->test_suite_name()) + "." + info->name();
   std::ranges::replace(name, '/', '_');
-  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name;
+  fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;
@@ -45,7 +45,7 @@ Outcome shell(const std::string& command) {
   const std::string err = log.string() + ".err";
   const std::string line = "cd '" GPO_SOURCE_DIR "' && unset DISPLAY WAYLAND_DISPLAY && { " +
                            command + " ; } > '" + out + "' 2> '" + err + "' < /dev/null";
-  const int status = std::system(line.c_str());
+  const int status = std::system(line.c_str());  // NOLINT(concurrency-mt-unsafe): one thread
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
 
