@@ -27,6 +27,7 @@ Gyroscope constant_rate(const Vector3d& rate) {
 
 std::vector<std::int64_t> frame_times() {
   std::vector<std::int64_t> times;
+  times.reserve(30);
   for (int i = 0; i < 30; ++i) times.push_back(1'101'234'567 + 33'333'333LL * i);
   return times;
 }
