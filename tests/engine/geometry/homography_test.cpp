@@ -23,9 +23,10 @@ std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
 
 double largest_difference_px(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {
   double largest = 0;
-  for (double u = 0; u < 640; u += 64) {
-    for (double v = 0; v < 480; v += 48) {
-      largest = std::max(largest, (transfer(A, {u, v}) - transfer(B, {u, v})).norm());
+  for (int u = 0; u < 640; u += 64) {
+    for (int v = 0; v < 480; v += 48) {
+      const Eigen::Vector2d px(u, v);
+      largest = std::max(largest, (transfer(A, px) - transfer(B, px)).norm());
     }
   }
   return largest;

@@ -28,7 +28,8 @@ class WorkerTest : public testing::Test {
     if (path == "bug") throw std::runtime_error("a bug");
     auto recording = std::make_shared<Recording>();
     recording->name = path.string();
-    return {recording, [this](const Settings& settings, std::stop_token stop, const Progress& say) {
+    return {recording,
+            [this](const Settings& settings, const std::stop_token& stop, const Progress& say) {
               return compute(settings, stop, say);
             }};
   }
