@@ -28,9 +28,14 @@ void add_settings(CLI::App& command, Settings& settings) {
     using Value = std::decay_t<decltype(value)>;
     std::string help = info.help;
     if (*info.unit != '\0') help += fmt::format(" [{}]", info.unit);
-    if constexpr (std::is_same_v<Value, bool>) {
-      command.add_flag_callback(
-          "--no-" + option_name(info).substr(2), [&value] { value = false; }, "Off: " + help);
+    if constexpr (std::is_same_v<Value, std::optional<bool>>) {
+      const std::string name = option_name(info);
+      CLI::Option* on = command.add_flag_callback(
+          name, [&value] { value = true; }, help);
+      command
+          .add_flag_callback(
+              "--no-" + name.substr(2), [&value] { value = false; }, "Off: " + help)
+          ->excludes(on);
     } else if constexpr (std::is_same_v<Value, RotationSource>) {
       help += fmt::format(": {}", fmt::join(rotation_source_keys(), ", "));
       command.add_option_function<std::string>(

@@ -35,6 +35,7 @@ struct Window {
   std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
+  bool all_tracks = false;  ///< methods that need no plane use the tracks off it, too
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }

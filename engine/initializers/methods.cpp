@@ -20,7 +20,7 @@ Initialization failed(std::string reason, SolverReport solver) {
 
 std::span<const Method> methods() {
   static const std::array table{
-      Method{"gpo", "GPO", 0x009E73, initialize_gpo},
+      Method{"gpo", "GPO", 0x009E73, MethodFamily::optimization, true, initialize_gpo},
   };
   return table;
 }

@@ -12,12 +12,17 @@
 
 namespace gpo {
 
+/// How a method uses many frames (paper, "Multi-frame Initialization Baselines").
+enum class MethodFamily { aggregation, optimization };
+
 /// A method is one file and one row of this table: the command line's choices, the combo box, the
 /// legends and the tests read it.
 struct Method {
   std::string key;    ///< on the command line, in files
   std::string title;  ///< for people
   std::uint32_t rgb;  ///< 0xRRGGBB, Okabe-Ito
+  MethodFamily family;
+  bool needs_plane;  ///< takes every track that it is given to lie on the plane
   Initialization (*initialize)(const Window& window, std::stop_token stop);
 };
 

@@ -46,9 +46,10 @@ struct Kept {
   }
 };
 
+/// A method that needs no plane gets its start from the tracks on it even where it then uses all.
 RansacOptions ransac_options(const Settings& settings) {
   RansacOptions options;
-  options.enabled = settings.ransac;
+  options.enabled = uses_ransac(settings) || !find_method(settings.method).needs_plane;
   options.threshold_px = settings.ransac_threshold_px;
   options.seed = settings.seed;
   return options;
@@ -131,6 +132,10 @@ std::optional<Plane> plane_of_board(const Recording& recording,
 
 }  // namespace
 
+bool uses_ransac(const Settings& settings) {
+  return settings.ransac.value_or(find_method(settings.method).needs_plane);
+}
+
 struct Inspector::Stages {
   using Span = std::tuple<int, int>;  // start, frames
   std::shared_ptr<const Recording> recording;
@@ -149,7 +154,9 @@ struct Inspector::Stages {
   std::shared_ptr<const WindowTruth> compute_truth(const Settings& settings,
                                                    const std::stop_token& stop,
                                                    const Progress& progress) const;
-  void initialize(const Method& method, const std::stop_token& stop, Inspection& inspection) const;
+  void initialize(const Settings& settings,
+                  const std::stop_token& stop,
+                  Inspection& inspection) const;
   bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
 };
 
@@ -226,14 +233,16 @@ bool Inspector::Stages::update_window(const Settings& settings,
   });
 }
 
-void Inspector::Stages::initialize(const Method& method,
+void Inspector::Stages::initialize(const Settings& settings,
                                    const std::stop_token& stop,
                                    Inspection& inspection) const {
   Window window = *outliers.value;
+  window.all_tracks = !uses_ransac(settings);
   if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
   const auto begin = Clock::now();
-  Initialization initialization = rotations.value.R_wc.empty() ? failed(rotations.value.reason)
-                                                               : method.initialize(window, stop);
+  Initialization initialization = rotations.value.R_wc.empty()
+                                      ? failed(rotations.value.reason)
+                                      : find_method(settings.method).initialize(window, stop);
   Timing& t = inspection.timing;
   t.track = tracks.milliseconds;
   t.ransac = outliers.milliseconds;
@@ -259,7 +268,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
   check_window(*stages.recording, settings);
-  const Method& method = find_method(settings.method);
+  find_method(settings.method);  // throws before any work is done
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
@@ -269,7 +278,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                         stages.update_window(settings, inspection.rotations_used, stop);
   if (!prepared) return nullptr;
   if (progress) progress("initializing", 0, 0);
-  stages.initialize(method, stop, inspection);
+  stages.initialize(settings, stop, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
     if (inspection.truth) {

@@ -5,6 +5,7 @@
 #include "engine/frontend/rotations.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace gpo {
@@ -15,12 +16,18 @@ struct Settings {
   int frames = 30;             ///< length of the window
   std::string method = "gpo";  ///< key in `methods()`
   RotationSource rotations = RotationSource::automatic;  ///< gyroscope, else averaging
-  bool ransac = true;                                    ///< reject outliers by homography RANSAC
-  double ransac_threshold_px = 2.0;                      ///< transfer error of an inlier, one-sided
-  std::uint64_t seed = 1;                                ///< of every random choice
+  /// Whether tracks off the plane are rejected by homography RANSAC; nothing: as the method's
+  /// authors do (`uses_ransac`).
+  std::optional<bool> ransac;
+  double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
+  std::uint64_t seed = 1;            ///< of every random choice
 
   bool operator==(const Settings&) const = default;
 };
+
+/// What `ransac` comes to. Chosen, or by default on for the methods that need a plane and off for
+/// those that use all tracks (ba, pnp_ba). Throws InputError for an unknown method.
+bool uses_ransac(const Settings& settings);
 
 /// How a setting is called and explained, wherever it is shown.
 struct SettingInfo {
@@ -46,7 +53,11 @@ void visit_settings(S& settings, Visitor&& visit) {
         settings.rotations);
   visit(
       SettingInfo{
-          "ransac", "RANSAC", "", "Reject outliers by a homography from the reference frame"},
+          "ransac",
+          "RANSAC",
+          "",
+          "Reject tracks off the plane by a homography from the reference frame; default: as the "
+          "method does"},
       settings.ransac);
   visit(
       SettingInfo{

@@ -156,7 +156,8 @@ TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
   open();
   const Commands commands = click(115, 167);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
-  EXPECT_NE(find<ChangeSettings>(commands)->settings.ransac, inspection_->settings.ransac);
+  EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings),
+            uses_ransac(inspection_->settings));
 }
 
 TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {

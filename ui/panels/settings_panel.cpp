@@ -65,8 +65,9 @@ struct SettingRows {
   void operator()(const SettingInfo& info, double& value) {
     label(info.title, info.help);
     // A threshold of what is switched off does nothing.
-    const bool idle =
-        info.key == std::string("ransac_threshold_px") && !input.state.settings.ransac;
+    const Settings& settings = input.state.settings;
+    const bool idle = info.key == std::string("ransac_threshold_px") && !uses_ransac(settings) &&
+                      find_method(settings.method).needs_plane;
     ImGui::BeginDisabled(idle);
     const std::string format = fmt::format("%.1f {}", info.unit);
     changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
@@ -82,9 +83,13 @@ struct SettingRows {
                  : std::string(info.help) + ". Drag, or double-click to type");
   }
 
-  void operator()(const SettingInfo& info, bool& value) {
+  void operator()(const SettingInfo& info, std::optional<bool>& value) {
     label(info.title, info.help);
-    changed |= ImGui::Checkbox((std::string("##") + info.key).c_str(), &value);
+    bool used = uses_ransac(input.state.settings);
+    if (ImGui::Checkbox((std::string("##") + info.key).c_str(), &used)) {
+      value = used;
+      changed = true;
+    }
     tooltip(info.help);
   }
 

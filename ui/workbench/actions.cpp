@@ -196,8 +196,8 @@ void add_method_actions(std::vector<Action>& table) {
                 "Method",
                 {letter('R')},
                 "Rejects outliers by a homography from the reference frame",
-                [](State& s) { s.settings.ransac = !s.settings.ransac; }};
-  ransac.checked = [](const State& s) { return s.settings.ransac; };
+                [](State& s) { s.settings.ransac = !uses_ransac(s.settings); }};
+  ransac.checked = [](const State& s) { return uses_ransac(s.settings); };
   ransac.needs_recording = false;
   table.push_back(ransac);
   table.push_back({"compute",

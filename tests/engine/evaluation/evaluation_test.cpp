@@ -3,7 +3,7 @@
 #include "engine/evaluation/evaluation.h"
 
 #include "engine/evaluation/bound.h"
-#include "engine/evaluation/plane_fit.h"
+#include "engine/geometry/plane_fit.h"
 #include "engine/initializers/map_points.h"
 #include "tests/engine/simulated_window.h"
 

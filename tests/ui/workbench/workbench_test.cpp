@@ -138,9 +138,9 @@ TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
 TEST(Workbench, RansacIsSwitched) {
   WorkbenchState state = opened();
   run(state, "ransac");
-  EXPECT_FALSE(state.settings.ransac);
+  EXPECT_FALSE(uses_ransac(state.settings));
   run(state, "ransac");
-  EXPECT_TRUE(state.settings.ransac);
+  EXPECT_TRUE(uses_ransac(state.settings));
 }
 
 TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {

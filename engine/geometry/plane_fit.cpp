@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/evaluation/plane_fit.h"
+#include "engine/geometry/plane_fit.h"
 
 #include <algorithm>
 #include <random>
