@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "app/output_file.h"
 #include "engine/inspection/report.h"
+#include "engine/output_file.h"
 #include "engine/recording/recording.h"
 
 #include <fmt/format.h>
