@@ -99,6 +99,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   Chart chart{axis.title, "window [frames]", axis.label, axis.logarithmic, {}};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
+    if (curve.x.empty()) continue;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
     chart.curves.push_back(std::move(curve));
@@ -109,12 +110,21 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   return chart;
 }
 
-/// "12 to 36": how many windows each point of the curves stands for.
-std::string windows_text(const std::vector<Cell>& cells) {
-  if (cells.empty()) return "0";
-  const auto [least, most] = std::ranges::minmax(cells, {}, &Cell::windows);
-  return least.windows == most.windows ? std::to_string(most.windows)
-                                       : fmt::format("{} to {}", least.windows, most.windows);
+/// How many windows each point of the curves stands for, and who has no curve.
+std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan) {
+  std::string text = "none";
+  if (!cells.empty()) {
+    const auto [least, most] = std::ranges::minmax(cells, {}, &Cell::windows);
+    text = least.windows == most.windows ? std::to_string(most.windows)
+                                         : fmt::format("{} to {}", least.windows, most.windows);
+  }
+  text += " a length";
+  for (const Configuration& configuration : plan.configurations) {
+    const std::string key = key_of(configuration);
+    const bool has = std::ranges::find(cells, key, &Cell::configuration) != cells.end();
+    if (!has) text += ", none solved by " + title_of(configuration);
+  }
+  return text;
 }
 
 }  // namespace
@@ -138,12 +148,12 @@ std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configura
 
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
-  Figure figure{plan.name,
-                fmt::format("{}: median and quartiles over the windows that all of them solved ({} "
-                            "a length)",
-                            plan.title,
-                            windows_text(cells)),
-                {}};
+  Figure figure{
+      plan.name,
+      fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
+                  plan.title,
+                  windows_text(cells, plan)),
+      {}};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
   return figure;
 }

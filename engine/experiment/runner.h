@@ -20,9 +20,9 @@ struct ExperimentProgress {
 
 struct RunOptions {
   int jobs = 1;  ///< windows of so many starts are computed at once [-]
-  Shard shard;
-  std::stop_token stop;
-  std::function<void(const ExperimentProgress&)> progress;  ///< called by one thread at a time
+  Shard shard = {};
+  std::stop_token stop = {};
+  std::function<void(const ExperimentProgress&)> progress = {};  ///< called by one thread at a time
 };
 
 /// Computes the windows that the folder lacks and saves each when it is finished. `recordings` are

@@ -50,9 +50,7 @@ std::vector<std::string> configurations_in(std::span<const Row> rows) {
 }
 
 Cell cell_of(std::span<const Row> rows, const std::string& configuration, int frames) {
-  Cell cell;
-  cell.configuration = configuration;
-  cell.frames = frames;
+  Cell cell{.configuration = configuration, .frames = frames};
   std::map<std::string, std::vector<double>> values;
   for (const Row& row : rows) {
     if (row.configuration != configuration || row.settings.frames != frames) continue;
@@ -140,7 +138,7 @@ std::vector<Cell> summarize(std::span<const Row> rows) {
 
 std::vector<Row> on_common_windows(std::span<const Row> rows) {
   std::map<int, std::set<std::string>> solvers;  // configurations by length
-  std::map<WindowKey, std::size_t> solved;          // by how many
+  std::map<WindowKey, std::size_t> solved;       // by how many
   for (const Row& row : rows) {
     if (!row.ok()) continue;
     solvers[row.settings.frames].insert(row.configuration);

@@ -26,9 +26,10 @@ Distribution distribution(std::vector<double> values);
 struct Cell {
   std::string configuration;  ///< key
   int frames = 0;
-  int windows = 0;                             ///< tried
-  int ok = 0;                                  ///< solved
-  std::map<std::string, Distribution> values;  ///< by column, over the solved windows where known
+  int windows = 0;  ///< tried
+  int ok = 0;       ///< solved
+  std::map<std::string, Distribution> values =
+      {};  ///< by column, over the solved windows where known
 };
 
 /// One cell a length and configuration, in that order; those without windows are left out.
