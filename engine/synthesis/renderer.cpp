@@ -143,6 +143,28 @@ cv::Vec3f trace(const Scene& scene, const Eye& eye, const Eigen::Vector2f& slope
   return on_desk ? desk_color(scene, x, y) : room_color(eye.pose.p_wc, ray);
 }
 
+std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
+  std::vector<Eye> eyes;
+  eyes.reserve(poses.size());
+  for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
+  return eyes;
+}
+
+void render_row(
+    const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
+  const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
+  const auto* ray = map.rays.data() + per_pixel * map.width * row;
+  for (int col = 0; col < map.width; ++col) {
+    cv::Vec3f sum(0, 0, 0);
+    for (std::size_t k = 0; k < per_pixel; ++k) {
+      // 23 has no factor in common with any number of samples: each pose gets its sample, and a
+      // sample's time has little to do with its place in the pixel.
+      sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
+    }
+    light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
+  }
+}
+
 }  // namespace
 
 RayMap make_ray_map(const Camera& camera, int samples, int threads) {
@@ -166,22 +188,16 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
 }
 
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads) {
-  std::vector<Eye> eyes;
-  eyes.reserve(poses.size());
-  for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
-  const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
+  const std::vector<Eye> eyes = make_eyes(scene, poses);
+  cv::Mat light(map.height, map.width, CV_32FC3);
+  for_each_row(map.height, threads, [&](int row) { render_row(scene, map, eyes, row, light); });
+  return light;
+}
+
+cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads) {
   cv::Mat light(map.height, map.width, CV_32FC3);
   for_each_row(map.height, threads, [&](int row) {
-    const auto* ray = map.rays.data() + per_pixel * map.width * row;
-    for (int col = 0; col < map.width; ++col) {
-      cv::Vec3f sum(0, 0, 0);
-      for (std::size_t k = 0; k < per_pixel; ++k) {
-        // 23 has no factor in common with any number of samples: each pose gets its sample, and a
-        // sample's time has little to do with its place in the pixel.
-        sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
-      }
-      light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
-    }
+    render_row(scene, map, make_eyes(scene, row_poses(row)), row, light);
   });
   return light;
 }
