@@ -50,7 +50,9 @@ void add_settings(CLI::App& command, Settings& settings) {
 }
 
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
-  command.add_option("recording", arguments.recording, "Folder or file of a recording")->required();
+  command
+      .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
+      ->required();
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_settings(command, arguments.settings);
@@ -99,10 +101,12 @@ struct Arguments {
 void declare(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(0, 1);
   CLI::App* view = app.add_subcommand("view", "The window; the default");
-  view->add_option("recording", arguments.view_recording, "Folder or file of a recording");
+  view->add_option(
+      "recording", arguments.view_recording, "Folder or file of a recording, or a recipe");
   add_settings(*view, arguments.view_settings);
   CLI::App* info = app.add_subcommand("info", "What is found in a recording");
-  info->add_option("recording", arguments.info_recording, "Folder or file of a recording")
+  info->add_option(
+          "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
       ->required();
   info->add_flag("--json", arguments.info_json, "As JSON");
   add_run(app, arguments.run);

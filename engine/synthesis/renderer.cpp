@@ -171,7 +171,7 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
   RayMap map{camera.width, camera.height, samples, {}};
   const std::size_t per_pixel = static_cast<std::size_t>(samples) * samples;
   map.rays.resize(per_pixel * camera.width * camera.height);
-  for_each_row(camera.height, threads, [&](int row) {
+  in_parallel(camera.height, threads, [&](int row) {
     auto* ray = map.rays.data() + per_pixel * camera.width * row;
     for (int col = 0; col < camera.width; ++col) {
       for (int k = 0; k < samples * samples; ++k) {
@@ -190,13 +190,13 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads) {
   const std::vector<Eye> eyes = make_eyes(scene, poses);
   cv::Mat light(map.height, map.width, CV_32FC3);
-  for_each_row(map.height, threads, [&](int row) { render_row(scene, map, eyes, row, light); });
+  in_parallel(map.height, threads, [&](int row) { render_row(scene, map, eyes, row, light); });
   return light;
 }
 
 cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads) {
   cv::Mat light(map.height, map.width, CV_32FC3);
-  for_each_row(map.height, threads, [&](int row) {
+  in_parallel(map.height, threads, [&](int row) {
     render_row(scene, map, make_eyes(scene, row_poses(row)), row, light);
   });
   return light;
@@ -211,7 +211,7 @@ cv::Mat expose(const cv::Mat& light,
   if (picture.blur > 0) cv::GaussianBlur(light, soft, {}, picture.blur);
   cv::Mat result(light.size(), CV_8UC3);
   const double half_diagonal2 = (std::pow(light.cols, 2) + std::pow(light.rows, 2)) / 4;
-  for_each_row(light.rows, threads, [&](int row) {
+  in_parallel(light.rows, threads, [&](int row) {
     Random random(seed, static_cast<std::uint64_t>(row));
     for (int col = 0; col < light.cols; ++col) {
       const double r2 =

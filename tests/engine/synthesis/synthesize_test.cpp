@@ -7,7 +7,6 @@
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <fstream>
-#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -20,18 +19,6 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Relative path -> bytes of every file below the folder.
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ostringstream bytes;
-    bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    files[fs::relative(entry.path(), folder).string()] = bytes.str();
-  }
-  return files;
-}
 
 /// The numbers of a CSV file, row by row, without its header; time stamps apart.
 struct Table {
@@ -64,7 +51,7 @@ TEST(Synthesize, WritesTheEurocLayout) {
   });
   EXPECT_EQ(last, 4);
   std::vector<std::string> names;
-  for (const auto& [name, bytes] : contents(output)) names.push_back(name);
+  for (const auto& [name, bytes] : folder_contents(output)) names.push_back(name);
   EXPECT_THAT(names,
               testing::ElementsAre("board.yaml",
                                    "mav0/cam0/data.csv",
@@ -124,7 +111,7 @@ TEST(Synthesize, SameRecipeSameBytesWhateverTheThreads) {
     const fs::path folder = test_folder("out");
     synthesize(recipe, folder / "one", {}, 1);
     synthesize(recipe, folder / "three", {}, 3);
-    EXPECT_EQ(contents(folder / "one"), contents(folder / "three"));
+    EXPECT_EQ(folder_contents(folder / "one"), folder_contents(folder / "three"));
   }
 }
 
@@ -134,8 +121,8 @@ TEST(Synthesize, AnotherSeedOnlyChangesTheNoise) {
   synthesize(recipe, folder / "a");
   recipe.seed = 4;
   synthesize(recipe, folder / "b");
-  const auto a = contents(folder / "a");
-  const auto b = contents(folder / "b");
+  const auto a = folder_contents(folder / "a");
+  const auto b = folder_contents(folder / "b");
   EXPECT_NE(a.at("mav0/imu0/data.csv"), b.at("mav0/imu0/data.csv"));
   EXPECT_NE(a.at("mav0/cam0/data/5000000000.png"), b.at("mav0/cam0/data/5000000000.png"));
   EXPECT_EQ(a.at("mav0/state_groundtruth_estimate0/data.csv"),
@@ -214,8 +201,8 @@ TEST(Synthesize, RollingShutterLeavesTheTruthAlone) {
   const fs::path folder = test_folder("out");
   synthesize(rolling_recipe(0, 0), folder / "global");
   synthesize(rolling_recipe(0, 0.03), folder / "rolling");
-  const auto global = contents(folder / "global");
-  const auto rolling = contents(folder / "rolling");
+  const auto global = folder_contents(folder / "global");
+  const auto rolling = folder_contents(folder / "rolling");
   const std::string truth = "mav0/state_groundtruth_estimate0/data.csv";
   EXPECT_EQ(global.at(truth), rolling.at(truth));
   EXPECT_EQ(global.at("mav0/imu0/data.csv"), rolling.at("mav0/imu0/data.csv"));
@@ -245,7 +232,7 @@ TEST(Synthesize, RefusesAFolderWithSomethingInIt) {
         error.what(),
         output.string() + ": found something there already, expected no folder or an empty one");
   }
-  EXPECT_EQ(contents(output).size(), 1U);
+  EXPECT_EQ(folder_contents(output).size(), 1U);
   EXPECT_FALSE(fs::exists(output.string() + ".unfinished"));
 }
 
