@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/recordings.h"
 #include "engine/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/runner.h"
@@ -28,9 +29,10 @@ using Recordings = std::vector<std::shared_ptr<const Recording>>;
 constexpr std::size_t kCacheBytes = std::size_t{96} << 20;
 
 Recordings open_all(const std::vector<fs::path>& paths) {
+  resolve_recordings(paths);  // all recipes at once
   Recordings recordings;
   for (const fs::path& path : paths) {
-    recordings.push_back(open_recording(path, {.tracks = {}, .cache_bytes = kCacheBytes}));
+    recordings.push_back(open_given(path, {.tracks = {}, .cache_bytes = kCacheBytes}));
     const Recording& recording = *recordings.back();
     for (const std::string& note : recording.notes) {
       fmt::print(stderr, "{}: {}\n", recording.name, note);
@@ -101,12 +103,12 @@ int run(const EvaluateArguments& arguments) {
                                   arguments.seed};
   const Shard shard = arguments.shard ? parse_shard(*arguments.shard) : Shard{};
   cv::setNumThreads(1);  // the times are those of one thread, whatever the jobs
-  const Interrupt interrupt;
   const Recordings recordings = open_all(arguments.recordings);
   const Experiment experiment = plan_experiment(recordings, request);
   for (const std::string& note : notes_of(experiment)) fmt::print(stderr, "{}\n", note);
   const std::string output = arguments.output.string();
   ProgressLine line;
+  const Interrupt interrupt;
   const RunOptions options{arguments.jobs, shard, interrupt.token(), std::ref(line)};
   if (!run_experiment(experiment, recordings, arguments.output, options)) {
     fmt::print(stderr, "\nstopped; the same command goes on from there ({})\n", output);

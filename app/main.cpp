@@ -56,7 +56,9 @@ void add_settings(CLI::App& command, Settings& settings) {
 }
 
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
-  command.add_option("recording", arguments.recording, "Folder or file of a recording")->required();
+  command
+      .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
+      ->required();
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_settings(command, arguments.settings);
@@ -117,7 +119,8 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
       "evaluate",
       "Methods on many windows: results.csv, summary.json, figures and the running times. "
       "Interrupted (exit code 1) or killed, the same line goes on where it was");
-  command->add_option("recording", arguments.recordings, "Folders or files of recordings");
+  command->add_option(
+      "recording", arguments.recordings, "Folders or files of recordings, or recipes");
   add_experiment(*command, arguments);
   arguments.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--jobs", arguments.jobs, "Windows of so many starts are computed at once")
@@ -148,10 +151,12 @@ struct Arguments {
 void declare(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(0, 1);
   CLI::App* view = app.add_subcommand("view", "The window; the default");
-  view->add_option("recording", arguments.view_recording, "Folder or file of a recording");
+  view->add_option(
+      "recording", arguments.view_recording, "Folder or file of a recording, or a recipe");
   add_settings(*view, arguments.view_settings);
   CLI::App* info = app.add_subcommand("info", "What is found in a recording");
-  info->add_option("recording", arguments.info_recording, "Folder or file of a recording")
+  info->add_option(
+          "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
       ->required();
   info->add_flag("--json", arguments.info_json, "As JSON");
   add_run(app, arguments.run);
