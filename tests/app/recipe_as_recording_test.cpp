@@ -3,6 +3,8 @@
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -14,14 +16,22 @@ using nlohmann::json;
 using test::fresh_folder;
 using test::Outcome;
 using test::program;
+using test::shell;
 using ::testing::HasSubstr;
+
+/// What is kept of recipes called so.
+std::vector<fs::path> recordings_of(const std::string& name) {
+  fs::create_directories(GPO_RECORDINGS_DIR);
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(GPO_RECORDINGS_DIR)) {
+    if (entry.path().filename().string().starts_with(name + "-")) folders.push_back(entry.path());
+  }
+  return folders;
+}
 
 /// A recipe of this test's own, whose recording is not there yet.
 fs::path fresh_recipe(const std::string& name, const std::string& text) {
-  fs::create_directories(GPO_RECORDINGS_DIR);
-  for (const auto& made : fs::directory_iterator(GPO_RECORDINGS_DIR)) {
-    if (made.path().filename().string().starts_with(name + "-")) fs::remove_all(made.path());
-  }
+  for (const fs::path& folder : recordings_of(name)) fs::remove_all(folder);
   const fs::path recipe = fresh_folder() / (name + ".yaml");
   test::write_file(recipe, text);
   return recipe;
@@ -61,6 +71,17 @@ TEST(RecipeAsRecording, SnapshotDrawsIt) {
   EXPECT_TRUE(fs::exists(picture));
 }
 
+TEST(RecipeAsRecording, ProcessesThatWantTheSameShareIt) {
+  const fs::path recipe = fresh_recipe("sharetest", small_recipe_text());
+  const std::string info = "'" GPO_PROGRAM "' info --json " + recipe.string();
+  const std::string others =
+      info + " > /dev/null & first=$! ; " + info + " > /dev/null & second=$! ; ";
+  const Outcome outcome = shell(others + info + " && wait $first && wait $second");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["frames"], 4);
+  EXPECT_EQ(recordings_of("sharetest").size(), 1U);
+}
+
 TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
   const fs::path recipe = fresh_recipe("brokentest", small_recipe_with("rate: 200", "rate: fast"));
   const fs::path empty = recipe.parent_path() / "empty";
@@ -70,6 +91,7 @@ TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
                          {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
                          empty);
   }
+  EXPECT_TRUE(recordings_of("brokentest").empty());
   EXPECT_EQ(program("info " + (empty / "none.yaml").string()).exit_code, 2);
 }
 

@@ -13,8 +13,6 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace gpo {
 namespace {
@@ -117,30 +115,6 @@ TEST_F(Synthesized, ThreadsThatWantTheSameShareIt) {
   }
   EXPECT_EQ(frames, 4);  // made frame by frame by one of them, found whole by the others
   EXPECT_EQ(folder_contents(cache).size(), 11U);
-}
-
-TEST_F(Synthesized, ProcessesThatWantTheSameShareIt) {
-  const fs::path recipe = write_recipe("small.yaml");
-  std::vector<pid_t> children;
-  for (int i = 0; i < 3; ++i) {
-    const pid_t child = fork();
-    if (child == 0) {
-      try {
-        synthesized_recordings(std::vector{recipe}, cache, 1);
-        _exit(0);
-      } catch (...) {
-        _exit(1);
-      }
-    }
-    children.push_back(child);
-  }
-  for (const pid_t child : children) {
-    int status = -1;
-    waitpid(child, &status, 0);
-    EXPECT_EQ(status, 0);
-  }
-  EXPECT_EQ(folder_contents(cache).size(), 11U);
-  EXPECT_EQ(make({recipe}), 0);
 }
 
 TEST_F(Synthesized, TakesOverFromAProcessThatWasKilled) {
