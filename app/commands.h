@@ -5,10 +5,12 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -44,6 +46,19 @@ struct SnapshotArguments {
   int tolerance = 3;  ///< largest difference of a color channel that counts as equal
 };
 
+struct EvaluateArguments {
+  std::vector<std::filesystem::path> recordings;
+  std::string methods = "all";
+  std::string lengths = "5:60:5";            ///< of the windows [frames]
+  std::string starts = "0:end:10";           ///< of the windows
+  int jobs = 1;                              ///< windows of so many starts are computed at once
+  std::uint64_t seed = 1;                    ///< of every random choice
+  std::optional<std::string> shard;          ///< "K/N"
+  std::vector<std::filesystem::path> merge;  ///< folders of shards, instead of recordings
+  std::filesystem::path output;              ///< folder
+};
+
+int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const std::filesystem::path& recording, bool json);
 int run_command(const RunArguments& arguments);
 int snapshot_command(const SnapshotArguments& arguments);

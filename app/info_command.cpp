@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/recordings.h"
 #include "engine/recording/recording_info.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 namespace gpo {
 
 int info_command(const std::filesystem::path& recording, bool json) {
-  const auto opened = open_recording(recording);
+  const auto opened = open_given(recording);
   const RecordingInfo info = describe(*opened);
   if (json) {
     fmt::print("{}\n", to_json(info).dump(2));

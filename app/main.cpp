@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <thread>
 #include <type_traits>
 
 #include <CLI/CLI.hpp>
@@ -55,7 +56,9 @@ void add_settings(CLI::App& command, Settings& settings) {
 }
 
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
-  command.add_option("recording", arguments.recording, "Folder or file of a recording")->required();
+  command
+      .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
+      ->required();
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_settings(command, arguments.settings);
@@ -90,7 +93,51 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
       ->check(CLI::Range(0, 255));
 }
 
+void add_experiment(CLI::App& command, EvaluateArguments& arguments) {
+  command
+      .add_option("--methods",
+                  arguments.methods,
+                  "Methods with commas, each with settings that differ from its defaults: "
+                  "METHOD[+ransac|+no-ransac][+ROTATIONS]; all: every method and the paper's "
+                  "ablations")
+      ->capture_default_str();
+  command
+      .add_option("--lengths", arguments.lengths, "Lengths of the windows [frames], FROM:TO:STEP")
+      ->capture_default_str();
+  command
+      .add_option("--starts",
+                  arguments.starts,
+                  "First frames of the windows; end: the last from which the longest fits")
+      ->capture_default_str();
+  command.add_option("--seed", arguments.seed, "Seed of every random choice")
+      ->capture_default_str()
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}));
+}
+
+void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "evaluate",
+      "Methods on many windows: results.csv, summary.json, figures and the running times. "
+      "Interrupted (exit code 1) or killed, the same line goes on where it was");
+  command->add_option(
+      "recording", arguments.recordings, "Folders or files of recordings, or recipes");
+  add_experiment(*command, arguments);
+  arguments.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("--jobs", arguments.jobs, "Windows of so many starts are computed at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--shard",
+                      arguments.shard,
+                      "K/N: only this share of the windows, without the results; on any machine, "
+                      "into a folder of its own or a common one");
+  command->add_option("--merge",
+                      arguments.merge,
+                      "Folders of all shards, instead of recordings: makes the results of one run");
+  command->add_option("--output", arguments.output, "Folder to write")->required();
+}
+
 struct Arguments {
+  EvaluateArguments evaluate;
   std::filesystem::path info_recording;
   bool info_json = false;
   RunArguments run;
@@ -104,14 +151,17 @@ struct Arguments {
 void declare(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(0, 1);
   CLI::App* view = app.add_subcommand("view", "The window; the default");
-  view->add_option("recording", arguments.view_recording, "Folder or file of a recording");
+  view->add_option(
+      "recording", arguments.view_recording, "Folder or file of a recording, or a recipe");
   add_settings(*view, arguments.view_settings);
   CLI::App* info = app.add_subcommand("info", "What is found in a recording");
-  info->add_option("recording", arguments.info_recording, "Folder or file of a recording")
+  info->add_option(
+          "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
       ->required();
   info->add_flag("--json", arguments.info_json, "As JSON");
   add_run(app, arguments.run);
   add_snapshot(app, arguments.snapshot);
+  add_evaluate(app, arguments.evaluate);
   CLI::App* synthesize =
       app.add_subcommand("synthesize", "A recording with perfect ground truth, from a recipe");
   synthesize->add_option("recipe", arguments.recipe, "Recipe, a YAML file")->required();
@@ -124,6 +174,7 @@ int dispatch(const CLI::App& app, const Arguments& arguments) {
     return info_command(arguments.info_recording, arguments.info_json);
   if (app.got_subcommand("run")) return run_command(arguments.run);
   if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
+  if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);
   return view_command(arguments.view_recording, arguments.view_settings);

@@ -1,16 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "app/output_file.h"
+#include "app/recordings.h"
 #include "engine/inspection/report.h"
-#include "engine/recording/recording.h"
+#include "engine/output_file.h"
 
 #include <fmt/format.h>
 
 namespace gpo {
 
 std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
-  const auto recording = open_recording(arguments.recording, {.tracks = arguments.tracks});
+  const auto recording = open_given(arguments.recording, {.tracks = arguments.tracks});
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return Inspector(recording).inspect(arguments.settings);
 }

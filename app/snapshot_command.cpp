@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "app/output_file.h"
 #include "engine/error.h"
+#include "engine/output_file.h"
 #include "ui/views/picture_compare.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"

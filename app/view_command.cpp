@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/recordings.h"
 #include "engine/error.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/worker.h"
@@ -137,9 +138,12 @@ int view_command(const std::optional<std::filesystem::path>& recording, const Se
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }
+  std::vector<std::filesystem::path> given;
+  if (recording) given.push_back(*recording);
+  const auto folder = resolve_recordings(given);  // before there is a window that would wait
   Session session;
   session.state.settings = settings;
-  session.state.wishes.open = recording;
+  if (recording) session.state.wishes.open = folder.front();
   const float scale = session.gui.scale();
   if (scale > 1) {
     glfwSetWindowSize(

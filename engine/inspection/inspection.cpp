@@ -47,6 +47,63 @@ struct Kept {
   }
 };
 
+using Span = std::tuple<int, int>;  // start, frames
+
+/// What is kept where it begins at the same frame and is long enough, else what is wanted.
+Span covering(const std::optional<Span>& kept, const Span& wanted) {
+  const auto [start, frames] = wanted;
+  const bool covers = kept && std::get<0>(*kept) == start && std::get<1>(*kept) >= frames;
+  return covers ? *kept : wanted;
+}
+
+/// Tracks are made frame by frame, so that those of a shorter window are the beginning of these.
+struct Tracked {
+  std::shared_ptr<const Tracks> tracks;
+  std::vector<double> milliseconds;  ///< one a frame: when it was done
+};
+
+Tracked chosen_tracks(const Recording& recording, int start, int frames) {
+  const auto begin = Clock::now();
+  Tracks tracks = select_tracks(recording.tracks, start, frames);
+  return {std::make_shared<const Tracks>(std::move(tracks)),
+          std::vector<double>(frames, milliseconds_since(begin))};
+}
+
+std::optional<Tracked> followed_tracks(const Recording& recording,
+                                       int start,
+                                       int frames,
+                                       const std::stop_token& stop,
+                                       const Progress& progress) {
+  if (!recording.pictures) {
+    throw InputError(
+        fmt::format("{}: no pictures and no tracks; expected --tracks FILE", recording.name));
+  }
+  Tracked tracked;
+  const auto begin = Clock::now();
+  const auto told = [&](int done, int of) {
+    tracked.milliseconds.push_back(milliseconds_since(begin));
+    if (progress) progress("tracking", done, of);
+  };
+  auto tracks = track_window(*recording.pictures, start, frames, {}, stop, told);
+  if (!tracks) return std::nullopt;
+  tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
+  return tracked;
+}
+
+std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& whole, int frames) {
+  if (whole->frame_count() == frames) return whole;
+  const auto begin = whole->raw_px.begin();
+  return std::make_shared<const Tracks>(Tracks{whole->start, whole->ids, {begin, begin + frames}});
+}
+
+std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
+                                             int frames) {
+  if (!whole || static_cast<int>(whole->cameras.size()) == frames) return whole;
+  const auto begin = whole->cameras.begin();
+  return std::make_shared<const WindowTruth>(
+      WindowTruth{whole->source, {begin, begin + frames}, whole->plane});
+}
+
 /// A method that needs no plane gets its start from the tracks on it even where it then uses all.
 RansacOptions ransac_options(const Settings& settings) {
   RansacOptions options;
@@ -141,8 +198,9 @@ bool uses_ransac(const Settings& settings) {
 }
 
 struct Inspector::Stages {
-  using Span = std::tuple<int, int>;  // start, frames
   std::shared_ptr<const Recording> recording;
+  Kept<Span, Tracked> longest_tracks;  // of the windows from one start
+  Kept<Span, std::shared_ptr<const WindowTruth>> longest_truth;
   Kept<Span, std::shared_ptr<const Tracks>> tracks;
   Kept<Span, std::shared_ptr<const WindowTruth>> truth;
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
@@ -155,7 +213,8 @@ struct Inspector::Stages {
   bool update_truth(const Settings& settings,
                     const std::stop_token& stop,
                     const Progress& progress);
-  std::shared_ptr<const WindowTruth> compute_truth(const Settings& settings,
+  std::shared_ptr<const WindowTruth> compute_truth(int start,
+                                                   int frames,
                                                    const std::stop_token& stop,
                                                    const Progress& progress) const;
   void initialize(const Settings& settings,
@@ -167,39 +226,32 @@ struct Inspector::Stages {
 bool Inspector::Stages::update_tracks(const Settings& settings,
                                       const std::stop_token& stop,
                                       const Progress& progress) {
-  const int start = settings.start;
-  const int frames = settings.frames;
-  return tracks.update({start, frames}, [&]() -> std::optional<std::shared_ptr<const Tracks>> {
-    if (!recording->tracks.empty()) {
-      return std::make_shared<const Tracks>(select_tracks(recording->tracks, start, frames));
-    }
-    if (!recording->pictures) {
-      throw InputError(
-          fmt::format("{}: no pictures and no tracks; expected --tracks FILE", recording->name));
-    }
-    const auto told = [&](int done, int of) {
-      if (progress) progress("tracking", done, of);
-    };
-    auto tracked = track_window(*recording->pictures, start, frames, {}, stop, told);
-    if (!tracked) return std::nullopt;
-    return std::make_shared<const Tracks>(std::move(*tracked));
+  const Span span(settings.start, settings.frames);
+  const Span longest = covering(longest_tracks.key, span);
+  const int frames = std::get<1>(longest);
+  const bool done = longest_tracks.update(longest, [&]() {
+    return recording->tracks.empty()
+               ? followed_tracks(*recording, settings.start, frames, stop, progress)
+               : std::optional(chosen_tracks(*recording, settings.start, frames));
+  });
+  return done && tracks.update(span, [&]() {
+    return std::optional(beginning(longest_tracks.value.tracks, settings.frames));
   });
 }
 
 std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
-    const Settings& settings, const std::stop_token& stop, const Progress& progress) const {
+    int start, int frames, const std::stop_token& stop, const Progress& progress) const {
   if (recording->truth) {
-    const auto begin = recording->truth->poses.begin() + settings.start;
-    WindowTruth truth{recording->truth->source, {begin, begin + settings.frames}, recording->plane};
-    if (!truth.plane)
-      truth.plane = plane_of_board(*recording, settings.start, truth.cameras.front());
+    const auto begin = recording->truth->poses.begin() + start;
+    WindowTruth truth{recording->truth->source, {begin, begin + frames}, recording->plane};
+    if (!truth.plane) truth.plane = plane_of_board(*recording, start, truth.cameras.front());
     return std::make_shared<const WindowTruth>(std::move(truth));
   }
   if (!recording->board || !recording->pictures) return nullptr;
   const auto told = [&](int done, int of) {
     if (progress) progress("finding the board", done, of);
   };
-  GroundTruth found = board_truth(*recording, settings.start, settings.frames, stop, told);
+  GroundTruth found = board_truth(*recording, start, frames, stop, told);
   return std::make_shared<const WindowTruth>(
       WindowTruth{found.source, std::move(found.poses), kBoardPlane});
 }
@@ -207,13 +259,17 @@ std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
 bool Inspector::Stages::update_truth(const Settings& settings,
                                      const std::stop_token& stop,
                                      const Progress& progress) {
-  const bool done = truth.update(
-      {settings.start, settings.frames},
-      [&]() -> std::optional<std::shared_ptr<const WindowTruth>> {
-        auto computed = compute_truth(settings, stop, progress);
-        return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
-      });
-  return done && board_corners.update(settings.start, [&]() {
+  const Span span(settings.start, settings.frames);
+  const Span longest = covering(longest_truth.key, span);
+  const int frames = std::get<1>(longest);
+  const bool done = longest_truth.update(longest, [&]() {
+    auto computed = compute_truth(settings.start, frames, stop, progress);
+    return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
+  });
+  if (!done) return false;
+  truth.update(span,
+               [&]() { return std::optional(beginning(longest_truth.value, settings.frames)); });
+  return board_corners.update(settings.start, [&]() {
     const bool look = recording->board && recording->pictures;
     return std::optional(
         look ? find_board(recording->pictures->gray(settings.start), *recording->board)
@@ -249,7 +305,7 @@ void Inspector::Stages::initialize(const Settings& settings,
                                       ? failed(rotations.value.reason)
                                       : find_method(settings.method).initialize(window, stop);
   Timing& t = inspection.timing;
-  t.track = tracks.milliseconds;
+  t.track = longest_tracks.value.milliseconds[settings.frames - 1];
   t.ransac = outliers.milliseconds;
   t.rotations = rotations.milliseconds;
   t.initialize = milliseconds_since(begin);

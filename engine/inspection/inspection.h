@@ -45,7 +45,8 @@ struct Inspection {
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
 
 /// Computes inspections; keeps each stage (tracks, truth, inliers, rotations) until its own inputs
-/// change. One thread at a time.
+/// change, and of the windows from one start the tracks and the truth of the longest, which begin
+/// with those of the shorter ones. One thread at a time.
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);

@@ -75,13 +75,13 @@ double fractal_noise(double x, double y, int octaves, std::uint64_t seed) {
   return sum / weight;
 }
 
-void for_each_row(int rows, int threads, const std::function<void(int row)>& work) {
+void in_parallel(int count, int threads, const std::function<void(int i)>& work) {
   std::atomic<int> next = 0;
   std::exception_ptr error;
   std::mutex error_mutex;
-  const auto take_rows = [&] {
+  const auto take_turns = [&] {
     try {
-      for (int row = next++; row < rows; row = next++) work(row);
+      for (int i = next++; i < count; i = next++) work(i);
     } catch (...) {
       const std::lock_guard lock(error_mutex);
       error = std::current_exception();
@@ -89,8 +89,8 @@ void for_each_row(int rows, int threads, const std::function<void(int row)>& wor
   };
   {
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < std::max(1, threads); ++i) helpers.emplace_back(take_rows);
-    take_rows();
+    for (int i = 1; i < std::max(1, threads); ++i) helpers.emplace_back(take_turns);
+    take_turns();
   }
   if (error) std::rethrow_exception(error);
 }

@@ -25,7 +25,7 @@ class Random {
 /// their size.
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
 
-/// Calls `work(row)` for each row on some threads, in no particular order.
-void for_each_row(int rows, int threads, const std::function<void(int row)>& work);
+/// Calls `work(i)` for each i below `count` on some threads, in no particular order.
+void in_parallel(int count, int threads, const std::function<void(int i)>& work);
 
 }  // namespace gpo

@@ -132,7 +132,8 @@ DeskRecipe read_desk(StrictMap map) {
   return desk;
 }
 
-PictureRecipe read_picture(StrictMap map) {
+/// `period` is the time from frame to frame [s]: a picture is read before the next one begins.
+PictureRecipe read_picture(StrictMap map, double period) {
   PictureRecipe picture;
   picture.format = map.choice("format", {"jpg", "png"});
   picture.quality = static_cast<int>(map.integer("quality", {1, 100}, picture.quality));
@@ -141,6 +142,7 @@ PictureRecipe read_picture(StrictMap map) {
   picture.blur = map.number("blur", {0, 20, "px"}, 0);
   picture.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
   picture.exposure = map.number("exposure", {0, 1, "s"}, 0);
+  picture.rolling_shutter = map.number("rolling_shutter", {0, period, "s"}, 0);
   map.finish();
   return picture;
 }
@@ -196,7 +198,7 @@ Recipe read_recipe(const std::filesystem::path& file) {
   recipe.trajectory =
       read_trajectory(top.map("trajectory"), (recipe.frame_count - 1) / recipe.frame_rate);
   recipe.desk = read_desk(top.map("desk"));
-  recipe.picture = read_picture(top.map("picture"));
+  recipe.picture = read_picture(top.map("picture"), 1 / recipe.frame_rate);
   recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
   top.finish();
   check_trajectory(top, recipe);
@@ -209,6 +211,11 @@ std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame) {
 
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns) {
   return static_cast<double>(timestamp_ns - recipe.start_ns) * 1e-9;
+}
+
+double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row) {
+  const double place = static_cast<double>(row) / (recipe.camera.height - 1) - 0.5;
+  return trajectory_seconds(recipe, timestamp_ns) + place * recipe.picture.rolling_shutter;
 }
 
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board) {

@@ -59,7 +59,8 @@ struct PictureRecipe {
   double noise = 0;            ///< standard deviation, each channel [gray levels of 255]
   double blur = 0;             ///< standard deviation of the lens' point spread [px]
   double gain_variation = 0;   ///< of the exposure control, amplitude relative to 1
-  double exposure = 0;         ///< motion blur, centered at the time stamp [s]
+  double exposure = 0;         ///< of each row: motion blur [s]
+  double rolling_shutter = 0;  ///< readout time from the first to the last row; 0: global [s]
 };
 
 struct GyroscopeRecipe {
@@ -92,6 +93,10 @@ std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 
 /// Seconds since the first frame, the trajectory's time.
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
+
+/// Time of the middle of a row's exposure. The time stamp belongs to the middle row: row r is
+/// read at t + (r / (height - 1) - 0.5) * readout, in the trajectory's time [s].
+double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
 /// The board's inner corners in the world, row by row [m].
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board);

@@ -143,13 +143,35 @@ cv::Vec3f trace(const Scene& scene, const Eye& eye, const Eigen::Vector2f& slope
   return on_desk ? desk_color(scene, x, y) : room_color(eye.pose.p_wc, ray);
 }
 
+std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
+  std::vector<Eye> eyes;
+  eyes.reserve(poses.size());
+  for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
+  return eyes;
+}
+
+void render_row(
+    const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
+  const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
+  const auto* ray = map.rays.data() + per_pixel * map.width * row;
+  for (int col = 0; col < map.width; ++col) {
+    cv::Vec3f sum(0, 0, 0);
+    for (std::size_t k = 0; k < per_pixel; ++k) {
+      // 23 has no factor in common with any number of samples: each pose gets its sample, and a
+      // sample's time has little to do with its place in the pixel.
+      sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
+    }
+    light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
+  }
+}
+
 }  // namespace
 
 RayMap make_ray_map(const Camera& camera, int samples, int threads) {
   RayMap map{camera.width, camera.height, samples, {}};
   const std::size_t per_pixel = static_cast<std::size_t>(samples) * samples;
   map.rays.resize(per_pixel * camera.width * camera.height);
-  for_each_row(camera.height, threads, [&](int row) {
+  in_parallel(camera.height, threads, [&](int row) {
     auto* ray = map.rays.data() + per_pixel * camera.width * row;
     for (int col = 0; col < camera.width; ++col) {
       for (int k = 0; k < samples * samples; ++k) {
@@ -166,22 +188,16 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
 }
 
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads) {
-  std::vector<Eye> eyes;
-  eyes.reserve(poses.size());
-  for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
-  const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
+  const std::vector<Eye> eyes = make_eyes(scene, poses);
   cv::Mat light(map.height, map.width, CV_32FC3);
-  for_each_row(map.height, threads, [&](int row) {
-    const auto* ray = map.rays.data() + per_pixel * map.width * row;
-    for (int col = 0; col < map.width; ++col) {
-      cv::Vec3f sum(0, 0, 0);
-      for (std::size_t k = 0; k < per_pixel; ++k) {
-        // 23 has no factor in common with any number of samples: each pose gets its sample, and a
-        // sample's time has little to do with its place in the pixel.
-        sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
-      }
-      light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
-    }
+  in_parallel(map.height, threads, [&](int row) { render_row(scene, map, eyes, row, light); });
+  return light;
+}
+
+cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads) {
+  cv::Mat light(map.height, map.width, CV_32FC3);
+  in_parallel(map.height, threads, [&](int row) {
+    render_row(scene, map, make_eyes(scene, row_poses(row)), row, light);
   });
   return light;
 }
@@ -195,7 +211,7 @@ cv::Mat expose(const cv::Mat& light,
   if (picture.blur > 0) cv::GaussianBlur(light, soft, {}, picture.blur);
   cv::Mat result(light.size(), CV_8UC3);
   const double half_diagonal2 = (std::pow(light.cols, 2) + std::pow(light.rows, 2)) / 4;
-  for_each_row(light.rows, threads, [&](int row) {
+  in_parallel(light.rows, threads, [&](int row) {
     Random random(seed, static_cast<std::uint64_t>(row));
     for (int col = 0; col < light.cols; ++col) {
       const double r2 =

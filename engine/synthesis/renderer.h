@@ -31,6 +31,10 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads);
 /// blur.
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
+/// The same where each row is seen from poses of its own (rolling shutter).
+using RowPoses = std::function<std::vector<Pose>(int row)>;
+cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads);
+
 /// Lens blur, vignette, gain and noise: CV_8UC3. Equal for equal seeds, whatever the threads.
 cv::Mat expose(const cv::Mat& light,
                const PictureRecipe& picture,

@@ -52,7 +52,7 @@ cv::Vec3f wood(double x, double y, std::uint64_t seed) {
 }
 
 void paint_wood(cv::Mat& texture, const DeskRecipe& desk, int threads) {
-  for_each_row(texture.rows, threads, [&](int row) {
+  in_parallel(texture.rows, threads, [&](int row) {
     for (int col = 0; col < texture.cols; ++col) {
       const Eigen::Vector2d p = texel_place(desk, col, row, kDeskTexelsPerMeter);
       const cv::Vec3f color = wood(p.x(), p.y(), desk.texture_seed);
@@ -104,7 +104,7 @@ void lay_sheet(cv::Mat& texture, const DeskRecipe& desk, const Sheet& sheet, int
   const int side = cvCeil(2 * reach * kDeskTexelsPerMeter);
   const cv::Rect area =
       cv::Rect(cvFloor(left), cvFloor(top), side, side) & cv::Rect({}, texture.size());
-  for_each_row(area.height, threads, [&](int i) {
+  in_parallel(area.height, threads, [&](int i) {
     const int row = area.y + i;
     for (int col = area.x; col < area.x + area.width; ++col) {
       const cv::Vec3f under = texture.at<cv::Vec3b>(row, col);
@@ -177,7 +177,7 @@ cv::Mat make_light(const DeskRecipe& desk) {
 }
 
 void apply_light(Scene& scene, int threads) {
-  for_each_row(scene.desk.rows, threads, [&](int row) {
+  in_parallel(scene.desk.rows, threads, [&](int row) {
     for (int col = 0; col < scene.desk.cols; ++col) {
       const float light = sample_texture(
           scene.light, (col + 0.5) / scene.desk.cols, (row + 0.5) / scene.desk.rows)[0];

@@ -57,7 +57,7 @@ std::string camera_yaml(const Recipe& recipe) {
   const char* model = camera.distortion == Distortion::none          ? "none"
                       : camera.distortion == Distortion::equidistant ? "equidistant"
                                                                      : "radial-tangential";
-  return fmt::format(
+  std::string text = fmt::format(
       "# Synthesized: exact.\nsensor_type: camera\ncomment: synthesized\n\n"
       "# Camera in the axes of the body (the IMU).\n{}\n"
       "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
@@ -70,6 +70,11 @@ std::string camera_yaml(const Recipe& recipe) {
       join(std::vector{camera.fx, camera.fy, camera.cx, camera.cy}),
       model,
       join(camera.coefficients));
+  if (recipe.picture.rolling_shutter > 0) {
+    text += fmt::format("rolling_shutter: {}  # [s] from first to last row; stamp: middle row\n",
+                        recipe.picture.rolling_shutter);
+  }
+  return text;
 }
 
 std::string imu_yaml(const GyroscopeRecipe& gyroscope) {
@@ -146,7 +151,7 @@ std::string truth_csv(const Recipe& recipe) {
   return text;
 }
 
-/// The camera's poses over the exposure; one where there is no motion blur.
+/// The camera's poses over an exposure about a time [s]; one where there is no motion blur.
 std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
   const PictureRecipe& picture = recipe.picture;
   const int count = picture.exposure > 0 ? picture.samples * picture.samples : 1;
@@ -156,6 +161,19 @@ std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
     poses.push_back(camera_motion(recipe.trajectory, seconds + offset).pose);
   }
   return poses;
+}
+
+/// All rows of a global shutter share their poses.
+cv::Mat render_frame(const Recipe& recipe,
+                     const Scene& scene,
+                     const RayMap& rays,
+                     std::int64_t timestamp_ns,
+                     int threads) {
+  const auto row_poses = [&](int row) {
+    return exposure_poses(recipe, row_seconds(recipe, timestamp_ns, row));
+  };
+  if (recipe.picture.rolling_shutter > 0) return render(scene, rays, row_poses, threads);
+  return render(scene, rays, row_poses(0), threads);
 }
 
 void write_picture(const fs::path& file, const cv::Mat& picture, int quality) {
@@ -179,7 +197,7 @@ void write_pictures(const Recipe& recipe,
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const double seconds = trajectory_seconds(recipe, timestamp);
-    const cv::Mat light = render(scene, rays, exposure_poses(recipe, seconds), threads);
+    const cv::Mat light = render_frame(recipe, scene, rays, timestamp, threads);
     const double gain =
         1 + recipe.picture.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();

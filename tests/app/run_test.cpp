@@ -200,7 +200,7 @@ TEST(Info, DeskHasEverything) {
 
 TEST(Help, EveryCommandExplainsItself) {
   EXPECT_EQ(program("--help").exit_code, 0);
-  for (const char* command : {"view", "info", "run", "snapshot", "synthesize"}) {
+  for (const char* command : {"view", "info", "run", "snapshot", "evaluate", "synthesize"}) {
     const Outcome outcome = program(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_FALSE(outcome.out.empty()) << command;

@@ -8,6 +8,17 @@
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
+namespace {
+
+/// From OpenGL's rows, bottom first, to OpenCV's.
+cv::Mat to_bgr(const cv::Mat& rgba) {
+  cv::Mat bgr;
+  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+  cv::flip(bgr, bgr, 0);
+  return bgr;
+}
+
+}  // namespace
 
 void load_gl_functions() {
   glewExperimental = GL_TRUE;
@@ -41,10 +52,16 @@ cv::Mat read_bound_framebuffer(int width, int height) {
   cv::Mat rgba(height, width, CV_8UC4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
-  cv::Mat bgr;
-  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-  cv::flip(bgr, bgr, 0);
-  return bgr;
+  return to_bgr(rgba);
+}
+
+cv::Mat read_texture(unsigned texture, int width, int height) {
+  cv::Mat rgba(height, width, CV_8UC4);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  return to_bgr(rgba);
 }
 
 }  // namespace gpo

@@ -29,4 +29,7 @@ class Framebuffer {
 /// What was drawn into the bound framebuffer: CV_8UC3, BGR, y down.
 cv::Mat read_bound_framebuffer(int width, int height);
 
+/// What is in a texture, bottom row first there: CV_8UC3, BGR, y down.
+cv::Mat read_texture(unsigned texture, int width, int height);
+
 }  // namespace gpo

@@ -9,8 +9,8 @@
 #include <imgui.h>
 
 extern "C" {
-extern const unsigned char gpo_font_regular[], gpo_font_regular_end[];
-extern const unsigned char gpo_font_bold[], gpo_font_bold_end[];
+extern const char gpo_font_regular[], gpo_font_regular_end[];
+extern const char gpo_font_bold[], gpo_font_bold_end[];
 }
 
 namespace gpo {
@@ -62,7 +62,7 @@ void apply_colors(ImVec4* colors) {
 }
 
 /// Digits as wide as each other, so that numbers that change do not dance; Inter's own are not.
-void add_font(const unsigned char* begin, const unsigned char* end, float size_px) {
+void add_font(std::string_view font, float size_px) {
   static const ImWchar digits[] = {'0', '9', 0};
   static const ImWchar others[] = {0x0020,
                                    0x024F,  // Latin with ° ² ± × ·
@@ -86,8 +86,8 @@ void add_font(const unsigned char* begin, const unsigned char* end, float size_p
   config.GlyphRanges = digits;
   const float digit_width = std::round(0.53F * size_px);
   config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = digit_width;
-  auto* bytes = const_cast<unsigned char*>(begin);  // ImGui reads them only
-  const int count = static_cast<int>(end - begin);
+  auto* bytes = const_cast<char*>(font.data());  // ImGui reads them only
+  const int count = static_cast<int>(font.size());
   atlas.AddFontFromMemoryTTF(bytes, count, size_px, &config);
   ImFontConfig rest;
   rest.FontDataOwnedByAtlas = false;
@@ -98,6 +98,10 @@ void add_font(const unsigned char* begin, const unsigned char* end, float size_p
 }
 
 }  // namespace
+
+std::string_view regular_font() { return {gpo_font_regular, gpo_font_regular_end}; }
+
+std::string_view bold_font() { return {gpo_font_bold, gpo_font_bold_end}; }
 
 void apply_style(float scale) {
   ImGuiStyle& style = ImGui::GetStyle();
@@ -121,10 +125,10 @@ void apply_style(float scale) {
 
 void load_fonts(float scale) {
   const auto size = [scale](float at_96_dpi) { return std::round(at_96_dpi * scale); };
-  add_font(gpo_font_regular, gpo_font_regular_end, size(16));
-  add_font(gpo_font_bold, gpo_font_bold_end, size(16));
-  add_font(gpo_font_regular, gpo_font_regular_end, size(14));
-  add_font(gpo_font_bold, gpo_font_bold_end, size(20));
+  add_font(regular_font(), size(16));
+  add_font(bold_font(), size(16));
+  add_font(regular_font(), size(14));
+  add_font(bold_font(), size(20));
 }
 
 }  // namespace gpo

@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string_view>
+
 namespace gpo {
+
+/// The two font files that the program carries with it, OpenType.
+std::string_view regular_font();
+std::string_view bold_font();
 
 /// Colors, paddings and corners of the program, in the current Dear ImGui context.
 void apply_style(float scale);

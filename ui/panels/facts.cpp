@@ -5,8 +5,6 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/recording/timestamps.h"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -15,13 +13,6 @@ namespace gpo {
 namespace {
 
 constexpr const char* kDash = "\u2013";
-
-/// Three significant digits, but none beyond `most` behind the point.
-std::string digits(double value, int most) {
-  const double size = std::abs(value);
-  const int behind = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
-  return fmt::format("{:.{}f}", value, std::min(behind, most));
-}
 
 ResultRow dash(std::string label, std::string why) {
   return {std::move(label), kDash, "", std::move(why), Tone::dim};
@@ -101,7 +92,7 @@ ResultGroup result_group(const Inspection& inspection) {
   const std::string no_solution = "Not known: the initialization failed";
   if (result.ok) {
     group.rows.push_back({"RMS",
-                          digits(result.rms_px, 2) + " px",
+                          number_text(result.rms_px, 2) + " px",
                           "",
                           "Root mean square reprojection error of the inliers"});
   } else {
@@ -187,17 +178,6 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timing
   return {result_group(*inspection),
           metrics_group(*inspection),
           timing_group(inspection->timing, timings)};
-}
-
-std::string length_text(double meters) {
-  if (std::abs(meters) >= 1) return digits(meters, 3) + " m";
-  return digits(meters * 1e3, 2) + " mm";
-}
-
-std::string angle_text(double degrees) { return digits(degrees, 3) + "\u00b0"; }
-
-std::string milliseconds_text(double milliseconds) {
-  return digits(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
 }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/views/numbers.h"
 
 #include <string>
 #include <vector>
@@ -34,11 +35,5 @@ struct ResultGroup {
 
 /// The results of an inspection, or of none (null). Without `timings` the milliseconds are dashes.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings);
-
-/// "4.1 mm", "1.20 m": three digits that mean something.
-std::string length_text(double meters);
-/// "0.31°".
-std::string angle_text(double degrees);
-std::string milliseconds_text(double milliseconds);
 
 }  // namespace gpo

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -155,6 +154,27 @@ CubePicture cube_in_picture(const Camera& camera,
           {{a, b}, b < 4, hidden, segment_in_picture(camera, corners_c[a], corners_c[b], near)});
     }
   return result;
+}
+
+std::optional<CubePicture> estimated_cube(const Inspection& inspection,
+                                          int frame_in_window,
+                                          double side) {
+  if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
+  return cube_in_picture(inspection.recording->camera,
+                         inspection.initialization->cameras[frame_in_window],
+                         cube_corners(*inspection.cube, side));
+}
+
+std::optional<CubePicture> true_cube(const Inspection& inspection,
+                                     int frame_in_window,
+                                     double side) {
+  if (!inspection.true_cube || !inspection.cube || !inspection.truth ||
+      !inspection.truth->cameras[frame_in_window])
+    return std::nullopt;
+  const double true_side = side * inspection.true_cube->unit / inspection.cube->unit;
+  return cube_in_picture(inspection.recording->camera,
+                         *inspection.truth->cameras[frame_in_window],
+                         cube_corners(*inspection.true_cube, true_side));
 }
 
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {

@@ -7,6 +7,7 @@
 #include "engine/inspection/inspection.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -73,6 +74,17 @@ struct CubePicture {
 CubePicture cube_in_picture(const Camera& camera,
                             const Pose& pose,
                             const std::array<Eigen::Vector3d, 8>& corners_w);
+
+/// The virtual cube of this side [unit of the estimate] in a frame of the window, by the frame's
+/// estimated pose. Nothing where the initialization failed.
+std::optional<CubePicture> estimated_cube(const Inspection& inspection,
+                                          int frame_in_window,
+                                          double side);
+
+/// The same cube on the true plane, by the true pose. Nothing where one of them is not known.
+std::optional<CubePicture> true_cube(const Inspection& inspection,
+                                     int frame_in_window,
+                                     double side);
 
 /// Where a track was seen, and where plane and poses put what the reference frame saw [raw px].
 struct ResidualVector {

@@ -34,6 +34,12 @@ struct Canvas {
     for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
     return points;
   }
+  std::optional<CubePicture> estimated_cube() const {
+    return gpo::estimated_cube(inspection, frame, cube_side(inspection, options.cube_side));
+  }
+  std::optional<CubePicture> true_cube() const {
+    return gpo::true_cube(inspection, frame, cube_side(inspection, options.cube_side));
+  }
   void polyline(const std::vector<ImVec2>& points, ImU32 color, float width) const {
     list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, width * scale);
   }
@@ -116,12 +122,7 @@ void fill_face(const Canvas& canvas, const CubeFace& face, ImU32 color) {
   }
 }
 
-void draw_estimated_cube(const Canvas& canvas) {
-  const Inspection& inspection = canvas.inspection;
-  const CubePicture cube = cube_in_picture(
-      inspection.recording->camera,
-      inspection.initialization->cameras[canvas.frame],
-      cube_corners(*inspection.cube, cube_side(inspection, canvas.options.cube_side)));
+void draw_estimated_cube(const Canvas& canvas, const CubePicture& cube) {
   const auto draw_edges = [&](bool hidden) {
     for (const CubeEdge& edge : cube.edges) {
       if (edge.hidden != hidden) continue;
@@ -140,19 +141,7 @@ void draw_estimated_cube(const Canvas& canvas) {
   draw_edges(false);
 }
 
-/// Whether there is a true cube to draw in this frame.
-bool knows_true_cube(const Inspection& inspection, int frame) {
-  return inspection.true_cube && inspection.cube && inspection.truth &&
-         inspection.truth->cameras[frame];
-}
-
-void draw_true_cube(const Canvas& canvas) {
-  const Inspection& inspection = canvas.inspection;
-  const double side = cube_side(inspection, canvas.options.cube_side) * inspection.true_cube->unit /
-                      inspection.cube->unit;
-  const CubePicture cube = cube_in_picture(inspection.recording->camera,
-                                           *inspection.truth->cameras[canvas.frame],
-                                           cube_corners(*inspection.true_cube, side));
+void draw_true_cube(const Canvas& canvas, const CubePicture& cube) {
   for (const CubeEdge& edge : cube.edges) {
     const std::vector<ImVec2> points = canvas.at(edge.raw_px);
     if (!edge.hidden) canvas.polyline(points, imgui_color(palette::kBackground, 0.45), 3);
@@ -182,21 +171,20 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
                     fmt::format("residuals × {:g}", options.residual_magnification)});
   if (options.cube && inspection.cube)
     rows.push_back({Sign::square, palette::kCubeBase, "cube on the estimated plane"});
-  if (options.cube && options.truth && knows_true_cube(inspection, canvas.frame))
+  if (options.cube && options.truth && canvas.true_cube())
     rows.push_back({Sign::square, palette::kTruth, "true cube"});
   return rows;
 }
 
 /// Everything that needs the frame to be in the window.
 void draw_results(const Canvas& canvas) {
-  const Inspection& inspection = canvas.inspection;
   const ImageViewOptions& options = canvas.options;
   if (options.tracks && options.tail_frames > 0) draw_tails(canvas);
   if (options.tracks) draw_tracks(canvas);
   if (options.residuals) draw_residuals(canvas);
-  if (options.cube && options.truth && knows_true_cube(inspection, canvas.frame))
-    draw_true_cube(canvas);
-  if (options.cube && inspection.cube && inspection.initialization->ok) draw_estimated_cube(canvas);
+  if (!options.cube) return;
+  if (const auto cube = canvas.true_cube(); cube && options.truth) draw_true_cube(canvas, *cube);
+  if (const auto cube = canvas.estimated_cube()) draw_estimated_cube(canvas, *cube);
 }
 
 std::string heading(const Inspection& inspection, int frame) {

@@ -40,6 +40,11 @@ constexpr std::uint32_t kGood = 0x1FCB93;
 constexpr std::uint32_t kWarning = 0xE69F00;
 constexpr std::uint32_t kBad = 0xF0503C;
 
+// Figures for print, on white.
+constexpr std::uint32_t kInk = 0x1A1D21;
+constexpr std::uint32_t kPaperAxis = 0x6B727C;
+constexpr std::uint32_t kPaperGrid = 0xE4E7EB;
+
 }  // namespace palette
 
 constexpr double red(std::uint32_t rgb) { return ((rgb >> 16) & 0xFF) / 255.0; }

@@ -24,11 +24,11 @@ float text_scale(cv::Size size) {
 
 /// `Resource` is what the drawing needs in the graphics memory: it lives within the context.
 template <class Resource, class Draw>
-cv::Mat snapshot(cv::Size size, const Draw& draw) {
+cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   std::string complaint;
   const VtkMessages vtk([&complaint](const std::string& message) { complaint += message; });
   OffscreenContext context(size.width, size.height);
-  Gui gui(text_scale(size));
+  Gui gui(scale);
   Resource resource;
   context.bind();
   gui.begin_frame(size.width, size.height);
@@ -47,10 +47,11 @@ cv::Mat snapshot_image(const Inspection& inspection,
   const Recording& recording = *inspection.recording;
   const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
   using Texture = PictureTexture;
-  return snapshot<Texture>(pixels, [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
-    if (recording.pictures) texture.upload(recording.pictures->bgr(frame));
-    draw_image_view(list, rect, inspection, frame, &texture, {}, options);
-  });
+  return snapshot<Texture>(
+      pixels, text_scale(pixels), [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
+        if (recording.pictures) texture.upload(recording.pictures->bgr(frame));
+        draw_image_view(list, rect, inspection, frame, &texture, {}, options);
+      });
 }
 
 cv::Mat snapshot_scene(const Inspection& inspection,
@@ -60,9 +61,22 @@ cv::Mat snapshot_scene(const Inspection& inspection,
   const double aspect = static_cast<double>(size.width) / size.height;
   const OrbitCamera camera =
       default_scene_camera(inspection, cube_side(inspection, options.cube_side), aspect);
-  return snapshot<SceneView>(size, [&](SceneView& view, ImDrawList& list, const ScreenRect& rect) {
-    draw_scene_view(list, rect, view, inspection, frame, camera, options);
-  });
+  return snapshot<SceneView>(
+      size, text_scale(size), [&](SceneView& view, ImDrawList& list, const ScreenRect& rect) {
+        draw_scene_view(list, rect, view, inspection, frame, camera, options);
+      });
+}
+
+cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
+  const cv::Size pixels = size.value_or(default_compare_size(inspections));
+  const auto scale = static_cast<float>(compare_text_scale(inspections, pixels));
+  using Texture = PictureTexture;
+  return snapshot<Texture>(
+      pixels, scale, [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
+        if (!inspections.empty() && inspections.front()->recording->pictures)
+          texture.upload(inspections.front()->recording->pictures->bgr(frame));
+        draw_compare_view(list, rect, inspections, frame, &texture);
+      });
 }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/views/compare_view.h"
 #include "ui/views/image_view.h"
 #include "ui/views/scene_view.h"
 
@@ -26,5 +27,8 @@ cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        cv::Size size = {960, 720},
                        const SceneViewOptions& options = {});
+
+/// At the size of `default_compare_size` where none is given.
+cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size = {});
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/error.h"
+#include "engine/inspection/report.h"
 
 #include <gmock/gmock.h>
 
@@ -43,6 +44,32 @@ TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
   const auto fresh = Inspector(recording).inspect(settings);
   EXPECT_EQ(kept->initialization->plane.normal, fresh->initialization->plane.normal);
   EXPECT_EQ(kept->initialization->solver.final_cost, fresh->initialization->solver.final_cost);
+}
+
+/// All but the times.
+std::string result_of(const Inspection& inspection) {
+  nlohmann::ordered_json json = to_json(inspection);
+  json.erase("timing_ms");
+  return json.dump();
+}
+
+TEST(Inspector, AShorterWindowIsTheBeginningOfALongerOne) {
+  Recording from_board = *desk();
+  from_board.truth.reset();
+  for (const auto& recording : {desk(), std::make_shared<const Recording>(from_board)}) {
+    Inspector used(recording);
+    Settings settings{.start = 2, .frames = 16};
+    const auto longer = used.inspect(settings);
+    settings.frames = 9;
+    int tracked = 0;
+    const auto shorter = used.inspect(settings, {}, [&](const std::string& stage, int, int) {
+      tracked += stage == "initializing" ? 0 : 1;
+    });
+    EXPECT_EQ(tracked, 0);  // neither tracked nor searched for the board
+    EXPECT_EQ(result_of(*shorter), result_of(*Inspector(recording).inspect(settings)));
+    EXPECT_LT(shorter->timing.track, longer->timing.track);
+    EXPECT_GT(shorter->timing.track, 0);
+  }
 }
 
 TEST(Inspector, StopsInTheMiddleAndStartsAnewAfterwards) {

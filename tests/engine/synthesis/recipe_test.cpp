@@ -50,6 +50,7 @@ TEST(Recipe, ReadsEveryPart) {
   EXPECT_NEAR(recipe.desk.boxes[0].angle, radians(30), 1e-12);
   EXPECT_EQ(recipe.picture.format, "png");
   EXPECT_EQ(recipe.picture.exposure, 0.004);
+  EXPECT_EQ(recipe.picture.rolling_shutter, 0);
   EXPECT_EQ(recipe.gyroscope.bias, Eigen::Vector3d(0.006, -0.004, 0.003));
   ASSERT_TRUE(recipe.gyroscope.calibrated_bias);
 }
@@ -59,6 +60,23 @@ TEST(Recipe, KeepsEveryDigitOfATimeStamp) {
       recipe_of(small_recipe_with("start_ns: 5000000000", "start_ns: 1520530308199447627"));
   EXPECT_EQ(frame_timestamp_ns(recipe, 0), 1520530308199447627);
   EXPECT_EQ(frame_timestamp_ns(recipe, 3), 1520530308299447627);
+}
+
+TEST(Recipe, RollingShutterReadsTheMiddleRowAtTheTimeStamp) {
+  const Recipe recipe =
+      recipe_of(small_recipe_with("exposure: 0.004", "exposure: 0.004, rolling_shutter: 0.02"));
+  const std::int64_t timestamp = frame_timestamp_ns(recipe, 3);
+  EXPECT_NEAR(row_seconds(recipe, timestamp, 0), 0.09, 1e-9);
+  EXPECT_NEAR(row_seconds(recipe, timestamp, 119), 0.11, 1e-9);
+  const double next_to_middle = row_seconds(recipe, timestamp, 59);
+  EXPECT_NEAR((next_to_middle + row_seconds(recipe, timestamp, 60)) / 2, 0.1, 1e-9);
+}
+
+TEST(Recipe, GlobalShutterReadsEachRowAtTheTimeStamp) {
+  const Recipe recipe = recipe_of(small_recipe_text());
+  const std::int64_t timestamp = frame_timestamp_ns(recipe, 3);
+  EXPECT_EQ(row_seconds(recipe, timestamp, 0), trajectory_seconds(recipe, timestamp));
+  EXPECT_EQ(row_seconds(recipe, timestamp, 119), trajectory_seconds(recipe, timestamp));
 }
 
 TEST(Recipe, NamesAMissingFile) {
@@ -121,6 +139,11 @@ TEST(Recipe, NamesAValueOutOfRange) {
   EXPECT_THAT(message_with("noise: 1,", "noise: .nan,"),
               EndsWith("found \".nan\", expected a number [gray levels] from 0 to 100"));
   EXPECT_THAT(message_with("start_ns: 5000000000", "start_ns: 0"), HasSubstr("frames.start_ns"));
+  EXPECT_THAT(message_with("exposure: 0.004", "rolling_shutter: -0.01"),
+              HasSubstr("key `picture.rolling_shutter`: found \"-0.01\", expected a number [s] "
+                        "from 0 to 0.033"));
+  EXPECT_THAT(message_with("exposure: 0.004", "rolling_shutter: 0.04"),
+              HasSubstr("key `picture.rolling_shutter`: found \"0.04\""));
 }
 
 TEST(Recipe, NamesTheKnownChoices) {

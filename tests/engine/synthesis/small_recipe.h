@@ -5,6 +5,7 @@
 #include "engine/synthesis/recipe.h"
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -19,6 +20,9 @@ std::string small_recipe_with(const std::string& from, const std::string& to);
 
 /// An empty folder of one test's own.
 std::filesystem::path test_folder(const std::string& name);
+
+/// Relative path -> bytes of every file below the folder.
+std::map<std::string, std::string> folder_contents(const std::filesystem::path& folder);
 
 /// Writes the text to a file in a folder of its own and reads it as a recipe.
 Recipe recipe_of(const std::string& text);

@@ -7,7 +7,7 @@
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <fstream>
-#include <map>
+#include <numbers>
 #include <sstream>
 
 #include <Eigen/Geometry>
@@ -19,18 +19,6 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Relative path -> bytes of every file below the folder.
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ostringstream bytes;
-    bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    files[fs::relative(entry.path(), folder).string()] = bytes.str();
-  }
-  return files;
-}
 
 /// The numbers of a CSV file, row by row, without its header; time stamps apart.
 struct Table {
@@ -63,7 +51,7 @@ TEST(Synthesize, WritesTheEurocLayout) {
   });
   EXPECT_EQ(last, 4);
   std::vector<std::string> names;
-  for (const auto& [name, bytes] : contents(output)) names.push_back(name);
+  for (const auto& [name, bytes] : folder_contents(output)) names.push_back(name);
   EXPECT_THAT(names,
               testing::ElementsAre("board.yaml",
                                    "mav0/cam0/data.csv",
@@ -117,12 +105,13 @@ TEST(Synthesize, TruthTimesExtrinsicsIsTheCamera) {
 }
 
 TEST(Synthesize, SameRecipeSameBytesWhateverTheThreads) {
-  for (const std::string format : {"png", "jpg"}) {
-    const Recipe recipe = recipe_of(small_recipe_with("format: png", "format: " + format));
-    const fs::path folder = test_folder(format);
+  for (const std::string picture :
+       {"format: png", "format: jpg", "rolling_shutter: 0.02, format: png"}) {
+    const Recipe recipe = recipe_of(small_recipe_with("format: png", picture));
+    const fs::path folder = test_folder("out");
     synthesize(recipe, folder / "one", {}, 1);
     synthesize(recipe, folder / "three", {}, 3);
-    EXPECT_EQ(contents(folder / "one"), contents(folder / "three"));
+    EXPECT_EQ(folder_contents(folder / "one"), folder_contents(folder / "three"));
   }
 }
 
@@ -132,13 +121,93 @@ TEST(Synthesize, AnotherSeedOnlyChangesTheNoise) {
   synthesize(recipe, folder / "a");
   recipe.seed = 4;
   synthesize(recipe, folder / "b");
-  const auto a = contents(folder / "a");
-  const auto b = contents(folder / "b");
+  const auto a = folder_contents(folder / "a");
+  const auto b = folder_contents(folder / "b");
   EXPECT_NE(a.at("mav0/imu0/data.csv"), b.at("mav0/imu0/data.csv"));
   EXPECT_NE(a.at("mav0/cam0/data/5000000000.png"), b.at("mav0/cam0/data/5000000000.png"));
   EXPECT_EQ(a.at("mav0/state_groundtruth_estimate0/data.csv"),
             b.at("mav0/state_groundtruth_estimate0/data.csv"));
   EXPECT_EQ(a.at("mav0/cam0/sensor.yaml"), b.at("mav0/cam0/sensor.yaml"));
+}
+
+template <int N>
+Path<N> later(Path<N> path, double seconds) {
+  path.start += path.velocity * seconds;
+  for (Harmonic<N>& h : path.harmonics) h.phase += 2 * std::numbers::pi * h.frequency * seconds;
+  return path;
+}
+
+/// The same way, so many seconds ahead.
+Trajectory later(const Trajectory& trajectory, double seconds) {
+  return {later(trajectory.position, seconds),
+          later(trajectory.look_at, seconds),
+          later(trajectory.roll, seconds),
+          trajectory.up};
+}
+
+Trajectory at_rest(const Trajectory& trajectory) {
+  Trajectory rest;
+  rest.position.start = trajectory.position.start;
+  rest.look_at.start = trajectory.look_at.start;
+  rest.roll.start = trajectory.roll.start;
+  return rest;
+}
+
+/// Pictures whose rows do not depend on each other, and without noise.
+Recipe rolling_recipe(double exposure, double readout) {
+  Recipe recipe = recipe_of(small_recipe_text());
+  recipe.picture.noise = 0;
+  recipe.picture.blur = 0;
+  recipe.picture.gain_variation = 0;
+  recipe.picture.exposure = exposure;
+  recipe.picture.rolling_shutter = readout;
+  recipe.frame_count = 2;
+  return recipe;
+}
+
+cv::Mat second_picture(const Recipe& recipe, const std::string& folder) {
+  const fs::path output = test_folder(folder) / "recording";
+  synthesize(recipe, output);
+  return cv::imread((output / "mav0/cam0/data/5033333333.png").string());
+}
+
+TEST(Synthesize, RollingShutterIsComposedOfGlobalPicturesAtTheRowsTimes) {
+  for (const double exposure : {0.0, 0.006}) {
+    const Recipe recipe = rolling_recipe(exposure, 0.03);
+    const cv::Mat rolling = second_picture(recipe, "rolling");
+    for (const int row : {0, 50, 119}) {
+      // The row's time becomes the second frame's.
+      Recipe global = rolling_recipe(exposure, 0);
+      const std::int64_t timestamp = frame_timestamp_ns(recipe, 1);
+      const double shift =
+          row_seconds(recipe, timestamp, row) - trajectory_seconds(recipe, timestamp);
+      global.trajectory = later(recipe.trajectory, shift);
+      const cv::Mat picture = second_picture(global, "global");
+      EXPECT_LE(cv::norm(rolling.row(row), picture.row(row), cv::NORM_INF), 1) << row;
+      EXPECT_GT(cv::norm(rolling, picture, cv::NORM_INF), 20) << row;
+    }
+  }
+}
+
+TEST(Synthesize, RollingShutterOfACameraAtRestIsAGlobalOne) {
+  Recipe recipe = rolling_recipe(0, 0.03);
+  recipe.trajectory = at_rest(recipe.trajectory);
+  const cv::Mat rolling = second_picture(recipe, "rolling");
+  recipe.picture.rolling_shutter = 0;
+  EXPECT_EQ(cv::norm(rolling, second_picture(recipe, "global"), cv::NORM_INF), 0);
+}
+
+TEST(Synthesize, RollingShutterLeavesTheTruthAlone) {
+  const fs::path folder = test_folder("out");
+  synthesize(rolling_recipe(0, 0), folder / "global");
+  synthesize(rolling_recipe(0, 0.03), folder / "rolling");
+  const auto global = folder_contents(folder / "global");
+  const auto rolling = folder_contents(folder / "rolling");
+  const std::string truth = "mav0/state_groundtruth_estimate0/data.csv";
+  EXPECT_EQ(global.at(truth), rolling.at(truth));
+  EXPECT_EQ(global.at("mav0/imu0/data.csv"), rolling.at("mav0/imu0/data.csv"));
+  const YAML::Node camera = YAML::Load(rolling.at("mav0/cam0/sensor.yaml"));
+  EXPECT_EQ(camera["rolling_shutter"].as<double>(), 0.03);
 }
 
 TEST(Synthesize, LeavesOutWhatTheRecipeLeavesOut) {
@@ -163,7 +232,7 @@ TEST(Synthesize, RefusesAFolderWithSomethingInIt) {
         error.what(),
         output.string() + ": found something there already, expected no folder or an empty one");
   }
-  EXPECT_EQ(contents(output).size(), 1U);
+  EXPECT_EQ(folder_contents(output).size(), 1U);
   EXPECT_FALSE(fs::exists(output.string() + ".unfinished"));
 }
 

@@ -1,10 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/output_file.h"
+#include "engine/output_file.h"
 
 #include "engine/error.h"
 
 #include <fstream>
+#include <random>
 
 #include <fmt/format.h>
 
@@ -25,7 +26,8 @@ void check_writable(const fs::path& file) {
 
 void write_file(const fs::path& file, const std::string& content) {
   check_writable(file);
-  const fs::path partial = file.string() + ".partial";
+  // A name of its own, because shards on several machines may write the same file at once.
+  const fs::path partial = fmt::format("{}.{:08x}.partial", file.string(), std::random_device()());
   std::ofstream stream(partial, std::ios::binary);
   stream << content;
   stream.close();

@@ -1,0 +1,90 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/recordings.h"
+
+#include "engine/synthesis/synthesized.h"
+
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBarLength = 20;
+constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
+
+bool is_recipe(const fs::path& path) {
+  const fs::path extension = path.extension();
+  return (extension == ".yaml" || extension == ".yml") && fs::is_regular_file(path);
+}
+
+/// Those that are about to be made: "orbit, approach", or their number where that is too long.
+std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
+  std::vector<std::string> names;
+  for (const fs::path& recipe : recipes) {
+    const fs::path folder = synthesized_folder(recipe, cache);
+    if (!fs::exists(folder)) names.push_back(folder.filename().string());
+  }
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  return all.size() <= kNamesLength ? all : fmt::format("{} recordings", names.size());
+}
+
+/// One line on standard error that is overwritten as work goes on, and ended at the end.
+struct ProgressBar {
+  std::string title;
+  bool begun = false;
+  explicit ProgressBar(std::string what) : title(std::move(what)) {}
+  ~ProgressBar() {
+    if (begun) std::fputc('\n', stderr);
+  }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(int done, int of) {
+    const int filled = kBarLength * done / of;
+    const std::string bar = std::string(filled, '#') + std::string(kBarLength - filled, '.');
+    fmt::print(stderr, "\rsynthesizing {} [{}] {}/{} frames", title, bar, done, of);
+    std::fflush(stderr);
+    begun = true;
+  }
+};
+
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+  const fs::path cache = GPO_RECORDINGS_DIR;
+  const int threads = static_cast<int>(std::thread::hardware_concurrency());
+  if (isatty(fileno(stderr)) == 0) return synthesized_recordings(recipes, cache, threads);
+  ProgressBar bar(names_of_missing(recipes, cache));
+  return synthesized_recordings(
+      recipes, cache, threads, [&](int done, int of) { bar.show(done, of); });
+}
+
+}  // namespace
+
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> recipes;
+  for (const fs::path& path : paths) {
+    if (is_recipe(path)) recipes.push_back(path);
+  }
+  const std::vector<fs::path> made = make_recordings(recipes);
+  auto next = made.begin();
+  std::vector<fs::path> resolved = paths;
+  for (fs::path& path : resolved) {
+    if (is_recipe(path)) path = *next++;
+  }
+  return resolved;
+}
+
+std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOptions& options) {
+  Recording recording = *open_recording(resolve_recordings({path}).front(), options);
+  recording.path = path;
+  return std::make_shared<const Recording>(std::move(recording));
+}
+
+}  // namespace gpo

@@ -1,0 +1,24 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace gpo {
+
+/// Where a command may be given a recording, it may be given a recipe (a file NAME.yaml or
+/// NAME.yml): replaces recipes by the folders of their recordings in the build tree, which are
+/// synthesized when first needed, with a progress bar where standard error is a terminal. Other
+/// paths stay as they are. Throws InputError.
+std::vector<std::filesystem::path> resolve_recordings(
+    const std::vector<std::filesystem::path>& paths);
+
+/// Opens a recording, or that of a recipe; its path stays what the user gave.
+std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
+                                            const OpenOptions& options = {});
+
+}  // namespace gpo

@@ -1,0 +1,172 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/configuration.h"
+
+#include "engine/error.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+/// A setting that differs from the default: how it is written, told and drawn.
+struct Variation {
+  const char* key;
+  const char* title;  ///< after the method's
+  std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
+};
+
+constexpr std::array kVariations{
+    Variation{"ransac", "with RANSAC", 0x882255},
+    Variation{"no-ransac", "without RANSAC", 0xBB3355},
+    Variation{"gyro", "with gyroscope", 0x117733},
+    Variation{"gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
+    Variation{"averaging", "with averaged rotations", 0xAA7711},
+    Variation{"truth", "with true rotations", 0x666666},
+};
+
+/// The paper's; beside them each method as it is.
+constexpr std::array kAblations{
+    "gpo+no-ransac", "gpo+gyro-calibrated", "gpo+averaging", "gpo+truth", "ba+ransac"};
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+bool is_method(const std::string& key) {
+  return std::ranges::any_of(methods(), [&](const Method& m) { return m.key == key; });
+}
+
+bool is_source(const std::string& key) {
+  return std::ranges::any_of(rotation_source_keys(), [&](const char* k) { return k == key; });
+}
+
+std::string known_methods() {
+  std::vector<std::string> keys;
+  for (const Method& method : methods()) keys.push_back(method.key);
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
+void set(Configuration& configuration, const std::string& setting, const std::string& text) {
+  const bool is_ransac = setting == "ransac" || setting == "no-ransac";
+  if (!is_ransac && !is_source(setting)) {
+    throw InputError(
+        fmt::format("--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}",
+                    text,
+                    setting,
+                    fmt::join(rotation_source_keys(), ", ")));
+  }
+  const bool twice = is_ransac ? configuration.ransac.has_value()
+                               : configuration.rotations != RotationSource::automatic;
+  if (twice) throw InputError(fmt::format("--methods: '{}' sets one thing twice", text));
+  if (is_ransac) {
+    configuration.ransac = setting == "ransac";
+  } else {
+    configuration.rotations = rotation_source(setting);
+  }
+}
+
+std::vector<std::string> all_keys() {
+  std::vector<std::string> keys;
+  for (const Method& method : methods()) keys.push_back(method.key);
+  for (const std::string ablation : kAblations) {
+    const std::vector<std::string> parts = split(ablation, '+');
+    const bool known = is_method(parts[0]) && (parts[1].ends_with("ransac") || is_source(parts[1]));
+    if (known) keys.push_back(ablation);
+  }
+  return keys;
+}
+
+std::vector<Variation> variations(const Configuration& configuration) {
+  std::vector<std::string> keys;
+  if (configuration.ransac) keys.emplace_back(*configuration.ransac ? "ransac" : "no-ransac");
+  if (configuration.rotations != RotationSource::automatic) {
+    keys.emplace_back(to_string(configuration.rotations));
+  }
+  std::vector<Variation> found;
+  for (const std::string& key : keys) {
+    found.push_back(*std::ranges::find(kVariations, key, &Variation::key));
+  }
+  return found;
+}
+
+/// Two parts of `b` and one of `a`, so that the same setting of two methods is told apart.
+std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t sum = 0;
+  for (const int shift : {0, 8, 16}) {
+    sum |= (((a >> shift & 0xFF) + 2 * (b >> shift & 0xFF)) / 3) << shift;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Configuration parse_configuration(const std::string& text) {
+  const std::vector<std::string> parts = split(text, '+');
+  if (parts.empty() || !is_method(parts.front())) {
+    throw InputError(fmt::format("--methods: unknown method '{}', expected all, or some of {}",
+                                 parts.empty() ? "" : parts.front(),
+                                 known_methods()));
+  }
+  Configuration configuration{.method = parts.front()};
+  for (std::size_t i = 1; i < parts.size(); ++i) set(configuration, parts[i], text);
+  const bool by_default = uses_ransac({.method = configuration.method});
+  if (configuration.ransac == by_default) configuration.ransac.reset();
+  return configuration;
+}
+
+std::vector<Configuration> parse_configurations(const std::string& text) {
+  std::vector<Configuration> configurations;
+  const auto add = [&](const std::string& key) {
+    const Configuration configuration = parse_configuration(key);
+    const bool had = std::ranges::find(configurations, configuration) != configurations.end();
+    if (!had) configurations.push_back(configuration);
+  };
+  for (const std::string& key : split(text, ',')) {
+    if (key == "all") {
+      std::ranges::for_each(all_keys(), add);
+    } else {
+      add(key);
+    }
+  }
+  if (configurations.empty()) parse_configuration("");
+  return configurations;
+}
+
+std::string key_of(const Configuration& configuration) {
+  std::string key = configuration.method;
+  for (const Variation& variation : variations(configuration))
+    key += fmt::format("+{}", variation.key);
+  return key;
+}
+
+std::string title_of(const Configuration& configuration) {
+  std::string title = find_method(configuration.method).title;
+  for (const Variation& variation : variations(configuration))
+    title += fmt::format(" {}", variation.title);
+  return title;
+}
+
+std::uint32_t color_of(const Configuration& configuration) {
+  std::uint32_t rgb = find_method(configuration.method).rgb;
+  for (const Variation& variation : variations(configuration)) rgb = mixed(rgb, variation.rgb);
+  return rgb;
+}
+
+Settings apply(const Configuration& configuration, Settings settings) {
+  settings.method = configuration.method;
+  settings.ransac = configuration.ransac;
+  settings.rotations = configuration.rotations;
+  return settings;
+}
+
+}  // namespace gpo

@@ -1,0 +1,170 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/figures.h"
+
+#include "engine/experiment/summary.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
+
+bool is_of(const Configuration& c, MethodFamily family) {
+  return is_plain(c) && (c.method == "gpo" || find_method(c.method).family == family);
+}
+
+/// A figure of the paper, and which configurations are in it.
+struct PaperFigure {
+  const char* name;
+  const char* title;
+  bool (*shows)(const Configuration& configuration);
+};
+
+constexpr std::array kPaperFigures{
+    PaperFigure{"aggregation",
+                "GPO and aggregation-based methods",
+                [](const Configuration& c) { return is_of(c, MethodFamily::aggregation); }},
+    PaperFigure{"optimization",
+                "GPO and optimization-based methods",
+                [](const Configuration& c) { return is_of(c, MethodFamily::optimization); }},
+    PaperFigure{"gpo_ransac",
+                "GPO with and without RANSAC",
+                [](const Configuration& c) {
+                  return c.method == "gpo" && c.rotations == RotationSource::automatic;
+                }},
+    PaperFigure{"rotation_sources",
+                "GPO by the source of its rotations",
+                [](const Configuration& c) { return c.method == "gpo" && !c.ransac; }},
+    PaperFigure{"ba_ransac",
+                "BA with and without RANSAC",
+                [](const Configuration& c) {
+                  return c.method == "ba" && c.rotations == RotationSource::automatic;
+                }},
+};
+
+/// A column of results.csv as an axis.
+struct Axis {
+  const char* column;
+  const char* title;
+  const char* label;
+  double factor;  ///< from the column's unit to the label's
+  bool logarithmic;
+};
+
+constexpr std::array kAxes{
+    Axis{"ate_m", "Absolute trajectory error", "ATE [mm]", 1e3, false},
+    Axis{"pne_deg", "Plane normal error", "PNE [deg]", 1, true},
+    Axis{"pde_m", "Plane distance error", "PDE [mm]", 1e3, false},
+};
+constexpr const char* kBoundColumn = "pne_bound_deg";
+constexpr std::uint32_t kBoundColor = 0x555555;
+
+Curve curve_of(const std::vector<Cell>& cells,
+               const std::string& configuration,
+               const std::string& column,
+               double factor) {
+  Curve curve;
+  const auto add = [&](std::vector<double>& to, const std::optional<double>& value) {
+    to.push_back(factor * value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const Cell& cell : cells) {
+    if (cell.configuration != configuration) continue;
+    const Distribution& d = cell.values.at(column);
+    curve.x.push_back(cell.frames);
+    add(curve.y, d.median);
+    add(curve.lower, d.lower);
+    add(curve.upper, d.upper);
+  }
+  return curve;
+}
+
+Curve bound_curve(const std::vector<Cell>& cells, const Configuration& configuration) {
+  Curve curve = curve_of(cells, key_of(configuration), kBoundColumn, 1);
+  curve.name = fmt::format("bound ({})", title_of(configuration));
+  curve.rgb = kBoundColor;
+  curve.dotted = true;
+  curve.lower.clear();
+  curve.upper.clear();
+  return curve;
+}
+
+Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axis& axis) {
+  Chart chart{axis.title, "window [frames]", axis.label, axis.logarithmic, {}};
+  for (const Configuration& configuration : plan.configurations) {
+    Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
+    if (curve.x.empty()) continue;
+    curve.name = title_of(configuration);
+    curve.rgb = color_of(configuration);
+    chart.curves.push_back(std::move(curve));
+  }
+  if (axis.column == std::string("pne_deg")) {
+    chart.curves.push_back(bound_curve(cells, plan.configurations.front()));
+  }
+  return chart;
+}
+
+/// How many windows each point of the curves stands for, and who has no curve.
+std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan) {
+  std::string text = "none";
+  if (!cells.empty()) {
+    const auto [least, most] = std::ranges::minmax(cells, {}, &Cell::windows);
+    text = least.windows == most.windows ? std::to_string(most.windows)
+                                         : fmt::format("{} to {}", least.windows, most.windows);
+  }
+  text += " a length";
+  for (const Configuration& configuration : plan.configurations) {
+    const std::string key = key_of(configuration);
+    const bool has = std::ranges::find(cells, key, &Cell::configuration) != cells.end();
+    if (!has) text += ", none solved by " + title_of(configuration);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations) {
+  std::vector<FigurePlan> plans;
+  std::vector<Configuration> shown;
+  for (const PaperFigure& figure : kPaperFigures) {
+    FigurePlan plan{figure.name, figure.title, {}};
+    std::ranges::copy_if(configurations, std::back_inserter(plan.configurations), figure.shows);
+    if (plan.configurations.size() < 2) continue;
+    shown.insert(shown.end(), plan.configurations.begin(), plan.configurations.end());
+    plans.push_back(std::move(plan));
+  }
+  const bool all_shown = std::ranges::all_of(configurations, [&](const Configuration& c) {
+    return std::ranges::find(shown, c) != shown.end();
+  });
+  if (!all_shown) plans.push_back({"configurations", "All configurations", configurations});
+  return plans;
+}
+
+Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
+  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
+  Figure figure{
+      plan.name,
+      fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
+                  plan.title,
+                  windows_text(cells, plan)),
+      {}};
+  for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
+  return figure;
+}
+
+std::vector<Figure> figures(std::span<const Row> rows,
+                            const std::vector<Configuration>& configurations) {
+  std::vector<Figure> all;
+  for (const FigurePlan& plan : figure_plans(configurations)) {
+    all.push_back(figure_over_length(rows, plan));
+  }
+  return all;
+}
+
+}  // namespace gpo

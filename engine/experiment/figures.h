@@ -1,0 +1,35 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/experiment/chart.h"
+#include "engine/experiment/configuration.h"
+#include "engine/experiment/row.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// What a figure compares.
+struct FigurePlan {
+  std::string name;  ///< of its files
+  std::string title;
+  std::vector<Configuration> configurations;
+};
+
+/// The paper's figures that have at least two of the configurations to compare, and one of all
+/// configurations where the others leave any out.
+std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations);
+
+/// ATE, PNE and PDE over the length of the window: median and quartiles over the windows that all
+/// configurations solved (`on_common_windows`), dotted the bound on the normal for the first
+/// configuration. `rows` may have others.
+Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
+
+/// All of an experiment's figures.
+std::vector<Figure> figures(std::span<const Row> rows,
+                            const std::vector<Configuration>& configurations);
+
+}  // namespace gpo

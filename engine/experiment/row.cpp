@@ -1,0 +1,144 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/row.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+ordered_json value_json(const auto& value) {
+  using Value = std::decay_t<decltype(value)>;
+  if constexpr (std::is_same_v<Value, RotationSource>) {
+    return to_string(value);
+  } else if constexpr (IsOptional<Value>::value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  } else {
+    return value;
+  }
+}
+
+template <class Value>
+void read_value(const ordered_json& json, Value& value) {
+  if constexpr (std::is_same_v<Value, RotationSource>) {
+    value = rotation_source(json.get<std::string>());
+  } else if constexpr (IsOptional<Value>::value) {
+    value.reset();
+    if (!json.is_null()) value = json.get<typename Value::value_type>();
+  } else {
+    value = json.get<Value>();
+  }
+}
+
+/// Quoted where it holds a comma, a quote or a line's end.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string value_cell(const auto& value) {
+  using Value = std::decay_t<decltype(value)>;
+  if constexpr (std::is_same_v<Value, RotationSource>) {
+    return to_string(value);
+  } else if constexpr (IsOptional<Value>::value) {
+    return value ? fmt::format("{}", *value) : "";
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return cell(value);
+  } else {
+    return fmt::format("{}", value);
+  }
+}
+
+void add_evaluation(Row& row, const Evaluation& evaluation) {
+  row.alignment = evaluation.alignment == Alignment::ok ? "ok" : "degenerate";
+  row.scale = evaluation.scale;
+  row.ate_m = evaluation.ate_m;
+  row.pne_deg = evaluation.pne_deg;
+  row.pne_aligned_deg = evaluation.pne_aligned_deg;
+  row.pde_m = evaluation.pde_m;
+  row.pne_bound_deg = evaluation.pne_bound_deg;
+}
+
+void add_timing(Row& row, const Timing& timing) {
+  row.track_ms = timing.track;
+  row.ransac_ms = timing.ransac;
+  row.rotations_ms = timing.rotations;
+  row.initialize_ms = timing.initialize;
+  row.optimize_ms = timing.optimize;
+  row.total_ms = timing.total;
+}
+
+}  // namespace
+
+Row refused_row(const std::string& recording,
+                const Configuration& configuration,
+                const Settings& settings,
+                const std::string& reason) {
+  Row row;
+  row.recording = recording;
+  row.configuration = key_of(configuration);
+  row.settings = apply(configuration, settings);
+  row.settings.ransac = uses_ransac(row.settings);
+  row.status = "failed";
+  row.reason = reason;
+  return row;
+}
+
+Row make_row(const Configuration& configuration, const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  Row row =
+      refused_row(inspection.recording->name, configuration, inspection.settings, result.reason);
+  row.settings.rotations = inspection.rotations_used;
+  row.status = result.ok ? "ok" : "failed";
+  row.tracks = inspection.window->track_count();
+  row.inliers = inspection.window->inlier_count(0);
+  if (result.ok) row.rms_px = result.rms_px;
+  row.iterations = result.solver.iterations;
+  row.unknowns = result.solver.unknowns;
+  row.residuals = result.solver.residuals;
+  row.initial_cost = result.solver.initial_cost;
+  row.final_cost = result.solver.final_cost;
+  row.termination = result.solver.termination;
+  if (inspection.evaluation) add_evaluation(row, *inspection.evaluation);
+  add_timing(row, inspection.timing);
+  return row;
+}
+
+std::string to_csv(std::span<const Row> rows) {
+  std::vector<std::string> names;
+  const Row empty;
+  visit_row(empty, [&](const std::string& name, const auto&) { names.push_back(name); });
+  std::string text = fmt::format("{}\n", fmt::join(names, ","));
+  for (const Row& row : rows) {
+    std::vector<std::string> cells;
+    visit_row(row, [&](const char*, const auto& value) { cells.push_back(value_cell(value)); });
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+ordered_json to_json(const Row& row) {
+  ordered_json json;
+  visit_row(row, [&](const char* name, const auto& value) { json[name] = value_json(value); });
+  return json;
+}
+
+Row row_from_json(const ordered_json& json) {
+  Row row;
+  visit_row(row, [&](const char* name, auto& value) { read_value(json.at(name), value); });
+  return row;
+}
+
+}  // namespace gpo

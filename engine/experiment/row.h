@@ -1,0 +1,85 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/experiment/configuration.h"
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/settings.h"
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+
+/// One configuration on one window: a line of results.csv. What is unknown is empty.
+struct Row {
+  std::string recording;      ///< name
+  std::string configuration;  ///< key
+  Settings settings;          ///< as used: RANSAC and rotations are what the defaults came to
+  std::string status;         ///< ok | failed
+  std::string reason;         ///< of a failure
+  std::optional<int> tracks, inliers;
+  std::optional<double> rms_px;
+  std::optional<int> iterations, unknowns, residuals;
+  std::optional<double> initial_cost, final_cost;  ///< half the summed squares [px^2]
+  std::string termination;
+  std::string alignment;  ///< ok | degenerate; empty without ground truth
+  std::optional<double> scale, ate_m, pne_deg, pne_aligned_deg, pde_m, pne_bound_deg;
+  std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
+
+  bool ok() const { return status == "ok"; }
+};
+
+/// The one declaration of the columns, in their order: `visit(name, value&)`. Times are the last,
+/// because all others are the same in every run.
+template <class R, class Visitor>
+void visit_row(R& row, Visitor&& visit) {
+  visit("recording", row.recording);
+  visit("configuration", row.configuration);
+  visit_settings(row.settings,
+                 [&](const SettingInfo& info, auto& value) { visit(info.key, value); });
+  visit("status", row.status);
+  visit("reason", row.reason);
+  visit("tracks", row.tracks);
+  visit("inliers", row.inliers);
+  visit("rms_px", row.rms_px);
+  visit("iterations", row.iterations);
+  visit("unknowns", row.unknowns);
+  visit("residuals", row.residuals);
+  visit("initial_cost", row.initial_cost);
+  visit("final_cost", row.final_cost);
+  visit("termination", row.termination);
+  visit("alignment", row.alignment);
+  visit("scale", row.scale);
+  visit("ate_m", row.ate_m);
+  visit("pne_deg", row.pne_deg);
+  visit("pne_aligned_deg", row.pne_aligned_deg);
+  visit("pde_m", row.pde_m);
+  visit("pne_bound_deg", row.pne_bound_deg);
+  visit("track_ms", row.track_ms);
+  visit("ransac_ms", row.ransac_ms);
+  visit("rotations_ms", row.rotations_ms);
+  visit("initialize_ms", row.initialize_ms);
+  visit("optimize_ms", row.optimize_ms);
+  visit("total_ms", row.total_ms);
+}
+
+/// What an inspection came to.
+Row make_row(const Configuration& configuration, const Inspection& inspection);
+/// A window that the configuration cannot be tried on, e.g. without a gyroscope.
+Row refused_row(const std::string& recording,
+                const Configuration& configuration,
+                const Settings& settings,
+                const std::string& reason);
+
+/// Header and lines of results.csv. Numbers have all the digits they need to be read back.
+std::string to_csv(std::span<const Row> rows);
+
+nlohmann::ordered_json to_json(const Row& row);
+/// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
+Row row_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace gpo

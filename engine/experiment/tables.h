@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/experiment/row.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// A table for people: a caption, a header and lines of cells.
+struct Table {
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> lines;
+};
+
+/// The paper's running times: medians over the solved windows of 30 frames, or of the longest
+/// length below, or where all are longer of the shortest.
+Table running_time_table(std::span<const Row> rows);
+
+/// How many windows each configuration solved, and its median errors at the shortest, a middle and
+/// the longest length.
+Table overview_table(std::span<const Row> rows);
+
+std::string to_markdown(const Table& table);
+/// Without the caption.
+std::string to_csv(const Table& table);
+/// In columns, for a terminal.
+std::string to_text(const Table& table);
+
+}  // namespace gpo

@@ -1,0 +1,182 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/app/program.h"
+
+#include <sstream>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::BadInput;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::read_file;
+using test::shell;
+using ::testing::HasSubstr;
+
+const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
+
+std::string evaluate(const std::string& arguments) {
+  return "evaluate " + desk().string() + " " + arguments;
+}
+
+/// results.csv up to the times, which are its last six columns. No cell of these tests is quoted.
+std::string results_without_times(const fs::path& folder) {
+  std::istringstream csv(read_file(folder / "results.csv"));
+  std::string kept;
+  for (std::string line; std::getline(csv, line);) {
+    for (int column = 0; column < 6; ++column) line.resize(line.rfind(','));
+    kept += line + "\n";
+  }
+  return kept;
+}
+
+/// summary.json up to the times.
+std::string summary_without_times(const fs::path& folder) {
+  const auto keep = [](int, json::parse_event_t event, json& parsed) {
+    const bool is_key = event == json::parse_event_t::key;
+    return !is_key || !parsed.get<std::string>().ends_with("_ms");
+  };
+  return json::parse(read_file(folder / "summary.json"), keep).dump();
+}
+
+void expect_same_results(const fs::path& a, const fs::path& b) {
+  EXPECT_EQ(results_without_times(a), results_without_times(b));
+  EXPECT_EQ(summary_without_times(a), summary_without_times(b));
+  EXPECT_EQ(read_file(a / "experiment.json"), read_file(b / "experiment.json"));
+}
+
+/// One run that is not interrupted.
+fs::path one_run(const fs::path& test_folder) {
+  fs::path folder = test_folder / "one-run";
+  const Outcome outcome = program(evaluate(kFewWindows + "--jobs 1 --output " + folder.string()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return folder;
+}
+
+TEST(Evaluate, LeavesAFolderOfResults) {
+  const fs::path folder = fresh_folder() / "made" / "on-demand";
+  const Outcome outcome =
+      program(evaluate("--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 "
+                       "--output " +
+                       folder.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("gpo+no-ransac"));
+  EXPECT_THAT(outcome.out, HasSubstr(folder.string()));
+  EXPECT_THAT(outcome.err, HasSubstr("evaluating 2/2 windows"));
+  const std::string csv = read_file(folder / "results.csv");
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
+  EXPECT_THAT(csv, ::testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
+  EXPECT_THAT(csv, HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro,false,2,1,ok,,"));
+  EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
+  EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));
+  EXPECT_THAT(read_file(folder / "running_time.csv"), HasSubstr("\nGPO,1/1,"));
+}
+
+TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {
+  const fs::path folder = fresh_folder() / "killed";
+  const std::string line = evaluate(kFewWindows + "--jobs 1 --output " + folder.string());
+  // SIGKILL as soon as there are windows.
+  const Outcome killed =
+      shell("'" GPO_PROGRAM "' " + line + " & pid=$!; for i in $(seq 2000); do [ -n \"$(ls " +
+            (folder / "windows").string() +
+            " 2>/dev/null)\" ] && break; sleep 0.005; done; kill -9 $pid; wait $pid");
+  EXPECT_EQ(killed.exit_code, 137);
+  EXPECT_FALSE(fs::exists(folder / "results.csv"));
+  EXPECT_FALSE(fs::is_empty(folder / "windows"));
+  const Outcome resumed = program(line);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(resumed.err.find("evaluating 0/"), std::string::npos) << resumed.err;
+  expect_same_results(folder, one_run(folder.parent_path()));
+}
+
+TEST(Evaluate, InterruptedSaysHowToGoOn) {
+  const fs::path folder = fresh_folder() / "interrupted";
+  const Outcome outcome =
+      shell("'" GPO_PROGRAM "' " + evaluate(kFewWindows + "--jobs 1 --output " + folder.string()) +
+            " & pid=$!; while [ ! -d " + (folder / "windows").string() +
+            " ]; do sleep 0.005; done; kill -INT $pid; wait $pid");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("stopped; the same command goes on from there"));
+  EXPECT_FALSE(fs::exists(folder / "results.csv"));
+}
+
+TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
+  const fs::path folder = fresh_folder();
+  const auto shard = [&](const char* which, const char* to) {
+    return program(
+        evaluate(kFewWindows + "--shard " + which + " --output " + (folder / to).string()));
+  };
+  const Outcome first = shard("1/3", "a");
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("evaluate --merge"));
+  EXPECT_FALSE(fs::exists(folder / "a" / "results.csv"));
+  EXPECT_EQ(shard("3/3", "a").exit_code, 0);
+  const std::string merge = "evaluate --merge " + (folder / "a").string() + " " +
+                            (folder / "b").string() + " --output " + (folder / "all").string();
+  EXPECT_EQ(program(merge).exit_code, 2);
+  EXPECT_EQ(shard("2/3", "b").exit_code, 0);
+  const Outcome merged = program(merge);
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  expect_same_results(folder / "all", one_run(folder));
+}
+
+TEST(Evaluate, JobsDoNotMatter) {
+  const fs::path folder = fresh_folder() / "jobs";
+  const Outcome outcome = program(evaluate(kFewWindows + "--jobs 2 --output " + folder.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_same_results(folder, one_run(folder.parent_path()));
+}
+
+TEST(Evaluate, SaysOnceWhichWindowsARecordingLacks) {
+  const fs::path folder = fresh_folder() / "long";
+  const Outcome outcome =
+      program(evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
+}
+
+class EvaluateOnBadInput : public ::testing::TestWithParam<BadInput> {};
+
+TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
+  const fs::path folder = fresh_folder();
+  const Outcome outcome =
+      program("evaluate " + GetParam().arguments + " --output " + (folder / "results").string());
+  expect_refused(outcome, GetParam(), folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage,
+    EvaluateOnBadInput,
+    ::testing::Values(
+        BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
+        BadInput{"sequences/desk --merge somewhere", "expected either recordings or --merge"},
+        BadInput{"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
+        BadInput{"no/such/folder", "no/such/folder"},
+        BadInput{"sequences/desk --methods gpoo", "--methods: unknown method 'gpoo'"},
+        BadInput{"sequences/desk --lengths 5:x", "--lengths: '5:x', expected FIRST:LAST:STEP"},
+        BadInput{"sequences/desk --starts -1", "--starts"},
+        BadInput{"sequences/desk --lengths 61", "no window fits"},
+        BadInput{"sequences/desk --jobs 0", "--jobs"},
+        BadInput{"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
+        BadInput{"--merge no/such/folder", "no/such/folder/experiment.json"}));
+
+TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
+  const std::string output = " --output " + (fresh_folder() / "taken").string();
+  EXPECT_EQ(program(evaluate("--methods gpo --lengths 6 --starts 0" + output)).exit_code, 0);
+  const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("experiment.json: is of another experiment"));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,99 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/app/program.h"
+#include "tests/engine/synthesis/small_recipe.h"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::shell;
+using ::testing::HasSubstr;
+
+/// What is kept of recipes called so.
+std::vector<fs::path> recordings_of(const std::string& name) {
+  fs::create_directories(GPO_RECORDINGS_DIR);
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(GPO_RECORDINGS_DIR)) {
+    if (entry.path().filename().string().starts_with(name + "-")) folders.push_back(entry.path());
+  }
+  return folders;
+}
+
+/// A recipe of this test's own, whose recording is not there yet.
+fs::path fresh_recipe(const std::string& name, const std::string& text) {
+  for (const fs::path& folder : recordings_of(name)) fs::remove_all(folder);
+  const fs::path recipe = fresh_folder() / (name + ".yaml");
+  test::write_file(recipe, text);
+  return recipe;
+}
+
+/// Enough of it to follow points through.
+std::string inspectable_recipe() {
+  std::string text = small_recipe_with("resolution: [160, 120]", "resolution: [320, 240]");
+  const std::string intrinsics = "[125, 124, 80.4, 59.2]";
+  return text.replace(text.find(intrinsics), intrinsics.size(), "[250, 248, 160.4, 119.2]");
+}
+
+TEST(RecipeAsRecording, InfoDescribesTheRecordingUnderThePathThatWasGiven) {
+  const fs::path recipe = fresh_recipe("infotest", small_recipe_text());
+  const Outcome first = program("info --json " + recipe.string());
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(first.err, "");  // no progress where nobody watches
+  const json info = json::parse(first.out);
+  EXPECT_EQ(info["recording"], recipe.string());
+  EXPECT_EQ(info["frames"], 4);
+  EXPECT_EQ(program("info --json " + recipe.string()).out, first.out);
+}
+
+TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
+  const fs::path recipe = fresh_recipe("runtest", inspectable_recipe());
+  const fs::path result = recipe.parent_path() / "result.json";
+  const Outcome outcome =
+      program("run " + recipe.string() + " --frames 4 --json " + result.string());
+  EXPECT_THAT(outcome.out, HasSubstr("recording   runtest\n")) << outcome.err;
+  EXPECT_EQ(json::parse(test::read_file(result))["recording"], recipe.string());
+}
+
+TEST(RecipeAsRecording, SnapshotDrawsIt) {
+  const fs::path recipe = fresh_recipe("snapshottest", inspectable_recipe());
+  const fs::path picture = recipe.parent_path() / "picture.png";
+  program("snapshot " + recipe.string() + " --frames 4 --view image --output " + picture.string());
+  EXPECT_TRUE(fs::exists(picture));
+}
+
+TEST(RecipeAsRecording, ProcessesThatWantTheSameShareIt) {
+  const fs::path recipe = fresh_recipe("sharetest", small_recipe_text());
+  const std::string info = "'" GPO_PROGRAM "' info --json " + recipe.string();
+  const std::string others =
+      info + " > /dev/null & first=$! ; " + info + " > /dev/null & second=$! ; ";
+  const Outcome outcome = shell(others + info + " && wait $first && wait $second");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["frames"], 4);
+  EXPECT_EQ(recordings_of("sharetest").size(), 1U);
+}
+
+TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
+  const fs::path recipe = fresh_recipe("brokentest", small_recipe_with("rate: 200", "rate: fast"));
+  const fs::path empty = recipe.parent_path() / "empty";
+  fs::create_directories(empty);
+  for (const std::string command : {"info ", "run ", "view "}) {
+    test::expect_refused(program(command + recipe.string()),
+                         {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
+                         empty);
+  }
+  EXPECT_TRUE(recordings_of("brokentest").empty());
+  EXPECT_EQ(program("info " + (empty / "none.yaml").string()).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/configuration.h"
+
+#include "engine/initializers/methods.h"
+#include "tests/engine/recording/test_folder.h"
+
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using ::testing::HasSubstr;
+
+TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
+  const Configuration plain = parse_configuration("gpo");
+  EXPECT_EQ(plain, (Configuration{.method = "gpo"}));
+  const Configuration both = parse_configuration("gpo+averaging+no-ransac");
+  EXPECT_EQ(both.ransac, false);
+  EXPECT_EQ(both.rotations, RotationSource::averaging);
+  EXPECT_EQ(key_of(both), "gpo+no-ransac+averaging");
+  EXPECT_EQ(parse_configuration(key_of(both)), both);
+}
+
+TEST(Configuration, DropsWhatRepeatsADefault) {
+  EXPECT_EQ(key_of(parse_configuration("gpo+ransac")), "gpo");
+  EXPECT_EQ(key_of(parse_configuration("gpo+automatic")), "gpo");
+}
+
+TEST(Configuration, ChangesOnlyItsOwnSettings) {
+  const Settings base{.start = 3, .frames = 7, .seed = 9};
+  Settings expected = base;
+  expected.ransac = false;
+  expected.rotations = RotationSource::truth;
+  EXPECT_EQ(apply(parse_configuration("gpo+no-ransac+truth"), base), expected);
+}
+
+TEST(Configuration, AllIsEveryMethodAndTheAblations) {
+  std::set<std::string> keys;
+  for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
+  for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
+  for (const char* ablation : {"gpo+no-ransac", "gpo+averaging", "gpo+truth"}) {
+    EXPECT_TRUE(keys.contains(ablation)) << ablation;
+  }
+}
+
+TEST(Configuration, IsInAListOnce) {
+  EXPECT_EQ(parse_configurations("gpo,gpo+averaging,gpo+ransac").size(), 2U);
+  EXPECT_EQ(parse_configurations("gpo,all"), parse_configurations("all"));
+}
+
+TEST(Configuration, HasATitleAndAColorOfItsOwn) {
+  EXPECT_EQ(title_of(parse_configuration("gpo+no-ransac")), "GPO without RANSAC");
+  EXPECT_EQ(title_of(parse_configuration("gpo+averaging")), "GPO with averaged rotations");
+  std::set<std::string> titles;
+  std::set<std::uint32_t> colors;
+  const auto all = parse_configurations("all");
+  for (const Configuration& c : all) {
+    titles.insert(title_of(c));
+    colors.insert(color_of(c));
+  }
+  EXPECT_EQ(titles.size(), all.size());
+  EXPECT_EQ(colors.size(), all.size());
+}
+
+TEST(Configuration, EveryRotationSourceHasATitle) {
+  for (const char* source : rotation_source_keys()) {
+    EXPECT_FALSE(title_of(parse_configuration(std::string("gpo+") + source)).empty());
+  }
+}
+
+TEST(Configuration, NamesTheOptionAndWhatIsKnown) {
+  const auto error = [](const std::string& text) {
+    return error_of([&] { parse_configurations(text); });
+  };
+  EXPECT_THAT(error("gpo,gpoo"), HasSubstr("--methods: unknown method 'gpoo', expected all, or"));
+  EXPECT_THAT(error(""), HasSubstr("--methods: unknown method ''"));
+  EXPECT_THAT(error("gpo+gyr"),
+              HasSubstr("'gpo+gyr': unknown setting 'gyr', expected one of ransac"));
+  EXPECT_THAT(error("gpo+truth+gyro"), HasSubstr("sets one thing twice"));
+}
+
+}  // namespace
+}  // namespace gpo

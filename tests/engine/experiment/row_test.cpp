@@ -1,0 +1,65 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/row.h"
+
+#include "engine/inspection/report.h"
+#include "tests/engine/experiment/made_rows.h"
+
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::made_row;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::vector<std::string> column_names() {
+  std::vector<std::string> names;
+  std::istringstream header(to_csv({}));
+  for (std::string name; std::getline(header, name, ',');) {
+    names.push_back(name.substr(0, name.find('\n')));
+  }
+  return names;
+}
+
+TEST(Row, HasEveryNumberOfTheReportAndTimesLast) {
+  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+  const auto inspection = Inspector(recording).inspect({.frames = 6});
+  const nlohmann::ordered_json report = to_json(*inspection);
+  const std::vector<std::string> names = column_names();
+  const std::set<std::string> columns(names.begin(), names.end());
+  for (const char* part : {"settings", "window", "solver", "metrics"}) {
+    for (const auto& [key, value] : report[part].items()) EXPECT_TRUE(columns.contains(key)) << key;
+  }
+  for (const auto& [key, value] : report["timing_ms"].items()) {
+    EXPECT_TRUE(columns.contains(key + "_ms")) << key;
+  }
+  for (std::size_t i = names.size() - 6; i < names.size(); ++i) {
+    EXPECT_TRUE(names[i].ends_with("_ms")) << names[i];
+  }
+}
+
+TEST(Row, ComesBackFromJsonToTheBit) {
+  Row row = made_row("gpo+no-ransac", 3, 7, 0.1 + 0.2);
+  row.settings.rotations = RotationSource::averaging;
+  row.settings.ransac = false;
+  row.iterations = 9;
+  const auto text = to_json(row).dump();
+  const Row back = row_from_json(nlohmann::ordered_json::parse(text));
+  EXPECT_EQ(back.pne_deg, row.pne_deg);
+  EXPECT_EQ(to_csv(std::vector{back}), to_csv(std::vector{row}));
+  EXPECT_EQ(back.settings, row.settings);
+}
+
+TEST(Row, QuotesReasonsAndLeavesTheUnknownEmpty) {
+  const std::string csv = to_csv(std::vector{made_row("gpo", 3, 7, {})});
+  EXPECT_THAT(csv.substr(csv.find('\n') + 1), StartsWith("made,gpo,3,7,gpo,automatic,"));
+  EXPECT_THAT(csv, HasSubstr("failed,\"no parallax, \"\"none\"\"\",,,"));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,156 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/summary.h"
+
+#include "engine/experiment/figures.h"
+#include "engine/experiment/tables.h"
+#include "tests/engine/experiment/made_rows.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::made_row;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Distribution, IsMedianAndQuartiles) {
+  const Distribution five = distribution({5, 1, 4, 2, 3});
+  EXPECT_EQ(five.count, 5);
+  EXPECT_EQ(five.lower, 2);
+  EXPECT_EQ(five.median, 3);
+  EXPECT_EQ(five.upper, 4);
+  const Distribution four = distribution({1, 2, 3, 10});
+  EXPECT_DOUBLE_EQ(*four.lower, 1.75);
+  EXPECT_DOUBLE_EQ(*four.median, 2.5);
+  EXPECT_DOUBLE_EQ(*four.upper, 4.75);
+  EXPECT_EQ(distribution({7}).upper, 7);
+  EXPECT_FALSE(distribution({}).median);
+}
+
+/// Three windows of 10 frames and one of 20. Without RANSAC one of 10 and that of 20 fail.
+std::vector<Row> made_rows() {
+  return {made_row("gpo", 0, 10, 1.0),
+          made_row("gpo+no-ransac", 0, 10, 3.0),
+          made_row("gpo", 0, 20, 0.5),
+          made_row("gpo+no-ransac", 0, 20, {}),
+          made_row("gpo", 1, 10, 100.0),
+          made_row("gpo+no-ransac", 1, 10, {}),
+          made_row("gpo", 2, 10, 2.0),
+          made_row("gpo+no-ransac", 2, 10, 5.0)};
+}
+
+TEST(Summary, CountsFailuresAndLeavesThemOutOfTheMedians) {
+  const std::vector<Cell> cells = summarize(made_rows());
+  ASSERT_EQ(cells.size(), 4U);
+  EXPECT_EQ(cells[0].configuration, "gpo");
+  EXPECT_EQ(cells[0].frames, 10);
+  EXPECT_EQ(cells[0].windows, 3);
+  EXPECT_EQ(cells[0].values.at("pne_deg").median, 2);
+  EXPECT_EQ(cells[2].configuration, "gpo+no-ransac");
+  EXPECT_EQ(cells[2].windows, 3);
+  EXPECT_EQ(cells[2].ok, 2);
+  EXPECT_EQ(cells[2].values.at("pne_deg").median, 4);
+  EXPECT_EQ(cells[3].ok, 0);
+  EXPECT_FALSE(cells[3].values.at("pne_deg").median);
+  EXPECT_EQ(cells[0].values.at("pde_m").count, 0);  // unknown everywhere
+}
+
+TEST(Summary, ComparesOnTheWindowsThatAllSolved) {
+  const std::vector<Cell> cells = summarize(on_common_windows(made_rows()));
+  ASSERT_EQ(cells.size(), 3U);
+  EXPECT_EQ(cells[0].windows, 2);  // not the one of 100 degrees, which the other failed
+  EXPECT_EQ(cells[0].values.at("pne_deg").median, 1.5);
+  EXPECT_EQ(cells[1].frames, 20);  // the other solved none of this length and has no say
+  EXPECT_EQ(cells[1].windows, 1);
+  EXPECT_EQ(cells[2].values.at("pne_deg").median, 4);
+}
+
+Experiment made_experiment() {
+  return {{{"made", "somewhere/made", 22, {0, 1, 2}}},
+          {10, 20},
+          parse_configurations("gpo,gpo+no-ransac"),
+          1};
+}
+
+TEST(Summary, JsonHasAllWindowsEachRecordingAndEachFigure) {
+  const nlohmann::ordered_json json = to_json(made_experiment(), made_rows());
+  EXPECT_EQ(json["experiment"]["lengths"].size(), 2U);
+  EXPECT_EQ(json["all_windows"][2]["failed"], 1);
+  EXPECT_EQ(json["all_windows"][0]["pne_deg"]["median"], 2);
+  EXPECT_TRUE(json["all_windows"][0]["pde_m"]["median"].is_null());
+  EXPECT_EQ(json["by_recording"][0]["recording"], "made");
+  EXPECT_EQ(json["by_recording"][0]["cells"], json["all_windows"]);
+  EXPECT_EQ(json["windows_that_all_solved"][0]["figure"], "gpo_ransac");
+  EXPECT_EQ(json["windows_that_all_solved"][0]["cells"][0]["pne_deg"]["median"], 1.5);
+}
+
+std::vector<std::string> names_of(const std::vector<FigurePlan>& plans) {
+  std::vector<std::string> names;
+  for (const FigurePlan& plan : plans) names.push_back(plan.name);
+  return names;
+}
+
+TEST(Figures, AreThosePapersThatHaveSomethingToCompare) {
+  const auto names = [](const std::string& configurations) {
+    return names_of(figure_plans(parse_configurations(configurations)));
+  };
+  EXPECT_THAT(names("gpo,gpo+no-ransac"), ElementsAre("gpo_ransac"));
+  EXPECT_THAT(names("gpo,gpo+truth,gpo+averaging,gpo+no-ransac"),
+              ElementsAre("gpo_ransac", "rotation_sources"));
+  EXPECT_THAT(names("gpo"), ElementsAre("configurations"));
+  EXPECT_THAT(names("gpo,gpo+truth,gpo+no-ransac+truth"),
+              ElementsAre("rotation_sources", "configurations"));
+}
+
+TEST(Figures, HoldMediansQuartilesAndTheDottedBound) {
+  const std::vector<Figure> all = figures(made_rows(), made_experiment().configurations);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_THAT(all[0].title, HasSubstr("1 to 2 a length"));
+  ASSERT_EQ(all[0].charts.size(), 3U);
+  const Chart& ate = all[0].charts[0];
+  EXPECT_EQ(ate.y_label, "ATE [mm]");
+  ASSERT_EQ(ate.curves.size(), 2U);
+  EXPECT_EQ(ate.curves[0].name, "GPO");
+  EXPECT_DOUBLE_EQ(ate.curves[0].y[0], 15);
+  const Chart& pne = all[0].charts[1];
+  EXPECT_TRUE(pne.logarithmic);
+  ASSERT_EQ(pne.curves.size(), 3U);
+  EXPECT_THAT(pne.curves[0].x, ElementsAre(10, 20));
+  EXPECT_THAT(pne.curves[0].y, ElementsAre(1.5, 0.5));
+  EXPECT_THAT(pne.curves[0].lower, ElementsAre(1.25, 0.5));
+  EXPECT_THAT(pne.curves[0].upper, ElementsAre(1.75, 0.5));
+  EXPECT_EQ(pne.curves[1].name, "GPO without RANSAC");
+  EXPECT_THAT(pne.curves[1].x, ElementsAre(10));
+  EXPECT_TRUE(pne.curves[2].dotted);
+  EXPECT_DOUBLE_EQ(pne.curves[2].y[0], 0.15);
+  EXPECT_TRUE(pne.curves[2].lower.empty());
+}
+
+TEST(Figures, SayWhoSolvedNothing) {
+  const std::vector<Row> rows{made_row("gpo", 0, 10, 1.0), made_row("gpo+no-ransac", 0, 10, {})};
+  const Figure figure = figures(rows, made_experiment().configurations).front();
+  EXPECT_EQ(figure.charts[0].curves.size(), 1U);
+  EXPECT_THAT(figure.title, HasSubstr("none solved by GPO without RANSAC"));
+}
+
+TEST(Tables, RunningTimesAreOfThirtyFramesOrTheNextBelow) {
+  const Table table = running_time_table(made_rows());
+  EXPECT_THAT(table.caption, HasSubstr("with 20 frames (no windows of 30)"));
+  ASSERT_EQ(table.lines.size(), 2U);
+  EXPECT_THAT(table.lines[0], ElementsAre("GPO", "1/1", "1.50", "1.00", "5.00", "4.00", "1.80"));
+  EXPECT_THAT(table.lines[1], ElementsAre("GPO without RANSAC", "0/1", "-", "-", "-", "-", "-"));
+  EXPECT_THAT(to_markdown(table), HasSubstr("| GPO | 1/1 | 1.50 |"));
+  EXPECT_THAT(to_csv(table), HasSubstr("\nGPO,1/1,1.50,"));
+  const std::vector<Row> longer{made_row("gpo", 0, 40, 1), made_row("gpo", 0, 50, 1)};
+  EXPECT_THAT(running_time_table(longer).caption, HasSubstr("with 40 frames"));
+}
+
+TEST(Tables, OverviewShowsSolvedOfTriedWindows) {
+  const std::string text = to_text(overview_table(made_rows()));
+  EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000     40.00         -\n"));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+std::string number_text(double value, int most) {
+  const double size = std::abs(value);
+  const int behind = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f}", value, std::min(behind, most));
+}
+
+std::string length_text(double meters) {
+  if (std::abs(meters) >= 1) return number_text(meters, 3) + " m";
+  return number_text(meters * 1e3, 2) + " mm";
+}
+
+std::string angle_text(double degrees) { return number_text(degrees, 3) + "\u00b0"; }
+
+std::string milliseconds_text(double milliseconds) {
+  return number_text(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
+}
+
+}  // namespace gpo

@@ -1,0 +1,18 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace gpo {
+
+/// Three significant digits, but none beyond `most` behind the point.
+std::string number_text(double value, int most);
+
+/// "4.1 mm", "1.20 m".
+std::string length_text(double meters);
+/// "0.31°".
+std::string angle_text(double degrees);
+std::string milliseconds_text(double milliseconds);
+
+}  // namespace gpo
