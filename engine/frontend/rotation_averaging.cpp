@@ -30,6 +30,7 @@ constexpr double kNormalCapDeg =
     10;  // a candidate farther from the common normal is the false twin
 constexpr double kSmallestRad = 1e-4;   // keeps the weight of a perfect pair finite
 constexpr double kClearlyWorse = 2.25;  // cost of a second plane: else the two cannot be told apart
+constexpr double kPlausible = 9;        // cost of another plane that may still be the right one
 constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
 
 struct Pair {
@@ -196,18 +197,14 @@ void average(std::span<const RelativeRotation> relative,
   }
 }
 
-}  // namespace
+/// Decomposed pairs of the reference frame with each other frame, or why there are none.
+struct ReferencePairs {
+  std::vector<Pair> pairs;
+  std::string reason;
+};
 
-std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
-                                        std::vector<Matrix3d> R_wc) {
-  average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallestRad); });
-  // The l_1/2 weights of Chatterjee & Govindu 2018, whose estimate tolerates more outliers.
-  average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallestRad), -1.5); });
-  return R_wc;
-}
-
-Rotations averaged_rotations(const Window& window, const std::stop_token& stop) {
-  std::vector<Pair> reference_pairs;
+ReferencePairs decompose_reference_pairs(const Window& window) {
+  ReferencePairs result;
   for (int j = 1; j < window.frame_count(); ++j) {
     auto pair = decompose_pair(window, 0, j);
     if (!pair) {
@@ -217,11 +214,42 @@ Rotations averaged_rotations(const Window& window, const std::stop_token& stop) 
                           window.start + j,
                           kLeastPairTracks)};
     }
-    reference_pairs.push_back(std::move(*pair));
+    result.pairs.push_back(std::move(*pair));
   }
-  const std::vector<Consensus> found = consensuses(reference_pairs);
-  if (auto reason = reason_to_doubt(found)) return {{}, *reason};
-  const Vector3d& normal = found.front().normal;
+  return result;
+}
+
+/// How far the rotations that go with a normal are from given ones, the median over the pairs
+/// [deg].
+double disagreement_deg(std::span<const Pair> pairs,
+                        const Vector3d& normal,
+                        std::span<const Matrix3d> R_wc_given) {
+  std::vector<double> angles;
+  for (const Pair& pair : pairs) {
+    const Matrix3d R_ij = rotation_of(pair, normal).transpose();
+    angles.push_back(degrees(so3_log(R_wc_given[pair.j].transpose() * R_ij).norm()));
+  }
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::ranges::nth_element(angles, middle);
+  return *middle;
+}
+
+/// An error of the normal enters the rotations in proportion to the parallax.
+double rotation_sigma_rad(std::span<const Pair> reference_pairs, const Consensus& plane) {
+  double parallax = 0;
+  for (const Pair& pair : reference_pairs) {
+    if (!pair.motions.empty())
+      parallax = std::max(parallax, nearest(pair.motions, plane.normal).tau.norm());
+  }
+  return radians(std::sqrt(plane.cost)) * parallax;
+}
+
+/// Rotations of all frames, once the plane is chosen.
+Rotations rotations_given_plane(const Window& window,
+                                std::span<const Pair> reference_pairs,
+                                const Consensus& plane,
+                                const std::stop_token& stop) {
+  const Vector3d& normal = plane.normal;
   std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
   std::vector<RelativeRotation> relative;
   for (const Pair& pair : reference_pairs) {
@@ -236,7 +264,49 @@ Rotations averaged_rotations(const Window& window, const std::stop_token& stop) 
         relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * normal).transpose()});
     }
   }
-  return {average_rotations(relative, std::move(R_wc)), ""};
+  return {average_rotations(relative, std::move(R_wc)),
+          "",
+          {},
+          rotation_sigma_rad(reference_pairs, plane)};
+}
+
+}  // namespace
+
+std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
+                                        std::vector<Matrix3d> R_wc) {
+  average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallestRad); });
+  // The l_1/2 weights of Chatterjee & Govindu 2018, whose estimate tolerates more outliers.
+  average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallestRad), -1.5); });
+  return R_wc;
+}
+
+Rotations averaged_rotations(const Window& window, const std::stop_token& stop) {
+  const auto [pairs, reason] = decompose_reference_pairs(window);
+  if (!reason.empty()) return {{}, reason};
+  const std::vector<Consensus> found = consensuses(pairs);
+  if (auto doubt = reason_to_doubt(found)) return {{}, *doubt};
+  return rotations_given_plane(window, pairs, found.front(), stop);
+}
+
+Rotations averaged_rotations(const Window& window,
+                             std::span<const Matrix3d> R_wc_given,
+                             const std::stop_token& stop) {
+  const auto [pairs, reason] = decompose_reference_pairs(window);
+  if (!reason.empty()) return {{}, reason};
+  const std::vector<Consensus> found = consensuses(pairs);
+  if (found.empty()) return {{}, *reason_to_doubt(found)};
+  // Twins at which few candidates gather are no planes at all.
+  const Consensus* best = &found.front();
+  double least_deg = disagreement_deg(pairs, best->normal, R_wc_given);
+  for (const Consensus& other : found) {
+    if (other.cost > kPlausible * found.front().cost) break;
+    if (angle_deg(other.normal, best->normal) < kNormalCapDeg) continue;
+    const double other_deg = disagreement_deg(pairs, other.normal, R_wc_given);
+    if (other_deg >= least_deg) continue;
+    best = &other;
+    least_deg = other_deg;
+  }
+  return rotations_given_plane(window, pairs, *best, stop);
 }
 
 }  // namespace gpo

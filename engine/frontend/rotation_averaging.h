@@ -34,4 +34,10 @@ std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation>
 /// stopped.
 Rotations averaged_rotations(const Window& window, const std::stop_token& stop = {});
 
+/// The same, but which of several planes is told by rotations that are known roughly, say a
+/// gyroscope's: one a frame.
+Rotations averaged_rotations(const Window& window,
+                             std::span<const Eigen::Matrix3d> R_wc_given,
+                             const std::stop_token& stop = {});
+
 }  // namespace gpo

@@ -13,7 +13,8 @@
 namespace gpo {
 namespace {
 
-constexpr std::array<const char*, 4> kKeys{"automatic", "gyro", "averaging", "truth"};
+constexpr std::array<const char*, 5> kKeys{
+    "automatic", "gyro", "gyro-calibrated", "averaging", "truth"};
 constexpr double kGapPeriods = 5;
 constexpr double kMarginPeriods = 1.5;  // beyond the first and the last sample the rate is held
 
@@ -98,6 +99,10 @@ Eigen::Matrix3d integrate(const Gyroscope& gyroscope, std::int64_t from_ns, std:
 }  // namespace
 
 const char* to_string(RotationSource source) { return kKeys[static_cast<std::size_t>(source)]; }
+
+bool needs_gyroscope(RotationSource source) {
+  return source == RotationSource::gyro || source == RotationSource::gyro_calibrated;
+}
 
 std::span<const char* const> rotation_source_keys() { return kKeys; }
 

@@ -5,6 +5,7 @@
 #include "engine/recording/recording.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,10 +17,16 @@ namespace gpo {
 /// Camera rotations of a window, one a frame, R_wc of its first frame is I; or why there are none.
 struct Rotations {
   std::vector<Eigen::Matrix3d> R_wc;
-  std::string reason;
+  std::string reason = "";
+  std::optional<Eigen::Vector3d> bias_rad_s =
+      std::nullopt;      ///< of the gyroscope, where it was used
+  double sigma_rad = 0;  ///< of rotations from pictures, roughly; else 0
 };
 
-enum class RotationSource { automatic, gyro, averaging, truth };
+enum class RotationSource { automatic, gyro, gyro_calibrated, averaging, truth };
+
+/// Whether the source integrates a gyroscope.
+bool needs_gyroscope(RotationSource source);
 
 /// Keys of the sources on the command line and in files, in the order of the enumeration.
 std::span<const char* const> rotation_source_keys();

@@ -3,6 +3,7 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/error.h"
+#include "engine/frontend/gyro_calibration.h"
 #include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/tracker.h"
 #include "engine/initializers/methods.h"
@@ -136,8 +137,9 @@ RotationSource choose_source(const Recording& recording, RotationSource asked) {
   if (asked == RotationSource::automatic) {
     return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
   }
-  if (asked == RotationSource::gyro && !recording.gyroscope) {
-    throw InputError(fmt::format("--rotations gyro: {} has no gyroscope", recording.name));
+  if (needs_gyroscope(asked) && !recording.gyroscope) {
+    throw InputError(
+        fmt::format("--rotations {}: {} has no gyroscope", to_string(asked), recording.name));
   }
   if (asked == RotationSource::truth && !recording.truth && !recording.board) {
     throw InputError(fmt::format("--rotations truth: {} has no ground truth", recording.name));
@@ -165,12 +167,14 @@ Rotations compute_rotations(const Recording& recording,
                             const WindowTruth* truth,
                             RotationSource source,
                             const std::stop_token& stop) {
+  const auto& gyroscope = recording.gyroscope;
   if (source == RotationSource::gyro) {
-    return {gyro_rotations(*recording.gyroscope, window.timestamps_ns), ""};
+    return {gyro_rotations(*gyroscope, window.timestamps_ns), "", gyroscope->bias_rad_s, 0};
   }
   if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
   if (auto reason = reason_not_to_try(window)) return {{}, *reason};
-  return averaged_rotations(window, stop);
+  return source == RotationSource::averaging ? averaged_rotations(window, stop)
+                                             : calibrated_gyro_rotations(*gyroscope, window, stop);
 }
 
 /// The plane z = 0 of a board.
@@ -294,6 +298,7 @@ void Inspector::Stages::initialize(const Settings& settings,
                                    Inspection& inspection) const {
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
+  inspection.gyroscope_bias_rad_s = rotations.value.bias_rad_s;
   if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
   const auto begin = Clock::now();
   Initialization initialization = rotations.value.R_wc.empty()

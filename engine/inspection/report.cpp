@@ -90,6 +90,20 @@ std::string with_unit(const std::optional<double>& value,
   return value ? fmt::format("{:.{}f} {}", *value * factor, digits, unit) : "-";
 }
 
+std::string rotations_text(const Inspection& inspection) {
+  const char* source = to_string(inspection.rotations_used);
+  if (!inspection.gyroscope_bias_rad_s) return source;
+  const Eigen::Vector3d& b = *inspection.gyroscope_bias_rad_s;
+  return fmt::format("{} (bias {:.4f} {:.4f} {:.4f} rad/s: {})",
+                     source,
+                     b.x(),
+                     b.y(),
+                     b.z(),
+                     inspection.rotations_used == RotationSource::gyro
+                         ? inspection.recording->gyroscope->bias_source
+                         : "estimated from the window");
+}
+
 std::string metrics_text(const Evaluation& e) {
   const char* alignment = e.alignment == Alignment::ok ? "ok"
                           : e.alignment == Alignment::line
@@ -120,6 +134,8 @@ ordered_json to_json(const Inspection& inspection) {
                     {"tracks", window.track_count()},
                     {"inliers", window.inlier_count(0)}};
   json["settings"] = settings_json(inspection);
+  if (inspection.gyroscope_bias_rad_s)
+    json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["plane"] = nullptr;
   if (result.ok) {
     json["plane"] = {{"normal", vector_json(result.plane.normal)},
@@ -155,10 +171,7 @@ std::string to_text(const Inspection& inspection) {
                       window.start + window.frame_count() - 1,
                       window.frame_count())) +
       row("method", find_method(inspection.settings.method).title) +
-      row("rotations",
-          inspection.rotations_used == RotationSource::gyro
-              ? fmt::format("gyro (bias: {})", inspection.recording->gyroscope->bias_source)
-              : to_string(inspection.rotations_used)) +
+      row("rotations", rotations_text(inspection)) +
       row("status", result.ok ? "ok" : "failed: " + result.reason) +
       row("inliers", fmt::format("{} of {} tracks", window.inlier_count(0), window.track_count()));
   if (result.ok) {

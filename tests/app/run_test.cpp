@@ -78,7 +78,7 @@ TEST(Run, BoardStandsInForAMissingPlaneFile) {
 }
 
 TEST(Run, AllRotationSourcesOfTheDeskAgree) {
-  for (const char* source : {"gyro", "averaging", "truth"}) {
+  for (const char* source : {"gyro", "gyro-calibrated", "averaging", "truth"}) {
     const json j = run_json(desk().string() + " --rotations " + source);
     EXPECT_EQ(j["settings"]["rotations"], source);
     EXPECT_LT(j["metrics"]["pne_deg"], 2.0) << source;

@@ -159,7 +159,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
 }
 
 std::string why_no_rotations(const Recording& recording, RotationSource source) {
-  if (source == RotationSource::gyro && !recording.gyroscope) {
+  if (needs_gyroscope(source) && !recording.gyroscope) {
     return "The recording has no gyroscope";
   }
   const bool truth = recording.truth || (recording.board && recording.pictures);

@@ -83,6 +83,7 @@ TEST(Rotations, WhatTheRecordingLacksIsExplained) {
   Recording recording = desk();
   for (const auto source : {RotationSource::automatic,
                             RotationSource::gyro,
+                            RotationSource::gyro_calibrated,
                             RotationSource::averaging,
                             RotationSource::truth}) {
     EXPECT_EQ(why_no_rotations(recording, source), "");
