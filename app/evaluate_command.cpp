@@ -57,13 +57,13 @@ class ProgressLine {
                terminal_ ? "\r" : "",
                progress.done,
                progress.of,
-               left(progress.share, now - begin_),
+               last ? "" : left(progress.share, now - begin_),
                terminal_ && !last ? "    " : "\n");
   }
 
  private:
   static std::string left(double share, Clock::duration spent) {
-    if (share <= 0 || share >= 1) return "";
+    if (share <= 0) return "";  // nothing to judge by yet
     const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
     const auto whole = static_cast<int>(seconds + 0.5);
     return fmt::format(", {}:{:02} left", whole / 60, whole % 60);
