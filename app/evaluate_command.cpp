@@ -14,6 +14,7 @@
 #include "ui/views/figure_view.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ class ProgressLine {
   static std::string left(double share, Clock::duration spent) {
     if (share <= 0) return "";  // nothing to judge by yet
     const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
-    const auto whole = static_cast<int>(seconds + 0.5);
+    const std::int64_t whole = std::lround(seconds);
     return fmt::format(", {}:{:02} left", whole / 60, whole % 60);
   }
 

@@ -10,7 +10,6 @@
 #include <exception>
 #include <mutex>
 #include <numeric>
-#include <ranges>
 #include <thread>
 
 namespace gpo {
@@ -98,8 +97,9 @@ class Run {
   void compute(const ExperimentTask& task) {
     const auto& recording = recordings_[task.recording];
     Inspector inspector(recording);
-    for (const int frames : std::views::reverse(task.lengths)) {
-      Settings window{.start = task.start, .frames = frames, .seed = experiment_.seed};
+    for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
+      const int frames = *length;
+      const Settings window{.start = task.start, .frames = frames, .seed = experiment_.seed};
       const std::vector<Row> rows =
           compute_window(experiment_, *recording, inspector, window, stop_.get_token());
       if (stop_.stop_requested()) return;
