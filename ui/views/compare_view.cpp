@@ -233,7 +233,7 @@ cv::Size default_compare_size(Comparison inspections) {
 
 double compare_text_scale(Comparison inspections, cv::Size size) {
   const double natural = default_compare_size(inspections).width;
-  return std::clamp(size.width / natural, 0.6, 3.0);
+  return std::clamp(size.width / natural, 0.75, 3.0);
 }
 
 }  // namespace gpo
