@@ -9,7 +9,6 @@
 #include "engine/initializers/methods.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -33,15 +32,16 @@ Settings settings_of(const Configuration& configuration, const Settings& window)
   return settings;
 }
 
+/// Descending.
 std::vector<int> lengths_of(const ComparisonRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
-  const std::vector<int> lengths =
-      numbers_in(parse_ranges(text, "--lengths"), request.window.frames);
+  std::vector<int> lengths = numbers_in(parse_ranges(text, "--lengths"), request.window.frames);
   if (lengths.empty() || lengths.front() < 2) {
     throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
                                  text,
                                  request.window.frames));
   }
+  std::ranges::reverse(lengths);
   return lengths;
 }
 
@@ -63,7 +63,7 @@ LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recordin
   Inspector inspector(recording);
   Settings window = request.window;
   // The longest window first: the Inspector keeps its tracks for the others.
-  for (const int length : lengths_of(request) | std::views::reverse) {
+  for (const int length : lengths_of(request)) {
     window.frames = length;
     for (const Configuration& configuration : plan.configurations) {
       const auto inspection = inspector.inspect(settings_of(configuration, window));
