@@ -43,9 +43,9 @@ Column column_at(const ScreenRect& rect, const Grid& grid, int index, double sca
   const Vector2d free = rect.size - scale * Vector2d(kGap, kTop);
   const double width = std::floor(free.x() / grid.columns),
                height = std::floor(free.y() / grid.rows);
-  const Vector2d at =
-      rect.min + Vector2d(std::round(scale * kGap) + width * (index % grid.columns),
-                          std::round(scale * kTop) + height * (index / grid.columns));
+  const int x = index % grid.columns, y = index / grid.columns;
+  const Vector2d at = rect.min + Vector2d(std::round(scale * kGap) + width * x,
+                                          std::round(scale * kTop) + height * y);
   const double inner = width - std::round(scale * kGap);
   const double heading = std::round(scale * kHeading), caption = std::round(scale * kCaption);
   const double picture = std::max(1.0, height - heading - caption);
