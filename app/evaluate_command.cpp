@@ -5,11 +5,13 @@
 #include "app/recordings.h"
 #include "engine/error.h"
 #include "engine/experiment/experiment.h"
+#include "engine/experiment/figures.h"
 #include "engine/experiment/runner.h"
 #include "engine/experiment/summary.h"
 #include "engine/experiment/tables.h"
 #include "engine/experiment/window_files.h"
 #include "engine/output_file.h"
+#include "ui/views/figure_view.h"
 
 #include <chrono>
 #include <cstdio>
@@ -55,13 +57,13 @@ class ProgressLine {
                terminal_ ? "\r" : "",
                progress.done,
                progress.of,
-               left(progress.share, now - begin_),
+               last ? "" : left(progress.share, now - begin_),
                terminal_ && !last ? "    " : "\n");
   }
 
  private:
   static std::string left(double share, Clock::duration spent) {
-    if (share <= 0 || share >= 1) return "";
+    if (share <= 0) return "";  // nothing to judge by yet
     const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
     const auto whole = static_cast<int>(seconds + 0.5);
     return fmt::format(", {}:{:02} left", whole / 60, whole % 60);
@@ -72,6 +74,12 @@ class ProgressLine {
   Clock::time_point told_ = {};
 };
 
+void write_figure(const fs::path& folder, const Figure& figure) {
+  const cv::Size size = default_figure_size(figure);
+  write_picture(folder / (figure.name + ".png"), draw_figure(figure, size));
+  write_file(folder / (figure.name + ".svg"), figure_svg(figure, size));
+}
+
 /// Everything that is made of the finished windows.
 void write_results(const fs::path& folder, const Experiment& experiment) {
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
@@ -81,10 +89,16 @@ void write_results(const fs::path& folder, const Experiment& experiment) {
   write_file(folder / "running_time.md", to_markdown(times));
   write_file(folder / "running_time.csv", to_csv(times));
   fmt::print("{}", to_text(overview_table(rows)));
-  fmt::print("{}: {} windows x {} configurations in results.csv; summary.json, running_time.md\n",
-             folder.string(),
-             rows.size() / experiment.configurations.size(),
-             experiment.configurations.size());
+  fs::create_directories(folder / "figures");
+  for (const Figure& figure : figures(rows, experiment.configurations)) {
+    write_figure(folder / "figures", figure);
+  }
+  fmt::print(
+      "{}: {} windows x {} configurations in results.csv; summary.json, running_time.md, "
+      "figures\n",
+      folder.string(),
+      rows.size() / experiment.configurations.size(),
+      experiment.configurations.size());
 }
 
 void check_usage(const EvaluateArguments& arguments) {

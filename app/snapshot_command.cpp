@@ -110,12 +110,6 @@ cv::Mat read_baseline(const fs::path& file) {
   return picture;
 }
 
-void write_picture(const fs::path& file, const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes);
-  write_file(file, std::string(bytes.begin(), bytes.end()));
-}
-
 int compare(const cv::Mat& picture, const cv::Mat& baseline, const SnapshotArguments& arguments) {
   const PictureComparison comparison = compare_pictures(picture, baseline, arguments.tolerance);
   fmt::print("pixels that differ by more than");

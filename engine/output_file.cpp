@@ -6,8 +6,10 @@
 
 #include <fstream>
 #include <random>
+#include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 
@@ -36,6 +38,12 @@ void write_file(const fs::path& file, const std::string& content) {
   if (stream && !error) return;
   fs::remove(partial, error);
   throw InputError(fmt::format("{}: cannot be written", file.string()));
+}
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes);
+  write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
 }  // namespace gpo

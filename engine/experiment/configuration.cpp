@@ -99,11 +99,11 @@ std::vector<Variation> variations(const Configuration& configuration) {
   return found;
 }
 
-/// Two parts of `b` and one of `a`, so that the same setting of two methods is told apart.
+/// `b` with a touch of `a`, so that the same setting of two methods is told apart.
 std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   std::uint32_t sum = 0;
   for (const int shift : {0, 8, 16}) {
-    sum |= (((a >> shift & 0xFF) + 2 * (b >> shift & 0xFF)) / 3) << shift;
+    sum |= (((a >> shift & 0xFF) + 5 * (b >> shift & 0xFF)) / 6) << shift;
   }
   return sum;
 }

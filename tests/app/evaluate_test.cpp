@@ -79,6 +79,8 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
   EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));
   EXPECT_THAT(read_file(folder / "running_time.csv"), HasSubstr("\nGPO,1/1,"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.png"), HasSubstr("PNG"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("<svg"));
 }
 
 TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {

@@ -40,8 +40,14 @@ TEST(Readme, EveryCommandWorks) {
     const Outcome outcome = shell(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.out << outcome.err;
   }
-  for (const char* name :
-       {"image.png", "scene.png", "window.png", "desk.json", "desk.txt", "desk.ply", "cube.png"}) {
+  for (const char* name : {"image.png",
+                           "scene.png",
+                           "window.png",
+                           "desk.json",
+                           "desk.txt",
+                           "desk.ply",
+                           "cube.png",
+                           "evaluation/results.csv"}) {
     EXPECT_GT(fs::file_size(out / name), 0U) << name;
   }
   // The bundled recording is what its recipe makes.
