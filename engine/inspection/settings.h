@@ -18,7 +18,7 @@ struct Settings {
   RotationSource rotations = RotationSource::automatic;  ///< gyroscope, else averaging
   /// Whether tracks off the plane are rejected by homography RANSAC; nothing: as the method's
   /// authors do (`uses_ransac`).
-  std::optional<bool> ransac;
+  std::optional<bool> ransac = std::nullopt;
   double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
   std::uint64_t seed = 1;            ///< of every random choice
 
