@@ -1,0 +1,19 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+
+#include <stop_token>
+
+namespace gpo {
+
+/// Bundle adjustment (the paper's BA): minimizes the reprojection error over all poses and points,
+/// started from `start`; of all tracks where the window says so, else of its inliers. The plane is
+/// that of the adjusted inlier points, which are delivered as they are, on the plane or off it.
+Initialization refine_bundle(const Window& window,
+                             const Initialization& start,
+                             std::stop_token stop);
+
+}  // namespace gpo
