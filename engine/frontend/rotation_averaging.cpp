@@ -3,6 +3,7 @@
 #include "engine/frontend/rotation_averaging.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>

@@ -9,8 +9,6 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 
 namespace gpo {
 namespace {
@@ -105,34 +103,6 @@ Matrix3d refine_homography(const Matrix3d& H_start, const Matrix2Xd& from, const
   }
   const Matrix3d refined = T_to.inverse() * H * T_from;
   return refined.allFinite() ? Matrix3d(refined / refined(2, 2)) : H_start;
-}
-
-std::vector<HomographyMotion> decompose_homography(const Matrix3d& H,
-                                                   const Matrix3d& K,
-                                                   const Matrix2Xd& visible_px) {
-  cv::Mat H_cv;
-  cv::Mat K_cv;
-  cv::eigen2cv(H, H_cv);
-  cv::eigen2cv(K, K_cv);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
-  std::vector<cv::Mat> normals;
-  cv::decomposeHomographyMat(H_cv, K_cv, rotations, translations, normals);
-  const Eigen::Matrix3Xd rays = K.inverse() * visible_px.colwise().homogeneous();
-  std::vector<HomographyMotion> motions;
-  for (std::size_t k = 0; k < rotations.size(); ++k) {
-    // OpenCV: H' = R + t n^T with n.x > 0 for visible points; ours: H' = R (I - tau n^T), n.x < 0.
-    Vector3d t;
-    HomographyMotion motion;
-    cv::cv2eigen(rotations[k], motion.R_21);
-    cv::cv2eigen(translations[k], t);
-    cv::cv2eigen(normals[k], motion.normal);
-    if (!motion.R_21.allFinite() || !(std::abs(motion.normal.norm() - 1) < 1e-6)) continue;
-    motion.normal = -motion.normal;
-    motion.tau = motion.R_21.transpose() * t;
-    if ((motion.normal.transpose() * rays).maxCoeff() < 0) motions.push_back(motion);
-  }
-  return motions;
 }
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 
@@ -27,6 +28,15 @@ struct SolverReport {
   double milliseconds = 0;
 };
 
+/// One reading of a frame's homography, kept for people to look at.
+struct HomographyCandidate {
+  int frame;  ///< of the window; the homography is from frame 0 to it
+  Decomposition algorithm;
+  HomographyMotion motion;
+  double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
+  std::string rejected;  ///< why it was not taken, with numbers; empty: it was
+};
+
 /// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
 /// false, `reason` says why and no poses, points or plane are delivered.
 struct Initialization {
@@ -37,6 +47,8 @@ struct Initialization {
   std::vector<MapPoint> points;  ///< inlier tracks
   SolverReport solver;
   double rms_px = 0;  ///< root mean square reprojection error over inlier observations
+  /// Of methods that decompose homographies: all readings, also where the method failed.
+  std::vector<HomographyCandidate> candidates;
 };
 
 Initialization failed(std::string reason, SolverReport solver = {});

@@ -106,6 +106,21 @@ std::vector<double> reprojection_errors_px(const Window& window,
   return errors;
 }
 
+std::vector<double> reprojection_errors_px(const Window& window,
+                                           std::span<const Pose> cameras,
+                                           std::span<const MapPoint> points) {
+  std::vector<double> errors;
+  for (int i = 0; i < window.frame_count(); ++i) {
+    for (const auto& [track, position] : points) {
+      if (!window.inlier[i][track]) continue;
+      const Eigen::Vector3d seen = window.K * to_camera(cameras[i], position);
+      errors.push_back(seen.z() > 0 ? (seen.hnormalized() - window.points_px[i].col(track)).norm()
+                                    : std::numeric_limits<double>::infinity());
+    }
+  }
+  return errors;
+}
+
 double homography_error_px(const Window& window) {
   std::vector<double> errors;
   for (int i = 1; i < window.frame_count(); ++i)

@@ -5,6 +5,7 @@
 #include "engine/frontend/window.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/initializers/initialization.h"
 
 #include <optional>
 #include <span>
@@ -32,6 +33,12 @@ std::optional<std::string> reason_to_distrust(const Window& window,
 std::vector<double> reprojection_errors_px(const Window& window,
                                            const Plane& plane,
                                            std::span<const Pose> cameras);
+
+/// The same for points that need not lie on a plane: each inlier observation of a map point, those
+/// of the reference frame, too, as it does not fix a free point.
+std::vector<double> reprojection_errors_px(const Window& window,
+                                           std::span<const Pose> cameras,
+                                           std::span<const MapPoint> points);
 
 /// What the homographies leave: the median over the frames of an inlier's median transfer error
 /// [px].

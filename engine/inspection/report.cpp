@@ -69,6 +69,21 @@ ordered_json points_json(const Inspection& inspection) {
   return points;
 }
 
+ordered_json candidates_json(const Inspection& inspection) {
+  ordered_json candidates = ordered_json::array();
+  for (const HomographyCandidate& candidate : inspection.initialization->candidates) {
+    const HomographyMotion& motion = candidate.motion;
+    candidates.push_back({{"frame", inspection.window->start + candidate.frame},
+                          {"decomposition", key_of(candidate.algorithm)},
+                          {"normal", vector_json(motion.normal)},
+                          {"tau", vector_json(motion.tau)},
+                          {"q_21_xyzw", vector_json(quaternion_xyzw(motion.R_21))},
+                          {"score", candidate.score},
+                          {"rejected", candidate.rejected}});
+  }
+  return candidates;
+}
+
 ordered_json metrics_json(const Evaluation& evaluation) {
   return {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
           {"scale", optional_json(evaluation.scale)},
@@ -127,6 +142,7 @@ ordered_json to_json(const Inspection& inspection) {
   }
   json["frames"] = frames_json(inspection);
   json["points"] = points_json(inspection);
+  if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
   json["solver"] = {{"iterations", solver.iterations},
                     {"initial_cost", solver.initial_cost},
                     {"final_cost", solver.final_cost},

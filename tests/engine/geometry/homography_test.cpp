@@ -60,21 +60,6 @@ TEST(Homography, RefusesCollinearPoints) {
   EXPECT_FALSE(fit_homography(line.leftCols(4), line.leftCols(4)));
 }
 
-TEST(Homography, DecompositionHoldsTheTruth) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Simulation s = simulate({.motion = test::Motion::orbit, .noise_px = 0, .seed = seed});
-    const auto motions = decompose_homography(s.window.H_i1[29], s.window.K, s.window.points_px[0]);
-    ASSERT_FALSE(motions.empty());
-    EXPECT_LE(motions.size(), 2U);
-    const auto is_truth = [&](const HomographyMotion& m) {
-      return (m.normal - s.plane.normal).norm() < 1e-6 &&
-             (m.tau + s.cameras[29].p_wc).norm() < 1e-6 &&
-             (m.R_21 - s.cameras[29].R_wc.transpose()).norm() < 1e-6;
-    };
-    EXPECT_TRUE(std::ranges::any_of(motions, is_truth));
-  }
-}
-
 TEST(HomographyRansac, FindsTheInliersAndOnlyThem) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s =

@@ -1,0 +1,195 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/homography_decomposition.h"
+
+#include "engine/geometry/pose.h"
+#include "tests/engine/simulated_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <gmock/gmock.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using test::Motion;
+using test::simulate;
+using test::Simulation;
+
+Matrix3d homography_of(const HomographyMotion& m) {
+  return m.R_21 * (Matrix3d::Identity() - m.tau * m.normal.transpose());
+}
+
+/// Any motion of up to about 0.8 d with the plane in front, and any scale and sign of H.
+struct RandomMotion {
+  HomographyMotion motion;
+  Matrix3d H;
+};
+
+RandomMotion random_motion(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&] { return Vector3d(uniform(random), uniform(random), uniform(random)); };
+  RandomMotion r;
+  r.motion.R_21 = so3_exp(0.4 * vector());
+  r.motion.tau = 0.45 * vector();
+  r.motion.normal = (Vector3d(0, 0, -1) + 0.8 * vector()).normalized();
+  r.H = 7 * uniform(random) * homography_of(r.motion);
+  return r;
+}
+
+/// Largest difference of two motions, of any of their numbers.
+double difference(const HomographyMotion& a, const HomographyMotion& b) {
+  return std::max({(a.R_21 - b.R_21).cwiseAbs().maxCoeff(),
+                   (a.tau - b.tau).cwiseAbs().maxCoeff(),
+                   (a.normal - b.normal).cwiseAbs().maxCoeff()});
+}
+
+double nearest(const std::vector<HomographyMotion>& motions, const HomographyMotion& wanted) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& motion : motions) least = std::min(least, difference(motion, wanted));
+  return least;
+}
+
+double scale_error(const Matrix3d& a, const Matrix3d& b) {
+  const Matrix3d a1 = a / a.norm();
+  const Matrix3d b1 = b / b.norm();
+  return std::min((a1 - b1).norm(), (a1 + b1).norm());
+}
+
+class Decompose : public ::testing::TestWithParam<Decomposition> {};
+
+TEST_P(Decompose, EveryCandidateIsAMotionThatGivesTheHomography) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    const RandomMotion truth = random_motion(seed);
+    const auto motions = decompose_homography(truth.H, GetParam());
+    EXPECT_EQ(motions.size(), GetParam() == Decomposition::faugeras ? 8U : 4U);
+    for (const HomographyMotion& m : motions) {
+      EXPECT_LT((m.R_21.transpose() * m.R_21 - Matrix3d::Identity()).norm(), 1e-9) << seed;
+      EXPECT_NEAR(m.R_21.determinant(), 1, 1e-9) << seed;
+      EXPECT_NEAR(m.normal.norm(), 1, 1e-12) << seed;
+      EXPECT_LT(scale_error(homography_of(m), truth.H), 1e-10) << seed;
+    }
+  }
+}
+
+TEST_P(Decompose, HoldsTheTruth) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    const RandomMotion truth = random_motion(seed);
+    EXPECT_LT(nearest(decompose_homography(truth.H, GetParam()), truth.motion), 1e-6) << seed;
+  }
+}
+
+TEST_P(Decompose, SignsOfNormalAndTranslationComeInPairs) {
+  const auto motions = decompose_homography(random_motion(1).H, GetParam());
+  for (std::size_t k = 0; k < motions.size(); k += 2) {
+    EXPECT_EQ(motions[k].R_21, motions[k + 1].R_21);
+    EXPECT_EQ(motions[k].tau, -motions[k + 1].tau);
+    EXPECT_EQ(motions[k].normal, -motions[k + 1].normal);
+  }
+}
+
+TEST_P(Decompose, PureRotationsHaveNoPlane) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Matrix3d R = random_motion(seed).motion.R_21;
+    EXPECT_TRUE(decompose_homography(R, GetParam()).empty());
+    EXPECT_TRUE(decompose_homography(-3 * R, GetParam()).empty());
+  }
+}
+
+TEST_P(Decompose, AlongTheNormalTheTwinsCoincide) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    HomographyMotion truth = random_motion(seed).motion;
+    truth.tau = (seed % 2 == 0 ? 0.3 : -0.4) * truth.normal;
+    const auto motions = decompose_homography(homography_of(truth), GetParam());
+    ASSERT_FALSE(motions.empty());
+    int same = 0;
+    for (const HomographyMotion& motion : motions) {
+      EXPECT_TRUE(motion.R_21.allFinite() && motion.tau.allFinite() && motion.normal.allFinite());
+      same += difference(motion, truth) < 1e-6 ? 1 : 0;
+    }
+    EXPECT_EQ(same, 2) << seed;
+  }
+}
+
+TEST_P(Decompose, RefusesWhatIsNoHomographyOfAPlaneInSight) {
+  const Matrix3d flat = Vector3d(1, 2, 3).asDiagonal() * Matrix3d::Ones();
+  EXPECT_TRUE(decompose_homography(flat, GetParam()).empty());
+  EXPECT_TRUE(decompose_homography(Matrix3d::Zero(), GetParam()).empty());
+  EXPECT_TRUE(decompose_homography(Matrix3d::Constant(std::nan("")), GetParam()).empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Decompose, ::testing::ValuesIn(kDecompositions), [](const auto& p) {
+  return std::string(key_of(p.param));
+});
+
+TEST(Decomposition, AllAlgorithmsAgreeOnWhatIsVisible) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const Simulation s = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
+    const Matrix3d K_inverse = s.window.K.inverse();
+    const Eigen::Matrix3Xd rays = K_inverse * s.window.points_px[0].colwise().homogeneous();
+    std::vector<std::vector<HomographyMotion>> visible;
+    for (const Decomposition algorithm : kDecompositions) {
+      visible.push_back(
+          decompose_homography(K_inverse * s.window.H_i1[29] * s.window.K, algorithm));
+      std::erase_if(visible.back(), [&](const auto& m) { return points_behind(m, rays) > 0; });
+      ASSERT_EQ(visible.back().size(), visible.front().size());
+      ASSERT_THAT(visible.back().size(), ::testing::AnyOf(1, 2));
+      for (const auto& m : visible.back()) EXPECT_LT(nearest(visible.front(), m), 1e-8) << seed;
+    }
+  }
+}
+
+TEST(Decomposition, MalisVargasIsOpenCvs) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const RandomMotion truth = random_motion(seed);
+    const Matrix3d positive = truth.H.determinant() > 0 ? truth.H : Matrix3d(-truth.H);
+    cv::Mat H;
+    cv::eigen2cv(positive, H);
+    std::vector<cv::Mat> R_cv, t_cv, n_cv;
+    cv::decomposeHomographyMat(H, cv::Mat::eye(3, 3, CV_64F), R_cv, t_cv, n_cv);
+    ASSERT_EQ(R_cv.size(), 4U);
+    const auto ours = decompose_homography(truth.H, Decomposition::malis_vargas);
+    for (std::size_t k = 0; k < 4; ++k) {
+      HomographyMotion theirs;  // H' = R + t n^T = R (I - tau n^T)
+      Vector3d t;
+      cv::cv2eigen(R_cv[k], theirs.R_21);
+      cv::cv2eigen(t_cv[k], t);
+      cv::cv2eigen(n_cv[k], theirs.normal);
+      theirs.tau = -theirs.R_21.transpose() * t;
+      EXPECT_LT(nearest(ours, theirs), 1e-6) << seed;
+    }
+  }
+}
+
+TEST(Decomposition, VisibleMotionsHoldTheTruth) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Simulation s = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
+    const auto motions = decompose_homography(s.window.H_i1[29], s.window.K, s.window.points_px[0]);
+    EXPECT_THAT(motions.size(), ::testing::AnyOf(1, 2));
+    const HomographyMotion truth{
+        s.cameras[29].R_wc.transpose(), -s.cameras[29].p_wc, s.plane.normal};
+    EXPECT_LT(nearest(motions, truth), 1e-6);
+  }
+}
+
+TEST(Decomposition, CountsPointsBehindEitherCamera) {
+  const Eigen::Matrix3Xd rays = (Eigen::Matrix3Xd(3, 2) << 0, 0.5, 0, 0, 1, 1).finished();
+  const Vector3d facing(0, 0, -1);
+  const Matrix3d I = Matrix3d::Identity();
+  EXPECT_EQ(points_behind({I, Vector3d(0.1, 0, 0), facing}, rays), 0);
+  EXPECT_EQ(points_behind({I, Vector3d(0.1, 0, 0), -facing}, rays), 2);
+  EXPECT_EQ(points_behind({so3_exp({0, 3, 0}), Vector3d(0.1, 0, 0), facing}, rays), 2);
+  EXPECT_EQ(points_behind({I, Vector3d(0, 0, -1.5), facing}, rays), 2);  // beyond the plane
+}
+
+}  // namespace
+}  // namespace gpo
