@@ -3,6 +3,7 @@
 #include "engine/initializers/methods.h"
 
 #include "engine/error.h"
+#include "engine/initializers/dbscan.h"
 #include "engine/initializers/gpo.h"
 
 #include <array>
@@ -21,6 +22,7 @@ Initialization failed(std::string reason, SolverReport solver) {
 std::span<const Method> methods() {
   static const std::array table{
       Method{"gpo", "GPO", 0x009E73, MethodFamily::optimization, true, initialize_gpo},
+      Method{"dbscan", "DBSCAN", 0xF0E442, MethodFamily::aggregation, true, initialize_dbscan},
   };
   return table;
 }

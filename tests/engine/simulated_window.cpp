@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_window.h"
 
+#include "engine/geometry/homography.h"
+
 #include <numbers>
 #include <random>
 
@@ -23,6 +25,8 @@ Vector3d position(const SimulationOptions& options, const Vector3d& normal, doub
              Vector3d(std::sin(angle), 0.4 * (1 - std::cos(angle)), 0.5 * (1 - std::cos(angle)));
     case Motion::approach:
       return -options.travel * s * normal;
+    case Motion::oblique:
+      return -options.travel * s * (normal + 0.6 * normal.unitOrthogonal()).normalized();
     case Motion::wander:
       return options.travel *
              Vector3d(0.5 * std::sin(4 * s), 0.4 * std::sin(3 * s), 0.3 * std::sin(5 * s));
@@ -83,6 +87,20 @@ Simulation simulate(const SimulationOptions& options) {
     window.R_wc.push_back(R);
     window.H_i1.push_back(window.K * R.transpose() * (I + p * simulation.plane.normal.transpose()) *
                           K_inverse);
+  }
+  return simulation;
+}
+
+Simulation with_fitted_homographies(Simulation simulation) {
+  Window& window = simulation.window;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    std::vector<int> inliers;
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (window.inlier[i][j]) inliers.push_back(j);
+    }
+    const Eigen::Matrix2Xd from = window.points_px[0](Eigen::all, inliers);
+    const Eigen::Matrix2Xd to = window.points_px[i](Eigen::all, inliers);
+    window.H_i1[i] = refine_homography(*fit_homography(from, to), from, to);
   }
   return simulation;
 }

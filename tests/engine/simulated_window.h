@@ -11,7 +11,9 @@
 
 namespace gpo::test {
 
-enum class Motion { sideways, orbit, approach, wander, rotation_only };
+/// oblique: towards the plane at 31 deg to its normal, along a straight line; both readings of its
+/// homographies are visible.
+enum class Motion { sideways, orbit, approach, oblique, wander, rotation_only };
 
 struct SimulationOptions {
   Motion motion = Motion::sideways;
@@ -34,5 +36,9 @@ struct Simulation {
 };
 
 Simulation simulate(const SimulationOptions& options);
+
+/// With the homographies that the noisy inliers give, as in a window of a recording, instead of the
+/// exact ones.
+Simulation with_fitted_homographies(Simulation simulation);
 
 }  // namespace gpo::test

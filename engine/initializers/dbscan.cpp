@@ -1,0 +1,221 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/dbscan.h"
+
+#include "engine/initializers/density_clusters.h"
+#include "engine/initializers/homography_candidates.h"
+#include "engine/initializers/map_points.h"
+#include "engine/initializers/window_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Neighborhood of a normal: three standard deviations of a decomposition at |tau| = 0.3, 0.5 px of
+/// noise and 150 tracks, and well below the angle between twins of a pair that is not degenerate.
+constexpr double kRadiusDeg = 3;
+/// Where the climb to the peak begins. Noise parts the twins of a camera that moves along the
+/// normal, by the square root of its size and to either side of the truth; this holds both.
+constexpr double kClimbDeg = 15;
+/// Share of all frames' weight that must lie in a core point's neighborhood: a handful of agreeing
+/// wide pairs, where the twins of a camera that turns its path scatter.
+constexpr double kLeastShare = 0.1;
+/// A second peak of this share of the density, beyond where the climb begins, makes the choice a
+/// guess.
+constexpr double kAmbiguousShare = 0.8;
+
+struct Candidates {
+  std::vector<HomographyCandidate> all;
+  std::vector<int> possible;                 ///< indices of those on the sphere
+  std::vector<WeightedDirection> on_sphere;  ///< one a possible one
+  std::vector<int> label;                    ///< its cluster
+};
+
+/// The error of a decomposition's normal goes with 1/|tau|: weights are inverse variances, relative
+/// to the sum over frames.
+Candidates cluster_candidates(const Window& window) {
+  Candidates c;
+  double weights = 0;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    std::vector<HomographyCandidate> of_frame = read_homography(window, i);
+    reject_worse_rotations(of_frame);
+    const HomographyCandidate* best = best_of(of_frame);
+    if (best != nullptr) weights += best->motion.tau.squaredNorm();
+    c.all.insert(c.all.end(), of_frame.begin(), of_frame.end());
+  }
+  for (int k = 0; k < static_cast<int>(c.all.size()); ++k) {
+    if (!c.all[k].rejected.empty()) continue;
+    const HomographyMotion& motion = c.all[k].motion;
+    c.possible.push_back(k);
+    c.on_sphere.push_back({motion.normal, motion.tau.squaredNorm() / weights});
+  }
+  c.label = density_clusters(c.on_sphere, {.radius_deg = kRadiusDeg, .least_weight = kLeastShare});
+  return c;
+}
+
+/// Weight of the normals near one, falling to zero at the radius (Epanechnikov).
+double density(std::span<const WeightedDirection> points, const Vector3d& at) {
+  double sum = 0;
+  for (const auto& [direction, weight] : points) {
+    const double ratio = angle_deg(direction, at) / kRadiusDeg;
+    if (ratio < 1) sum += weight * (1 - ratio * ratio);
+  }
+  return sum;
+}
+
+struct Peak {
+  Vector3d normal;
+  double density;  ///< [share of all frames' weight]
+};
+
+/// Where the density is highest of the cluster's own members; nothing of no members.
+std::optional<Peak> highest_member(const Candidates& c, const auto& belongs) {
+  std::optional<Peak> peak;
+  for (std::size_t k = 0; k < c.on_sphere.size(); ++k) {
+    if (c.label[k] == kNoise || !belongs(c.on_sphere[k].direction)) continue;
+    const double here = density(c.on_sphere, c.on_sphere[k].direction);
+    if (!peak || here > peak->density) peak = {c.on_sphere[k].direction, here};
+  }
+  return peak;
+}
+
+/// Weighted median of the angles between the normals within `radius_deg` of `at` and it.
+double median_angle_deg(std::span<const WeightedDirection> points,
+                        const Vector3d& at,
+                        double radius_deg) {
+  std::vector<std::pair<double, double>> near;  // angle, weight
+  double weights = 0;
+  for (const auto& [direction, weight] : points) {
+    const double angle = angle_deg(direction, at);
+    if (angle > radius_deg) continue;
+    near.emplace_back(angle, weight);
+    weights += weight;
+  }
+  std::ranges::sort(near);
+  double below = 0;
+  for (const auto& [angle, weight] : near) {
+    below += weight;
+    if (below >= weights / 2) return angle;
+  }
+  return radius_deg;
+}
+
+/// Mean shift from the densest member to the peak. The radius shrinks to three standard deviations
+/// of what it holds (2.5 medians, in two dimensions), so that the mean is one of the peak only.
+Vector3d climb(std::span<const WeightedDirection> points, Vector3d normal) {
+  double radius_deg = kClimbDeg;
+  for (int round = 0; round < 20; ++round) {
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& [direction, weight] : points) {
+      if (angle_deg(direction, normal) <= radius_deg) sum += weight * direction;
+    }
+    if (sum.norm() < 1e-12) break;
+    const Vector3d next = sum.normalized();
+    if (angle_deg(next, normal) < 1e-9) break;
+    normal = next;
+    radius_deg = std::min(kClimbDeg, 2.5 * median_angle_deg(points, normal, radius_deg));
+  }
+  return normal;
+}
+
+/// tau of a frame given the plane's normal, by linear least squares over its inliers. With
+/// y = R_ciw (x_1 - tau (n.x_1)), (u, v, 1) ~ y gives the rows (e_1 - u e_3).y = 0 and
+/// (e_2 - v e_3).y = 0; divided by y_z of the round before they are pixel errors.
+Vector3d translation_given_normal(const Window& window, int frame, const Vector3d& normal) {
+  const Matrix3d K_inverse = window.K.inverse();
+  const Matrix3d R_ciw = window.R_wc[frame].transpose();
+  Vector3d tau = Vector3d::Zero();
+  for (int round = 0; round < 3; ++round) {
+    Matrix3d AtA = Matrix3d::Zero();
+    Vector3d Atb = Vector3d::Zero();
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (!window.inlier[frame][j]) continue;
+      const Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
+      const Vector3d seen = K_inverse * window.points_px[frame].col(j).homogeneous();
+      const double height = normal.dot(ray_1);
+      Eigen::Matrix<double, 2, 3> rows;
+      rows << window.K(0, 0), 0, -window.K(0, 0) * seen.x(), 0, window.K(1, 1),
+          -window.K(1, 1) * seen.y();
+      rows = rows * R_ciw / R_ciw.row(2).dot(ray_1 - tau * height);
+      AtA += height * height * rows.transpose() * rows;
+      Atb += height * rows.transpose() * (rows * ray_1);
+    }
+    tau = AtA.ldlt().solve(Atb);
+  }
+  return tau;
+}
+
+Initialization failed_with(std::string reason, Candidates& candidates) {
+  Initialization result = failed(std::move(reason));
+  result.candidates = std::move(candidates.all);
+  return result;
+}
+
+std::optional<std::string> reason_to_doubt(const Candidates& c, const Peak& peak) {
+  const auto other =
+      highest_member(c, [&](const Vector3d& n) { return angle_deg(n, peak.normal) > kClimbDeg; });
+  if (!other || other->density < kAmbiguousShare * peak.density) return std::nullopt;
+  return fmt::format(
+      "two planes, {:.0f} deg apart, gather the candidate normals alike (density {:.2f} and "
+      "{:.2f})",
+      angle_deg(other->normal, peak.normal),
+      peak.density,
+      other->density);
+}
+
+/// Says of each candidate away from the peak how far it is.
+void reject_far_from(const Vector3d& normal, Candidates& candidates) {
+  for (const int k : candidates.possible) {
+    HomographyCandidate& candidate = candidates.all[k];
+    const double angle = angle_deg(candidate.motion.normal, normal);
+    if (angle > kRadiusDeg)
+      candidate.rejected = fmt::format("normal {:.1f} deg from where the density peaks", angle);
+  }
+}
+
+}  // namespace
+
+Initialization initialize_dbscan(const Window& window, std::stop_token stop) {
+  if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  Candidates candidates = cluster_candidates(window);
+  const auto start = highest_member(candidates, [](const Vector3d&) { return true; });
+  if (!start) {
+    return failed_with(fmt::format("no plane: the {} possible normals of {} homographies gather "
+                                   "nowhere within {} deg",
+                                   candidates.possible.size(),
+                                   window.frame_count() - 1,
+                                   kRadiusDeg),
+                       candidates);
+  }
+  const auto doubt = reason_to_doubt(candidates, *start);
+  const Vector3d normal = climb(candidates.on_sphere, start->normal);
+  reject_far_from(normal, candidates);
+  if (doubt) return failed_with(*doubt, candidates);
+  Initialization result;
+  result.plane = {normal, 1};
+  result.cameras.push_back({});
+  for (int i = 1; i < window.frame_count(); ++i) {
+    if (stop.stop_requested()) return failed("stopped");
+    result.cameras.push_back({window.R_wc[i], -translation_given_normal(window, i, normal)});
+  }
+  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
+    return failed_with(*reason, candidates);
+  result.candidates = std::move(candidates.all);
+  result.points = lift_to_plane(window, result.plane, result.cameras);
+  result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
+  result.ok = true;
+  return result;
+}
+
+}  // namespace gpo
