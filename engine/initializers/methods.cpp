@@ -5,6 +5,7 @@
 #include "engine/error.h"
 #include "engine/initializers/dbscan.h"
 #include "engine/initializers/gpo.h"
+#include "engine/initializers/pnp.h"
 
 #include <array>
 
@@ -22,6 +23,7 @@ Initialization failed(std::string reason, SolverReport solver) {
 std::span<const Method> methods() {
   static const std::array table{
       Method{"gpo", "GPO", 0x009E73, MethodFamily::optimization, true, initialize_gpo},
+      Method{"pnp", "PnP", 0xE69F00, MethodFamily::aggregation, true, initialize_pnp},
       Method{"dbscan", "DBSCAN", 0xF0E442, MethodFamily::aggregation, true, initialize_dbscan},
   };
   return table;
