@@ -4,6 +4,8 @@
 
 #include "engine/geometry/plane_fit.h"
 #include "engine/initializers/bundle_adjustment.h"
+#include "engine/initializers/dbscan.h"
+#include "engine/initializers/refined_start.h"
 #include "engine/initializers/window_checks.h"
 
 #include <algorithm>
@@ -159,6 +161,10 @@ Initialization refine_bundle(const Window& window,
     return failed(*reason, solver);
   result.ok = true;
   return result;
+}
+
+Initialization initialize_ba(const Window& window, std::stop_token stop) {
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, stop);
 }
 
 }  // namespace gpo

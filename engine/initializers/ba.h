@@ -9,11 +9,14 @@
 
 namespace gpo {
 
-/// Bundle adjustment (the paper's BA): minimizes the reprojection error over all poses and points,
+/// Bundle adjustment: minimizes the reprojection error over all poses and points,
 /// started from `start`; of all tracks where the window says so, else of its inliers. The plane is
 /// that of the adjusted inlier points, which are delivered as they are, on the plane or off it.
 Initialization refine_bundle(const Window& window,
                              const Initialization& start,
                              std::stop_token stop);
+
+/// The adjustment started from `initialize_dbscan` (the paper's BA).
+Initialization initialize_ba(const Window& window, std::stop_token stop);
 
 }  // namespace gpo

@@ -29,8 +29,11 @@ constexpr double kHuberAtSigmas = 2;
 constexpr SolverTolerances kRobustTolerances{1e-3, 1e-6};
 /// No picture is measured better than this; it keeps noise-free windows whole.
 constexpr double kLeastNoisePx = 0.05;
-/// Two observations determine a point but cannot check it.
+/// Two observations determine a point but hardly check it; a window of two frames has no more.
 constexpr int kLeastObservations = 3;
+/// A track slipped of which a smaller share agrees, or not even the reference frame's observation:
+/// the rest of it agrees with a point that is not there.
+constexpr double kLeastAgreeing = 2.0 / 3.0;
 
 /// One observation of a free point: residual p - p_observed of (camera, point).
 class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
@@ -79,6 +82,12 @@ double half_summed_squares(std::span<const double> errors) {
   return sum / 2;
 }
 
+struct PointTally {
+  int seen = 0;
+  int agreeing = 0;
+  bool reference_agrees = false;
+};
+
 /// Those that are right for the bundle: see `adjust_bundle_robustly`.
 std::vector<Observation> without_outliers(const Matrix3d& K,
                                           const Bundle& bundle,
@@ -88,18 +97,23 @@ std::vector<Observation> without_outliers(const Matrix3d& K,
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::ranges::nth_element(sorted, middle);
   const double limit = kDropAtSigmas * std::max(kLeastNoisePx, *middle / kMedianLength);
-  std::vector<Observation> agreeing;
-  std::vector<int> seen(bundle.points.cols(), 0);
+  std::vector<bool> agrees(observations.size());
+  std::vector<PointTally> tally(bundle.points.cols());
   for (std::size_t k = 0; k < observations.size(); ++k) {
-    const Observation& observation = observations[k];
-    if (errors[k] > limit || !(bundle.points(2, observation.point) > 0)) continue;
-    agreeing.push_back(observation);
-    ++seen[observation.point];
+    agrees[k] = errors[k] <= limit && bundle.points(2, observations[k].point) > 0;
+    PointTally& of_point = tally[observations[k].point];
+    ++of_point.seen;
+    of_point.agreeing += agrees[k] ? 1 : 0;
+    of_point.reference_agrees |= agrees[k] && observations[k].frame == 0;
   }
-  std::erase_if(agreeing, [&](const Observation& observation) {
-    return seen[observation.point] < kLeastObservations;
-  });
-  return agreeing;
+  const int least = std::min(kLeastObservations, static_cast<int>(bundle.cameras.size()));
+  std::vector<Observation> kept;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const auto& [seen, agreeing, reference_agrees] = tally[observations[k].point];
+    const bool slipped = !reference_agrees || agreeing < kLeastAgreeing * seen;
+    if (agrees[k] && !slipped && agreeing >= least) kept.push_back(observations[k]);
+  }
+  return kept;
 }
 
 }  // namespace

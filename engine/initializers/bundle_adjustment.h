@@ -66,8 +66,9 @@ struct RobustBundle {
 };
 
 /// Adjusts with a Huber loss, drops what then disagrees (observations beyond three robust standard
-/// deviations, points behind the reference camera or seen fewer than three times), and adjusts the
-/// rest to plain least squares. `error_px` is the expected median error of an observation.
+/// deviations, points behind the reference camera or seen fewer than three times, whole tracks that
+/// slipped), and adjusts the rest to plain least squares. `error_px` is the expected median error
+/// of an observation.
 RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,

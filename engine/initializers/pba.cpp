@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/pba.h"
 
+#include "engine/initializers/dbscan.h"
+#include "engine/initializers/refined_start.h"
 #include "engine/initializers/window_checks.h"
 
 #include <cmath>
@@ -59,6 +61,13 @@ Initialization refine_on_plane(const Window& window,
     return failed(*reason, solver);
   result.ok = true;
   return result;
+}
+
+Initialization initialize_pba(const Window& window, std::stop_token stop) {
+  const Refinement refine = [](const Window& w, const Initialization& start, std::stop_token s) {
+    return refine_on_plane(w, start, PlaneNormal::free, std::move(s));
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
 }
 
 }  // namespace gpo

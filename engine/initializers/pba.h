@@ -17,4 +17,7 @@ Initialization refine_on_plane(const Window& window,
                                PlaneNormal normal,
                                std::stop_token stop);
 
+/// The adjustment with a free normal, started from `initialize_dbscan` (the paper's PBA).
+Initialization initialize_pba(const Window& window, std::stop_token stop);
+
 }  // namespace gpo

@@ -17,6 +17,7 @@ Initialization refined_start(const Window& window,
   Initialization result = started.ok
                               ? refine(window, started, stop)
                               : failed(fmt::format("start by {}: {}", start.title, started.reason));
+  result.candidates = started.candidates;
   return result;
 }
 
