@@ -121,6 +121,13 @@ std::vector<double> reprojection_errors_px(const Window& window,
   return errors;
 }
 
+double homography_error_px(const Window& window) {
+  std::vector<double> errors;
+  for (int i = 1; i < window.frame_count(); ++i)
+    errors.push_back(frame_errors(window, i).homography_px);
+  return median(std::move(errors));
+}
+
 double root_mean_square(std::span<const double> values) {
   double sum = 0;
   for (const double v : values) sum += v * v;
@@ -130,10 +137,7 @@ double root_mean_square(std::span<const double> values) {
 std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras) {
-  std::vector<double> homography;
-  for (int i = 1; i < window.frame_count(); ++i)
-    homography.push_back(frame_errors(window, i).homography_px);
-  const double expected_px = median(std::move(homography));
+  const double expected_px = homography_error_px(window);
   const double found_px = median(reprojection_errors_px(window, plane, cameras));
   if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
     return fmt::format(
