@@ -26,7 +26,9 @@ struct InspectArguments {
   Settings settings;
 };
 
-/// Opens, says once what is missing (on standard error), inspects. Throws InputError.
+/// Opens, says once what is missing (on standard error). Throws InputError.
+std::shared_ptr<const Recording> open(const InspectArguments& arguments);
+/// Opens it and inspects. Throws InputError.
 std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments);
 
 struct RunArguments {
@@ -38,12 +40,14 @@ struct RunArguments {
 
 struct SnapshotArguments {
   InspectArguments inspect;
-  std::string view;                 ///< image | scene | window
+  std::string view;                 ///< image | scene | compare | curves | window
   std::filesystem::path output;     ///< .png
   std::optional<int> frame;         ///< counts in the recording; default: the window's last
   std::optional<std::string> size;  ///< "WxH" [px]
   std::optional<std::filesystem::path> baseline;
   int tolerance = 3;  ///< largest difference of a color channel that counts as equal
+  std::optional<std::string> methods;  ///< of compare and curves, as `evaluate` reads them
+  std::optional<std::string> lengths;  ///< of curves, as `evaluate` reads them
 };
 
 struct EvaluateArguments {

@@ -77,10 +77,18 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   add_inspection(*command, arguments.inspect);
   command->add_option("--view", arguments.view, "What to draw")
       ->required()
-      ->check(CLI::IsMember({"image", "scene", "window"}));
+      ->check(CLI::IsMember({"image", "scene", "compare", "curves", "window"}));
   command->add_option("--output", arguments.output, "PNG file to write")->required();
   command->add_option(
       "--frame", arguments.frame, "Frame of the recording to draw; default: the window's last");
+  command->add_option("--methods",
+                      arguments.methods,
+                      "Of the views compare and curves: methods with commas, each with settings "
+                      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS]; default: every method");
+  command->add_option("--lengths",
+                      arguments.lengths,
+                      "Of the view curves: lengths of the windows [frames], FROM:TO:STEP; default: "
+                      "5:FRAMES:5");
   command->add_option("--size", arguments.size, "WxH in pixels; default: the view's own");
   command->add_option("--baseline",
                       arguments.baseline,

@@ -9,10 +9,14 @@
 
 namespace gpo {
 
-std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
-  const auto recording = open_given(arguments.recording, {.tracks = arguments.tracks});
+std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
+  auto recording = open_given(arguments.recording, {.tracks = arguments.tracks});
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
-  return Inspector(recording).inspect(arguments.settings);
+  return recording;
+}
+
+std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
+  return Inspector(open(arguments)).inspect(arguments.settings);
 }
 
 int run_command(const RunArguments& arguments) {

@@ -1,8 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/comparison.h"
 #include "engine/error.h"
+#include "engine/experiment/configuration.h"
 #include "engine/output_file.h"
+#include "ui/views/figure_view.h"
 #include "ui/views/picture_compare.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
@@ -35,13 +38,67 @@ std::optional<cv::Size> parse_size(const std::optional<std::string>& text) {
   return cv::Size(width, height);
 }
 
-cv::Mat draw(const std::shared_ptr<const Inspection>& inspection,
-             const std::string& view,
-             int frame,
-             const std::optional<cv::Size>& size) {
-  if (view == "image") return snapshot_image(*inspection, frame, size);
-  if (view == "scene") return snapshot_scene(*inspection, frame, size.value_or(cv::Size(960, 720)));
-  return snapshot_window(inspection, frame, size.value_or(cv::Size(1280, 720)));
+/// A picture, and whether what it shows could be computed.
+struct Drawn {
+  cv::Mat picture;
+  bool ok = false;  ///< of several: at least one
+};
+
+void tell_failure(const std::string& what, const std::string& reason) {
+  fmt::print(stderr, "{}: initialization failed: {}\n", what, reason);
+}
+
+/// The frame that is asked for, or the window's last.
+int frame_to_draw(const SnapshotArguments& arguments, const Recording& recording) {
+  const Settings& settings = arguments.inspect.settings;
+  const int frame = arguments.frame.value_or(settings.start + settings.frames - 1);
+  if (frame < 0 || frame >= recording.frame_count()) {
+    throw InputError(fmt::format("--frame: {} is not in the recording, which has frames 0 to {}",
+                                 frame,
+                                 recording.frame_count() - 1));
+  }
+  return frame;
+}
+
+Drawn draw_compare(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+  const auto recording = open(arguments.inspect);
+  const auto inspections =
+      inspect_each(recording, {arguments.methods, arguments.lengths, arguments.inspect.settings});
+  const int frame = frame_to_draw(arguments, *recording);
+  Drawn drawn{snapshot_compare(inspections, frame, size)};
+  for (const auto& inspection : inspections) {
+    const Initialization& result = *inspection->initialization;
+    drawn.ok |= result.ok;
+    const Settings& settings = inspection->settings;
+    if (!result.ok)
+      tell_failure(key_of({settings.method, settings.ransac, settings.rotations}), result.reason);
+  }
+  return drawn;
+}
+
+Drawn draw_curves(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+  const LengthCurves curves = curves_over_length(
+      open(arguments.inspect), {arguments.methods, arguments.lengths, arguments.inspect.settings});
+  for (const std::string& failure : curves.failures) fmt::print(stderr, "{}\n", failure);
+  const cv::Size pixels = size.value_or(default_figure_size(curves.figure));
+  return {draw_figure(curves.figure, pixels), curves.any_ok};
+}
+
+Drawn draw_one(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+  const auto inspection = inspect(arguments.inspect);
+  const int frame = frame_to_draw(arguments, *inspection->recording);
+  const Initialization& result = *inspection->initialization;
+  if (!result.ok) tell_failure(inspection->settings.method, result.reason);
+  if (arguments.view == "image") return {snapshot_image(*inspection, frame, size), result.ok};
+  if (arguments.view == "scene")
+    return {snapshot_scene(*inspection, frame, size.value_or(cv::Size(960, 720))), result.ok};
+  return {snapshot_window(inspection, frame, size.value_or(cv::Size(1280, 720))), result.ok};
+}
+
+Drawn draw(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+  if (arguments.view == "compare") return draw_compare(arguments, size);
+  if (arguments.view == "curves") return draw_curves(arguments, size);
+  return draw_one(arguments, size);
 }
 
 cv::Mat read_baseline(const fs::path& file) {
@@ -80,23 +137,9 @@ int snapshot_command(const SnapshotArguments& arguments) {
   }
   check_writable(arguments.output);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
-  const auto inspection = inspect(arguments.inspect);
-  const Settings& settings = inspection->settings;
-  const int frame = arguments.frame.value_or(settings.start + settings.frames - 1);
-  if (frame < 0 || frame >= inspection->recording->frame_count()) {
-    throw InputError(fmt::format("--frame: {} is not in the recording, which has frames 0 to {}",
-                                 frame,
-                                 inspection->recording->frame_count() - 1));
-  }
-  const cv::Mat picture = draw(inspection, arguments.view, frame, size);
+  const auto [picture, ok] = draw(arguments, size);
   write_picture(arguments.output, picture);
-  if (!inspection->initialization->ok) {
-    fmt::print(stderr,
-               "{}: initialization failed: {}\n",
-               settings.method,
-               inspection->initialization->reason);
-    return kFailed;
-  }
+  if (!ok) return kFailed;
   fmt::print("{}: {}x{}\n", arguments.output.string(), picture.cols, picture.rows);
   return arguments.baseline ? compare(picture, baseline, arguments) : kDone;
 }

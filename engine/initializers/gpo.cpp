@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo.h"
 
+#include "engine/initializers/ceres_solver.h"
 #include "engine/initializers/map_points.h"
 #include "engine/initializers/transfer.h"
 #include "engine/initializers/window_checks.h"
@@ -19,36 +20,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
-
-/// The unit quaternion of the normal; its tangent is two-dimensional (Bloesch et al.).
-class DirectionManifold : public ceres::Manifold {
- public:
-  int AmbientSize() const override { return 4; }
-  int TangentSize() const override { return 2; }
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    const Eigen::Map<const Eigen::Quaterniond> q(x);
-    Eigen::Map<Eigen::Quaterniond> result(x_plus_delta);
-    result = direction_plus(q, Eigen::Map<const Eigen::Vector2d>(delta));
-    return true;
-  }
-  bool PlusJacobian(const double* x, double* jacobian) const override {
-    Eigen::Map<RowMajor<4, 2>> J(jacobian);
-    J = direction_plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x));
-    return true;
-  }
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-    Eigen::Map<Eigen::Vector2d> u(y_minus_x);
-    u = direction_minus(Eigen::Map<const Eigen::Quaterniond>(y),
-                        Eigen::Map<const Eigen::Quaterniond>(x));
-    return true;
-  }
-  bool MinusJacobian(const double* x, double* jacobian) const override {
-    // The columns of the Jacobian of Plus are orthogonal and of length 1/2.
-    Eigen::Map<RowMajor<2, 4>> J(jacobian);
-    J = 4 * direction_plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x)).transpose();
-    return true;
-  }
-};
 
 /// Transfer errors of all inliers of one frame (paper, eq. 8): one block a frame, not one a point,
 /// is what makes the solve fast.
@@ -96,35 +67,10 @@ class FrameCost : public ceres::CostFunction {
   std::vector<int> inliers_;
 };
 
-class StopCallback : public ceres::IterationCallback {
- public:
-  explicit StopCallback(std::stop_token stop) : stop_(std::move(stop)) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*unused*/) override {
-    return stop_.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  std::stop_token stop_;
-};
-
 struct Unknowns {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  ///< the normal starts along z
   std::vector<Vector3d> tau;                              ///< and all translations at zero
 };
-
-SolverReport report_of(const ceres::Solver::Summary& summary) {
-  SolverReport report;
-  report.iterations = summary.num_successful_steps + summary.num_unsuccessful_steps;
-  report.initial_cost = summary.initial_cost;
-  report.final_cost = summary.final_cost;
-  report.unknowns = summary.num_effective_parameters;
-  report.residuals = summary.num_residuals;
-  report.milliseconds = 1e3 * summary.total_time_in_seconds;
-  report.termination = summary.termination_type == ceres::CONVERGENCE      ? "convergence"
-                       : summary.termination_type == ceres::NO_CONVERGENCE ? "no_convergence"
-                                                                           : "failure";
-  return report;
-}
 
 SolverReport solve(const Window& window, Unknowns& unknowns, std::stop_token stop) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
@@ -138,21 +84,7 @@ SolverReport solve(const Window& window, Unknowns& unknowns, std::stop_token sto
         new FrameCost(window, i, rays_1), nullptr, unknowns.q.coeffs().data(), tau);
     ordering->AddElementToGroup(tau, 0);  // eliminated first: the Schur complement is 2x2
   }
-  StopCallback callback(std::move(stop));
-  ceres::Solver::Options options;
-  options.trust_region_strategy_type = ceres::DOGLEG;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.linear_solver_ordering = ordering;
-  options.max_num_iterations = 300;
-  options.function_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-12;
-  options.parameter_tolerance = 1e-12;
-  options.num_threads = 1;  // more would cost the bit-for-bit repeatability
-  options.logging_type = ceres::SILENT;
-  options.callbacks.push_back(&callback);
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return report_of(summary);
+  return solve_by_schur(problem, std::move(ordering), {}, std::move(stop));
 }
 
 /// Sign and gauge: (n, tau) and (-n, -tau) give the same pictures; points lie in front, d = 1.

@@ -44,9 +44,9 @@ struct Initialization {
   std::string reason;
   Plane plane;
   std::vector<Pose> cameras;     ///< one a frame
-  std::vector<MapPoint> points;  ///< inlier tracks
+  std::vector<MapPoint> points;  ///< inlier tracks; all that it used of a method without a plane
   SolverReport solver;
-  double rms_px = 0;  ///< root mean square reprojection error over inlier observations
+  double rms_px = 0;  ///< root mean square reprojection error over the observations used
   /// Of methods that decompose homographies: all readings, also where the method failed.
   std::vector<HomographyCandidate> candidates;
 };

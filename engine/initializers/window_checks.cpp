@@ -3,6 +3,7 @@
 #include "engine/initializers/window_checks.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/median.h"
 #include "engine/initializers/transfer.h"
 
 #include <algorithm>
@@ -28,12 +29,6 @@ constexpr double kLeastParallaxPx = 0.5;
 /// more: rotations are given and may be off by half a degree.
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 struct FrameErrors {
   double homography_px;  ///< median transfer error of the frame's homography
@@ -121,6 +116,13 @@ std::vector<double> reprojection_errors_px(const Window& window,
   return errors;
 }
 
+double homography_error_px(const Window& window) {
+  std::vector<double> errors;
+  for (int i = 1; i < window.frame_count(); ++i)
+    errors.push_back(frame_errors(window, i).homography_px);
+  return median(std::move(errors));
+}
+
 double root_mean_square(std::span<const double> values) {
   double sum = 0;
   for (const double v : values) sum += v * v;
@@ -130,10 +132,7 @@ double root_mean_square(std::span<const double> values) {
 std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras) {
-  std::vector<double> homography;
-  for (int i = 1; i < window.frame_count(); ++i)
-    homography.push_back(frame_errors(window, i).homography_px);
-  const double expected_px = median(std::move(homography));
+  const double expected_px = homography_error_px(window);
   const double found_px = median(reprojection_errors_px(window, plane, cameras));
   if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
     return fmt::format(

@@ -40,6 +40,10 @@ std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
+/// What the homographies leave: the median over the frames of an inlier's median transfer error
+/// [px].
+double homography_error_px(const Window& window);
+
 /// Root mean square, 0 of nothing.
 double root_mean_square(std::span<const double> values);
 

@@ -42,6 +42,48 @@ TEST_P(SnapshotOf, AgreesWithItsBaseline) {
 
 INSTANTIATE_TEST_SUITE_P(Views, SnapshotOf, ::testing::Values("image", "scene", "window"));
 
+/// The same configurations whatever the table of methods holds.
+constexpr const char* kVariants = "--methods gpo,gpo+no-ransac,gpo+truth ";
+
+/// Views of several configurations, with small pictures of their own as baselines.
+class SnapshotOfSeveral : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(SnapshotOfSeveral, AgreesWithItsBaseline) {
+  const auto& [view, size] = GetParam();
+  const fs::path baseline =
+      fs::path(GPO_SOURCE_DIR) / "tests/snapshots" / (std::string(view) + ".png");
+  const Outcome outcome =
+      snapshot(view,
+               fresh_folder() / (std::string(view) + ".png"),
+               kVariants + std::string(size) + " --baseline " + baseline.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(Views,
+                         SnapshotOfSeveral,
+                         ::testing::Values(std::pair("compare", "--size 1080x440"),
+                                           std::pair("curves", "--size 1200x400")));
+
+TEST(Snapshot, CompareDrawsEveryMethodOfTheTable) {
+  const fs::path file = fresh_folder() / "a.png";
+  const Outcome outcome = snapshot("compare", file, "--frames 12");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(cv::imread(file.string()).empty());
+}
+
+TEST(Snapshot, CurvesNeedGroundTruth) {
+  const fs::path folder = fresh_folder();
+  fs::copy(desk(), folder / "in", fs::copy_options::recursive);
+  fs::remove(folder / "in/board.yaml");
+  fs::remove_all(folder / "in/mav0/state_groundtruth_estimate0");
+  const Outcome outcome =
+      program("snapshot " + (folder / "in").string() +
+              " --view curves --lengths 5 --methods gpo --output " + (folder / "a.png").string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("has no ground truth"));
+  EXPECT_FALSE(fs::exists(folder / "a.png"));
+}
+
 TEST(Snapshot, TakesTheSizeThatIsAskedFor) {
   const fs::path file = fresh_folder() / "a.png";
   ASSERT_EQ(snapshot("window", file, "--size 1000x600").exit_code, 0);
@@ -98,6 +140,12 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"--view image --frame 60", "--frame: 60 is not in the recording"},
                       BadInput{"--view image --frame -1", "--frame: -1"},
                       BadInput{"--view image --tolerance 300", "--tolerance"},
+                      BadInput{"--view compare --methods gpo,nonsense",
+                               "unknown method 'nonsense', expected all, or some of gpo"},
+                      BadInput{"--view curves --methods gpo+nonsense",
+                               "unknown setting 'nonsense', expected one of ransac"},
+                      BadInput{"--view curves --lengths 1", "--lengths"},
+                      BadInput{"--view compare --frame 60", "--frame: 60 is not in the recording"},
                       BadInput{"--view image --baseline no.png", "--baseline: no.png"}));
 
 TEST(Snapshot, OutputMustBePng) {

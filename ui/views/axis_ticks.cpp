@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -50,8 +51,10 @@ AxisTicks linear_ticks(double low, double high, int most) {
   const double step = round_number(index);
   AxisTicks ticks{low, high, {}, {}};
   const double slack = 1e-9 * (high - low) / step;
-  for (double k = std::ceil(low / step - slack); k <= high / step + slack; ++k)
-    add_tick(ticks, std::clamp(k * step, low, high));
+  const auto first = static_cast<std::int64_t>(std::ceil(low / step - slack));
+  const auto last = static_cast<std::int64_t>(std::floor(high / step + slack));
+  for (std::int64_t k = first; k <= last; ++k)
+    add_tick(ticks, std::clamp(static_cast<double>(k) * step, low, high));
   return ticks;
 }
 

@@ -43,9 +43,9 @@ Column column_at(const ScreenRect& rect, const Grid& grid, int index, double sca
   const Vector2d free = rect.size - scale * Vector2d(kGap, kTop);
   const double width = std::floor(free.x() / grid.columns),
                height = std::floor(free.y() / grid.rows);
-  const Vector2d at =
-      rect.min + Vector2d(std::round(scale * kGap) + width * (index % grid.columns),
-                          std::round(scale * kTop) + height * (index / grid.columns));
+  const int x = index % grid.columns, y = index / grid.columns;
+  const Vector2d at = rect.min + Vector2d(std::round(scale * kGap) + width * x,
+                                          std::round(scale * kTop) + height * y);
   const double inner = width - std::round(scale * kGap);
   const double heading = std::round(scale * kHeading), caption = std::round(scale * kCaption);
   const double picture = std::max(1.0, height - heading - caption);
@@ -233,7 +233,7 @@ cv::Size default_compare_size(Comparison inspections) {
 
 double compare_text_scale(Comparison inspections, cv::Size size) {
   const double natural = default_compare_size(inspections).width;
-  return std::clamp(size.width / natural, 0.6, 3.0);
+  return std::clamp(size.width / natural, 0.75, 3.0);
 }
 
 }  // namespace gpo

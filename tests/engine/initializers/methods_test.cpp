@@ -26,6 +26,13 @@ using ::testing::HasSubstr;
 class EveryMethod : public ::testing::TestWithParam<Method> {
  protected:
   static Initialization run(const Window& window) { return GetParam().initialize(window, {}); }
+
+  /// Where a camera approaches a plane along its normal, the two readings of its homographies
+  /// coincide; a method that moves the rotations, too, finds the normal to the root of the noise
+  /// only.
+  static bool moves_rotations() {
+    return std::set<std::string>{"ba", "pnp_ba", "pba"}.contains(GetParam().key);
+  }
 };
 
 struct Errors {
@@ -79,8 +86,9 @@ TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
       const Initialization result = run(truth.window);
       ASSERT_TRUE(result.ok) << result.reason;
       const Errors errors = errors_of(result, truth);
-      EXPECT_LT(errors.normal_deg, 1.5);
-      EXPECT_LT(errors.rotation_deg, 1);
+      const bool flat = motion == Motion::approach && moves_rotations();
+      EXPECT_LT(errors.normal_deg, flat ? 4 : 1.5);
+      EXPECT_LT(errors.rotation_deg, flat ? 1.5 : 1);
       EXPECT_LT(errors.center, 0.02);
       EXPECT_LT(result.rms_px, 1);
     }

@@ -103,6 +103,7 @@ TEST_F(Synthesized, ThreadsThatWantTheSameShareIt) {
   std::atomic<int> frames = 0;
   {
     std::vector<std::jthread> threads;
+    threads.reserve(3);
     for (int i = 0; i < 3; ++i) {
       threads.emplace_back([&] {
         int last = 0;

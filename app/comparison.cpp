@@ -1,0 +1,92 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/comparison.h"
+
+#include "engine/error.h"
+#include "engine/experiment/figures.h"
+#include "engine/experiment/ranges.h"
+#include "engine/experiment/summary.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
+  if (request.methods) return parse_configurations(*request.methods);
+  std::vector<Configuration> all;
+  for (const Method& method : methods()) all.push_back({.method = method.key});
+  return all;
+}
+
+/// What a configuration leaves open is as in `window`.
+Settings settings_of(const Configuration& configuration, const Settings& window) {
+  Settings settings = window;
+  settings.method = configuration.method;
+  if (configuration.ransac) settings.ransac = configuration.ransac;
+  if (configuration.rotations != RotationSource::automatic)
+    settings.rotations = configuration.rotations;
+  return settings;
+}
+
+/// Descending.
+std::vector<int> lengths_of(const ComparisonRequest& request) {
+  const std::string text = request.lengths.value_or("5:end:5");
+  std::vector<int> lengths = numbers_in(parse_ranges(text, "--lengths"), request.window.frames);
+  if (lengths.empty() || lengths.front() < 2) {
+    throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
+                                 text,
+                                 request.window.frames));
+  }
+  std::ranges::reverse(lengths);
+  return lengths;
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Inspection>> inspect_each(
+    const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request) {
+  Inspector inspector(recording);
+  std::vector<std::shared_ptr<const Inspection>> inspections;
+  for (const Configuration& configuration : configurations_of(request))
+    inspections.push_back(inspector.inspect(settings_of(configuration, request.window)));
+  return inspections;
+}
+
+LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recording,
+                                const ComparisonRequest& request) {
+  const FigurePlan plan{"curves", "", configurations_of(request)};
+  std::vector<Row> rows;
+  Inspector inspector(recording);
+  Settings window = request.window;
+  // The longest window first: the Inspector keeps its tracks for the others.
+  for (const int length : lengths_of(request)) {
+    window.frames = length;
+    for (const Configuration& configuration : plan.configurations) {
+      const auto inspection = inspector.inspect(settings_of(configuration, window));
+      if (!inspection->truth) {
+        throw InputError(fmt::format(
+            "--view curves: {} has no ground truth to measure errors against", recording->name));
+      }
+      rows.push_back(make_row(configuration, *inspection));
+    }
+  }
+  std::ranges::reverse(rows);
+  LengthCurves curves{figure_over_length(rows, plan), {}, false};
+  curves.figure.title =
+      fmt::format("{}: windows from frame {}, by their length", recording->name, window.start);
+  for (const Configuration& configuration : plan.configurations) {
+    const auto own = rows_of(rows, {&configuration, 1});
+    if (std::ranges::any_of(own, &Row::ok)) {
+      curves.any_ok = true;
+    } else {
+      curves.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
+    }
+  }
+  return curves;
+}
+
+}  // namespace gpo

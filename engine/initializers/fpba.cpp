@@ -1,0 +1,20 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/fpba.h"
+
+#include "engine/initializers/dbscan.h"
+#include "engine/initializers/pba.h"
+#include "engine/initializers/refined_start.h"
+
+#include <utility>
+
+namespace gpo {
+
+Initialization initialize_fpba(const Window& window, std::stop_token stop) {
+  const Refinement refine = [](const Window& w, const Initialization& start, std::stop_token s) {
+    return refine_on_plane(w, start, PlaneNormal::held, std::move(s));
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
+}
+
+}  // namespace gpo

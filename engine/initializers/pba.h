@@ -1,0 +1,23 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+#include "engine/initializers/plane_adjustment.h"
+
+#include <stop_token>
+
+namespace gpo {
+
+/// Bundle adjustment of the inliers with all points on one plane, which moves unless its normal is
+/// held; started from the poses and the plane of `start`.
+Initialization refine_on_plane(const Window& window,
+                               const Initialization& start,
+                               PlaneNormal normal,
+                               std::stop_token stop);
+
+/// The adjustment with a free normal, started from `initialize_dbscan` (the paper's PBA).
+Initialization initialize_pba(const Window& window, std::stop_token stop);
+
+}  // namespace gpo

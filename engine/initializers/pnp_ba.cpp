@@ -1,0 +1,15 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/pnp_ba.h"
+
+#include "engine/initializers/ba.h"
+#include "engine/initializers/pnp.h"
+#include "engine/initializers/refined_start.h"
+
+namespace gpo {
+
+Initialization initialize_pnp_ba(const Window& window, std::stop_token stop) {
+  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, stop);
+}
+
+}  // namespace gpo
