@@ -54,13 +54,24 @@ Column column_at(const ScreenRect& rect, const Grid& grid, int index, double sca
           {at + Vector2d(0, heading + picture), {inner, caption}}};
 }
 
+/// One size for all, so that they compare: as many squares of the board, or distances of the plane,
+/// as the first one's [unit of the estimate].
+double common_cube_side(Comparison inspections, const Inspection& inspection) {
+  const auto first =
+      std::ranges::find_if(inspections, [](const auto& one) { return one->cube.has_value(); });
+  if (!inspection.cube || first == inspections.end()) return 0;
+  const CubeAnchor& model = *(*first)->cube;
+  if (model.on_board != inspection.cube->on_board) return cube_side(inspection, 0);
+  return cube_side(**first, 0) / model.unit * inspection.cube->unit;
+}
+
 /// What both kinds of cubes cover [raw px].
 Eigen::AlignedBox2d cubes_box(Comparison inspections, int frame) {
   Eigen::AlignedBox2d box;
   for (const auto& inspection : inspections) {
     const int in_window = frame - inspection->window->start;
     if (in_window < 0 || in_window >= inspection->window->frame_count()) continue;
-    const double side = cube_side(*inspection, 0);
+    const double side = common_cube_side(inspections, *inspection);
     for (const auto& cube :
          {estimated_cube(*inspection, in_window, side), true_cube(*inspection, in_window, side)})
       for (const CubeEdge& edge : cube.value_or(CubePicture{}).edges)
@@ -111,11 +122,11 @@ Configuration configuration_of(const Settings& settings) {
 
 std::string conditions(const Inspection& inspection) {
   const Window& window = *inspection.window;
-  return fmt::format("rotations: {} · RANSAC {} · {} of {} tracks",
-                     to_string(inspection.rotations_used),
-                     uses_ransac(inspection.settings) ? "on" : "off",
-                     window.inlier_count(0),
-                     window.track_count());
+  const std::string tracks =
+      uses_ransac(inspection.settings)
+          ? fmt::format("RANSAC on · {} of {} tracks", window.inlier_count(0), window.track_count())
+          : fmt::format("RANSAC off · all {} tracks", window.track_count());
+  return fmt::format("rotations: {} · {}", to_string(inspection.rotations_used), tracks);
 }
 
 void draw_heading(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
@@ -208,11 +219,12 @@ void draw_compare_view(ImDrawList& list,
   draw_top(list, rect, *inspections.front(), frame);
   const Grid cells = grid(inspections);
   const Eigen::AlignedBox2d cubes = cubes_box(inspections, frame);
-  const ImageViewOptions options{.tracks = false, .tail_frames = 0, .legend = false};
+  ImageViewOptions options{.tracks = false, .tail_frames = 0, .legend = false};
   for (std::size_t i = 0; i < inspections.size(); ++i) {
     const Inspection& inspection = *inspections[i];
     const Column column = column_at(rect, cells, static_cast<int>(i), overlay_scale());
     const PictureZoom zoom = zoom_on(cubes, inspection.recording->camera, column.picture.size);
+    options.cube_side = common_cube_side(inspections, inspection);
     draw_heading(list, column.heading, inspection);
     draw_image_view(list, column.picture, inspection, frame, picture, zoom, options);
     draw_caption(list, column.caption, inspection);

@@ -108,9 +108,9 @@ TEST(RotationSource, TypoNamesTheKnownOnes) {
     rotation_source("gyr");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "--rotations: unknown source 'gyr', expected one of automatic, gyro, averaging, truth");
+    EXPECT_STREQ(error.what(),
+                 "--rotations: unknown source 'gyr', expected one of automatic, gyro, "
+                 "gyro-calibrated, averaging, truth");
   }
 }
 
