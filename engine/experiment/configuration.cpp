@@ -78,11 +78,7 @@ void set(Configuration& configuration, const std::string& setting, const std::st
 std::vector<std::string> all_keys() {
   std::vector<std::string> keys;
   for (const Method& method : methods()) keys.push_back(method.key);
-  for (const std::string ablation : kAblations) {
-    const std::vector<std::string> parts = split(ablation, '+');
-    const bool known = is_method(parts[0]) && (parts[1].ends_with("ransac") || is_source(parts[1]));
-    if (known) keys.push_back(ablation);
-  }
+  keys.insert(keys.end(), kAblations.begin(), kAblations.end());
   return keys;
 }
 

@@ -74,6 +74,7 @@ class Run {
     const std::stop_callback forward(options_.stop, [this] { stop_.request_stop(); });
     {
       std::vector<std::jthread> threads;
+      threads.reserve(options_.jobs);
       for (int i = 0; i < options_.jobs; ++i) threads.emplace_back([this] { work(); });
     }
     if (error_) std::rethrow_exception(error_);

@@ -42,7 +42,8 @@ TEST(Configuration, AllIsEveryMethodAndTheAblations) {
   std::set<std::string> keys;
   for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
   for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
-  for (const char* ablation : {"gpo+no-ransac", "gpo+averaging", "gpo+truth"}) {
+  for (const char* ablation :
+       {"gpo+no-ransac", "gpo+gyro-calibrated", "gpo+averaging", "gpo+truth", "ba+ransac"}) {
     EXPECT_TRUE(keys.contains(ablation)) << ablation;
   }
 }
