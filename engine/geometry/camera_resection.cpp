@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera_resection.h"
 
-#include <algorithm>
+#include "engine/geometry/median.h"
+
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -35,12 +36,6 @@ std::vector<double> errors_px(const Pose& pose,
                                : std::numeric_limits<double>::infinity());
   }
   return errors;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// R_wc <- R_wc exp(w), p_wc <- p_wc + R_wc v, of least squared error of the points within

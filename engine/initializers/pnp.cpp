@@ -3,6 +3,7 @@
 #include "engine/initializers/pnp.h"
 
 #include "engine/geometry/camera_resection.h"
+#include "engine/geometry/median.h"
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/triangulation.h"
 #include "engine/initializers/homography_candidates.h"
@@ -55,12 +56,6 @@ void triangulate_tracks(const Window& window, Reconstruction& scene) {
     if (cameras.size() < 2) continue;
     scene.points[j] = triangulate(cameras, rays.leftCols(static_cast<int>(cameras.size())));
   }
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// The motion halfway between two readings.
@@ -259,6 +254,7 @@ Initialization deliver(const Window& window, const Reconstruction& scene) {
 
 }  // namespace
 
+// The table's signature. NOLINTNEXTLINE(performance-unnecessary-value-param)
 Initialization initialize_pnp(const Window& window, std::stop_token stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Pair pair = find_pair(window);

@@ -3,6 +3,7 @@
 #include "engine/initializers/window_checks.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/median.h"
 #include "engine/initializers/transfer.h"
 
 #include <algorithm>
@@ -28,12 +29,6 @@ constexpr double kLeastParallaxPx = 0.5;
 /// more: rotations are given and may be off by half a degree.
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 struct FrameErrors {
   double homography_px;  ///< median transfer error of the frame's homography

@@ -55,6 +55,24 @@ TEST(Run, DeskGivesWhatTheContractPromises) {
   EXPECT_LE(j["timing_ms"]["optimize"], j["timing_ms"]["initialize"]);
 }
 
+TEST(Run, CandidatesAreThereWhereHomographiesWereDecomposed) {
+  EXPECT_FALSE(run_json(desk().string()).contains("candidates"));
+  const json j = run_json(desk().string() + " --start 5 --frames 20 --method pnp");
+  ASSERT_TRUE(j.contains("candidates"));
+  int taken = 0;
+  for (const json& candidate : j["candidates"]) {
+    EXPECT_GE(candidate["frame"], 6);  // counted in the recording
+    EXPECT_LE(candidate["frame"], 24);
+    EXPECT_THAT(candidate["decomposition"], ::testing::AnyOf("malis_vargas", "faugeras", "zhang"));
+    EXPECT_EQ(candidate["normal"].size(), 3U);
+    EXPECT_EQ(candidate["tau"].size(), 3U);
+    EXPECT_EQ(candidate["q_21_xyzw"].size(), 4U);
+    EXPECT_GE(candidate["score"], 0);
+    taken += candidate["rejected"] == "" ? 1 : 0;
+  }
+  EXPECT_GE(taken, 1);
+}
+
 TEST(Run, DeskIsAccurate) {
   const json metrics = run_json(desk().string())["metrics"];
   EXPECT_EQ(metrics["alignment"], "ok");
