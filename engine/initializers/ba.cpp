@@ -149,7 +149,7 @@ Initialization refine_bundle(const Window& window,
                                                        start_bundle(window, start),
                                                        observations_of(window),
                                                        homography_error_px(window),
-                                                       stop);
+                                                       std::move(stop));
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
   if (solver.termination != "convergence") {
@@ -164,7 +164,7 @@ Initialization refine_bundle(const Window& window,
 }
 
 Initialization initialize_ba(const Window& window, std::stop_token stop) {
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, stop);
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, std::move(stop));
 }
 
 }  // namespace gpo

@@ -91,12 +91,13 @@ struct PointTally {
 /// Those that are right for the bundle: see `adjust_bundle_robustly`.
 std::vector<Observation> without_outliers(const Matrix3d& K,
                                           const Bundle& bundle,
-                                          std::span<const Observation> observations) {
+                                          std::span<const Observation> observations,
+                                          double least_sigma_px) {
   const std::vector<double> errors = reprojection_errors_px(K, bundle, observations);
   std::vector<double> sorted = errors;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::ranges::nth_element(sorted, middle);
-  const double limit = kDropAtSigmas * std::max(kLeastNoisePx, *middle / kMedianLength);
+  const double limit = kDropAtSigmas * std::max(least_sigma_px, *middle / kMedianLength);
   std::vector<bool> agrees(observations.size());
   std::vector<PointTally> tally(bundle.points.cols());
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -146,15 +147,16 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
-  ceres::Problem problem;
+  ceres::HuberLoss huber(options.huber_px);
+  ceres::Problem::Options sharing;
+  sharing.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(sharing);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   add_pose_blocks(cameras, widest_frame(start.cameras), problem, *ordering);
-  ceres::LossFunction* loss =
-      options.huber_px > 0 ? new ceres::HuberLoss(options.huber_px) : nullptr;
   for (const Observation& observation : observations) {
     double* point = result.bundle.points.col(observation.point).data();
     problem.AddResidualBlock(new ObservationCost(intrinsics, observation.pixel),
-                             loss,
+                             options.huber_px > 0 ? &huber : nullptr,
                              cameras[observation.frame].data(),
                              point);
     ordering->AddElementToGroup(point, 0);
@@ -168,18 +170,20 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    const std::stop_token& stop) {
+                                    std::stop_token stop) {
   std::vector<Observation> usable;
   const std::vector<double> errors = reprojection_errors_px(K, start, observations);
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (std::isfinite(errors[k])) usable.push_back(observations[k]);
   }
-  const double huber_px = kHuberAtSigmas * std::max(kLeastNoisePx, error_px / kMedianLength);
+  const double sigma_px = std::max(kLeastNoisePx, error_px / kMedianLength);
+  const double huber_px = kHuberAtSigmas * sigma_px;
   const AdjustedBundle robust =
       adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, stop);
-  RobustBundle result{robust.bundle, without_outliers(K, robust.bundle, usable), robust.solver};
+  RobustBundle result{
+      robust.bundle, without_outliers(K, robust.bundle, usable, sigma_px), robust.solver};
   if (robust.solver.termination == "failure") return result;
-  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, stop);
+  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, std::move(stop));
   result.bundle = std::move(final_round.bundle);
   result.solver = std::move(final_round.solver);
   result.solver.iterations += robust.solver.iterations;

@@ -68,11 +68,12 @@ struct RobustBundle {
 /// Adjusts with a Huber loss, drops what then disagrees (observations beyond three robust standard
 /// deviations, points behind the reference camera or seen fewer than three times, whole tracks that
 /// slipped), and adjusts the rest to plain least squares. `error_px` is the expected median error
-/// of an observation.
+/// of an observation; no deviation is taken to be smaller, or tracks that drift alike would outvote
+/// the others.
 RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    const std::stop_token& stop);
+                                    std::stop_token stop);
 
 }  // namespace gpo

@@ -6,10 +6,12 @@
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/refined_start.h"
 
+#include <utility>
+
 namespace gpo {
 
 Initialization initialize_pnp_ba(const Window& window, std::stop_token stop) {
-  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, stop);
+  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, std::move(stop));
 }
 
 }  // namespace gpo

@@ -4,6 +4,8 @@
 
 #include "engine/initializers/window_checks.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace gpo {
@@ -11,11 +13,11 @@ namespace gpo {
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             const std::stop_token& stop) {
+                             std::stop_token stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const Initialization started = start.initialize(window, stop);
   Initialization result = started.ok
-                              ? refine(window, started, stop)
+                              ? refine(window, started, std::move(stop))
                               : failed(fmt::format("start by {}: {}", start.title, started.reason));
   result.candidates = started.candidates;
   return result;

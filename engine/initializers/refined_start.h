@@ -25,6 +25,6 @@ using Refinement = Initialization (*)(const Window& window,
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             const std::stop_token& stop);
+                             std::stop_token stop);
 
 }  // namespace gpo

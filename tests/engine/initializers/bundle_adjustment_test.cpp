@@ -256,5 +256,16 @@ INSTANTIATE_TEST_SUITE_P(
     BundleOnMotion,
     ::testing::Values(Motion::sideways, Motion::orbit, Motion::approach, Motion::wander));
 
+TEST(RobustBundle, DropsAGoodObservationInAHundredAndNoneWithinTheExpectedError) {
+  const Simulation truth = simulate({.motion = Motion::orbit, .frames = 12});
+  const auto observations = observations_of(truth, true);
+  const Bundle start = free_bundle(truth.window.K, plane_bundle(truth, perturbed_truth(truth)));
+  const RobustBundle strict = adjust_bundle_robustly(truth.window.K, start, observations, 0.3, {});
+  EXPECT_GT(strict.kept.size(), 0.95 * observations.size());
+  EXPECT_LT(strict.kept.size(), observations.size());
+  const RobustBundle lenient = adjust_bundle_robustly(truth.window.K, start, observations, 2, {});
+  EXPECT_EQ(lenient.kept.size(), observations.size());
+}
+
 }  // namespace
 }  // namespace gpo

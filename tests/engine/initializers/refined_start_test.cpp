@@ -12,6 +12,8 @@ namespace {
 using test::Motion;
 using test::simulate;
 
+// Methods take their stop token by value.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 Initialization no_start(const Window& /*unused*/, std::stop_token /*unused*/) {
   Initialization result = failed("the moon is full");
   result.candidates.resize(3);
@@ -33,6 +35,8 @@ Initialization refine(const Window& /*unused*/,
   result.rms_px = 0.5;
   return result;
 }
+
+// NOLINTEND(performance-unnecessary-value-param)
 
 TEST(RefinedStart, IsTheRefinementWithTheCandidatesOfTheStart) {
   const Initialization result =
