@@ -85,17 +85,20 @@ void write_figure(const fs::path& folder, const Figure& figure) {
 void write_results(const fs::path& folder, const Experiment& experiment) {
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
   const Table times = running_time_table(rows);
+  const Table errors = overview_table(rows);
   write_file(folder / "results.csv", to_csv(rows));
   write_file(folder / "summary.json", to_json(experiment, rows).dump(1) + "\n");
+  write_file(folder / "errors.md", to_markdown(errors));
+  write_file(folder / "errors.csv", to_csv(errors));
   write_file(folder / "running_time.md", to_markdown(times));
   write_file(folder / "running_time.csv", to_csv(times));
-  fmt::print("{}", to_text(overview_table(rows)));
+  fmt::print("{}", to_text(errors));
   fs::create_directories(folder / "figures");
   for (const Figure& figure : figures(rows, experiment.configurations)) {
     write_figure(folder / "figures", figure);
   }
   fmt::print(
-      "{}: {} windows x {} configurations in results.csv; summary.json, running_time.md, "
+      "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, running_time.md, "
       "figures\n",
       folder.string(),
       rows.size() / experiment.configurations.size(),

@@ -5,6 +5,7 @@
 #include "engine/experiment/summary.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@ namespace gpo {
 namespace {
 
 constexpr int kPaperFrames = 30;
+constexpr std::array<int, 3> kOverviewFrames{10, 30, 60};
 
 /// A column of numbers: what of results.csv, by which factor, and whether a frame's share of it.
 struct NumberColumn {
@@ -64,6 +66,14 @@ Table time_table(const std::vector<Cell>& cells, int frames) {
   return table;
 }
 
+std::set<int> lengths_to_show(const std::set<int>& all) {
+  if (std::ranges::includes(all, kOverviewFrames)) {
+    return {kOverviewFrames.begin(), kOverviewFrames.end()};
+  }
+  const std::vector<int> lengths(all.begin(), all.end());
+  return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
+}
+
 /// Of each line's cells the widest.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
@@ -89,9 +99,7 @@ Table running_time_table(std::span<const Row> rows) {
 }
 
 Table overview_table(std::span<const Row> rows) {
-  const std::set<int> all = lengths_in(rows);
-  const std::vector<int> lengths(all.begin(), all.end());
-  const std::set<int> shown{lengths.front(), lengths[lengths.size() / 2], lengths.back()};
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
   const std::vector<NumberColumn> columns{{"PNE [deg]", {"pne_deg"}, 1, false, 3},
                                           {"ATE [mm]", {"ate_m"}, 1e3, false, 2},
                                           {"PDE [mm]", {"pde_m"}, 1e3, false, 2}};

@@ -21,8 +21,8 @@ struct Table {
 /// length below, or where all are longer of the shortest.
 Table running_time_table(std::span<const Row> rows);
 
-/// How many windows each configuration solved, and its median errors at the shortest, a middle and
-/// the longest length.
+/// How many windows each configuration solved, and its median errors over them, at 10, 30 and 60
+/// frames; where these are not all there, at the shortest, a middle and the longest length.
 Table overview_table(std::span<const Row> rows);
 
 std::string to_markdown(const Table& table);

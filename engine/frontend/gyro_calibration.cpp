@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/gyro_calibration.h"
 
-#include "engine/frontend/rotation_averaging.h"
+#include "engine/frontend/homography_rotations.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/rotations.h"
-#include "engine/frontend/window.h"
-
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,19 +21,5 @@ struct RelativeRotation {
 /// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                                std::vector<Eigen::Matrix3d> R_wc);
-
-/// Rotations of a window's cameras from its pictures alone: homographies between pairs of frames
-/// are decomposed, the candidates whose plane normal agrees over the window are kept, and their
-/// rotations averaged. On a plane these are far better than five-point rotations
-/// (`tests/engine/frontend/rotation_averaging_test.cpp` measures both). Where the homographies
-/// allow no consistent choice, or two planes alike, there are none and a reason; none either where
-/// stopped.
-Rotations averaged_rotations(const Window& window, const std::stop_token& stop = {});
-
-/// The same, but which of several planes is told by rotations that are known roughly, say a
-/// gyroscope's: one a frame.
-Rotations averaged_rotations(const Window& window,
-                             std::span<const Eigen::Matrix3d> R_wc_given,
-                             const std::stop_token& stop = {});
 
 }  // namespace gpo

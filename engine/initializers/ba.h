@@ -14,9 +14,9 @@ namespace gpo {
 /// that of the adjusted inlier points, which are delivered as they are, on the plane or off it.
 Initialization refine_bundle(const Window& window,
                              const Initialization& start,
-                             std::stop_token stop);
+                             const std::stop_token& stop);
 
 /// The adjustment started from `initialize_dbscan` (the paper's BA).
-Initialization initialize_ba(const Window& window, std::stop_token stop);
+Initialization initialize_ba(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

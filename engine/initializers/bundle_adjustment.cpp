@@ -143,7 +143,7 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
-                             std::stop_token stop) {
+                             const std::stop_token& stop) {
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
@@ -161,7 +161,7 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
                              point);
     ordering->AddElementToGroup(point, 0);
   }
-  result.solver = solve_by_schur(problem, std::move(ordering), options.tolerances, std::move(stop));
+  result.solver = solve_by_schur(problem, std::move(ordering), options.tolerances, stop);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
   return result;
 }
@@ -170,7 +170,7 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    std::stop_token stop) {
+                                    const std::stop_token& stop) {
   std::vector<Observation> usable;
   const std::vector<double> errors = reprojection_errors_px(K, start, observations);
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -183,7 +183,7 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   RobustBundle result{
       robust.bundle, without_outliers(K, robust.bundle, usable, sigma_px), robust.solver};
   if (robust.solver.termination == "failure") return result;
-  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, std::move(stop));
+  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, stop);
   result.bundle = std::move(final_round.bundle);
   result.solver = std::move(final_round.solver);
   result.solver.iterations += robust.solver.iterations;

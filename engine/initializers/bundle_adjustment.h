@@ -57,7 +57,7 @@ AdjustedBundle adjust_bundle(const Eigen::Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
-                             std::stop_token stop);
+                             const std::stop_token& stop);
 
 struct RobustBundle {
   Bundle bundle;
@@ -74,6 +74,6 @@ RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    std::stop_token stop);
+                                    const std::stop_token& stop);
 
 }  // namespace gpo

@@ -69,8 +69,8 @@ bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            std::stop_token stop) {
-  StopCallback callback(std::move(stop));
+                            const std::stop_token& stop) {
+  StopCallback callback(stop);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.linear_solver_type = ceres::DENSE_SCHUR;

@@ -34,6 +34,6 @@ struct SolverTolerances {
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            std::stop_token stop);
+                            const std::stop_token& stop);
 
 }  // namespace gpo

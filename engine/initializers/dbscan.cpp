@@ -186,8 +186,7 @@ void reject_far_from(const Vector3d& normal, Candidates& candidates) {
 
 }  // namespace
 
-// The table's signature. NOLINTNEXTLINE(performance-unnecessary-value-param)
-Initialization initialize_dbscan(const Window& window, std::stop_token stop) {
+Initialization initialize_dbscan(const Window& window, const std::stop_token& stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Candidates candidates = cluster_candidates(window);
   const auto start = highest_member(candidates, [](const Vector3d&) { return true; });

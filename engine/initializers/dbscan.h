@@ -13,6 +13,6 @@ namespace gpo {
 /// normals on the unit sphere by density (DBSCAN, Ester et al. 1996) and takes the normal where the
 /// density peaks; translations by linear least squares given it. The window's rotations tell true
 /// readings from false ones and are delivered as they are. Nothing is optimized.
-Initialization initialize_dbscan(const Window& window, std::stop_token stop);
+Initialization initialize_dbscan(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

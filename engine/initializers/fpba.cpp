@@ -10,11 +10,12 @@
 
 namespace gpo {
 
-Initialization initialize_fpba(const Window& window, std::stop_token stop) {
-  const Refinement refine = [](const Window& w, const Initialization& start, std::stop_token s) {
-    return refine_on_plane(w, start, PlaneNormal::held, std::move(s));
-  };
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, std::move(stop));
+Initialization initialize_fpba(const Window& window, const std::stop_token& stop) {
+  const Refinement refine =
+      [](const Window& w, const Initialization& start, const std::stop_token& s) {
+        return refine_on_plane(w, start, PlaneNormal::held, std::move(s));
+      };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
 }
 
 }  // namespace gpo

@@ -10,6 +10,6 @@
 namespace gpo {
 
 /// Plane bundle adjustment with the normal held as `initialize_dbscan` found it (the paper's FPBA).
-Initialization initialize_fpba(const Window& window, std::stop_token stop);
+Initialization initialize_fpba(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

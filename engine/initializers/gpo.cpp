@@ -72,7 +72,7 @@ struct Unknowns {
   std::vector<Vector3d> tau;                              ///< and all translations at zero
 };
 
-SolverReport solve(const Window& window, Unknowns& unknowns, std::stop_token stop) {
+SolverReport solve(const Window& window, Unknowns& unknowns, const std::stop_token& stop) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -84,7 +84,7 @@ SolverReport solve(const Window& window, Unknowns& unknowns, std::stop_token sto
         new FrameCost(window, i, rays_1), nullptr, unknowns.q.coeffs().data(), tau);
     ordering->AddElementToGroup(tau, 0);  // eliminated first: the Schur complement is 2x2
   }
-  return solve_by_schur(problem, std::move(ordering), {}, std::move(stop));
+  return solve_by_schur(problem, std::move(ordering), {}, stop);
 }
 
 /// Sign and gauge: (n, tau) and (-n, -tau) give the same pictures; points lie in front, d = 1.
@@ -108,11 +108,11 @@ Initialization deliver(const Window& window, const Unknowns& unknowns) {
 
 }  // namespace
 
-Initialization initialize_gpo(const Window& window, std::stop_token stop) {
+Initialization initialize_gpo(const Window& window, const std::stop_token& stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Unknowns unknowns;
   unknowns.tau.assign(window.frame_count(), Vector3d::Zero());
-  const SolverReport solver = solve(window, unknowns, std::move(stop));
+  const SolverReport solver = solve(window, unknowns, stop);
   if (solver.termination != "convergence") {
     return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
   }

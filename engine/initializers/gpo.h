@@ -12,6 +12,6 @@ namespace gpo {
 /// Global plane optimization (Du et al. 2020): minimizes over the plane's normal and the scaled
 /// translations of all frames the summed squared transfer error of the inliers, the window's
 /// rotations held fixed; 3m - 1 unknowns. No homography is decomposed, no point triangulated.
-Initialization initialize_gpo(const Window& window, std::stop_token stop);
+Initialization initialize_gpo(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

@@ -23,7 +23,7 @@ struct Method {
   std::uint32_t rgb;  ///< 0xRRGGBB, Okabe-Ito
   MethodFamily family;
   bool needs_plane;  ///< takes every track that it is given to lie on the plane
-  Initialization (*initialize)(const Window& window, std::stop_token stop);
+  Initialization (*initialize)(const Window& window, const std::stop_token& stop);
 };
 
 std::span<const Method> methods();

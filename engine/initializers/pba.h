@@ -15,9 +15,9 @@ namespace gpo {
 Initialization refine_on_plane(const Window& window,
                                const Initialization& start,
                                PlaneNormal normal,
-                               std::stop_token stop);
+                               const std::stop_token& stop);
 
 /// The adjustment with a free normal, started from `initialize_dbscan` (the paper's PBA).
-Initialization initialize_pba(const Window& window, std::stop_token stop);
+Initialization initialize_pba(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

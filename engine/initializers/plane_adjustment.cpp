@@ -73,7 +73,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
                                         const PlaneBundle& start,
                                         std::span<const Observation> observations,
                                         PlaneNormal normal,
-                                        std::stop_token stop) {
+                                        const std::stop_token& stop) {
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedPlaneBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
@@ -93,8 +93,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
                              q_normal.coeffs().data());
     ordering->AddElementToGroup(pixel_1, 0);
   }
-  result.solver =
-      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, std::move(stop));
+  result.solver = solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, stop);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
   if (normal == PlaneNormal::free) result.bundle.normal = direction(q_normal).normalized();
   return result;

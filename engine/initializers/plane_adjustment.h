@@ -31,6 +31,6 @@ AdjustedPlaneBundle adjust_plane_bundle(const Eigen::Matrix3d& K,
                                         const PlaneBundle& start,
                                         std::span<const Observation> observations,
                                         PlaneNormal normal,
-                                        std::stop_token stop);
+                                        const std::stop_token& stop);
 
 }  // namespace gpo

@@ -254,8 +254,7 @@ Initialization deliver(const Window& window, const Reconstruction& scene) {
 
 }  // namespace
 
-// The table's signature. NOLINTNEXTLINE(performance-unnecessary-value-param)
-Initialization initialize_pnp(const Window& window, std::stop_token stop) {
+Initialization initialize_pnp(const Window& window, const std::stop_token& stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Pair pair = find_pair(window);
   const auto begin = std::chrono::steady_clock::now();

@@ -10,8 +10,8 @@
 
 namespace gpo {
 
-Initialization initialize_pnp_ba(const Window& window, std::stop_token stop) {
-  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, std::move(stop));
+Initialization initialize_pnp_ba(const Window& window, const std::stop_token& stop) {
+  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, stop);
 }
 
 }  // namespace gpo

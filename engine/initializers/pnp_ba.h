@@ -11,6 +11,6 @@ namespace gpo {
 
 /// Bundle adjustment started from `initialize_pnp` (the paper's "BA with PnP", the vision part of
 /// VINS' start).
-Initialization initialize_pnp_ba(const Window& window, std::stop_token stop);
+Initialization initialize_pnp_ba(const Window& window, const std::stop_token& stop);
 
 }  // namespace gpo

@@ -13,11 +13,11 @@ namespace gpo {
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             std::stop_token stop) {
+                             const std::stop_token& stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const Initialization started = start.initialize(window, stop);
   Initialization result = started.ok
-                              ? refine(window, started, std::move(stop))
+                              ? refine(window, started, stop)
                               : failed(fmt::format("start by {}: {}", start.title, started.reason));
   result.candidates = started.candidates;
   return result;

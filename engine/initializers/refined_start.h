@@ -13,18 +13,18 @@ namespace gpo {
 /// The method whose result another one improves.
 struct StartMethod {
   std::string title;  ///< for people
-  Initialization (*initialize)(const Window& window, std::stop_token stop);
+  Initialization (*initialize)(const Window& window, const std::stop_token& stop);
 };
 
 /// Improves `start`, which is `ok`.
 using Refinement = Initialization (*)(const Window& window,
                                       const Initialization& start,
-                                      std::stop_token stop);
+                                      const std::stop_token& stop);
 
 /// The start refined; where there is none, why, and which start it was.
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             std::stop_token stop);
+                             const std::stop_token& stop);
 
 }  // namespace gpo

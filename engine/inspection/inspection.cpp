@@ -3,11 +3,9 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/error.h"
-#include "engine/frontend/gyro_calibration.h"
-#include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/tracker.h"
 #include "engine/initializers/methods.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/inspection/window_rotations.h"
 #include "engine/recording/board_truth.h"
 
 #include <chrono>
@@ -133,50 +131,6 @@ void check_window(const Recording& recording, const Settings& settings) {
   }
 }
 
-RotationSource choose_source(const Recording& recording, RotationSource asked) {
-  if (asked == RotationSource::automatic) {
-    return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
-  }
-  if (needs_gyroscope(asked) && !recording.gyroscope) {
-    throw InputError(
-        fmt::format("--rotations {}: {} has no gyroscope", to_string(asked), recording.name));
-  }
-  if (asked == RotationSource::truth && !recording.truth && !recording.board) {
-    throw InputError(fmt::format("--rotations truth: {} has no ground truth", recording.name));
-  }
-  return asked;
-}
-
-std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start) {
-  std::vector<Eigen::Matrix3d> R_wc;
-  for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
-    const auto& reference = truth->cameras.front();
-    if (!reference || !truth->cameras[i]) {
-      throw InputError(fmt::format("--rotations truth: frame {} has no ground truth ({})",
-                                   start + static_cast<int>(reference ? i : 0),
-                                   truth->source));
-    }
-    R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
-  }
-  if (R_wc.empty()) throw InputError("--rotations truth: the window has no ground truth");
-  return R_wc;
-}
-
-Rotations compute_rotations(const Recording& recording,
-                            const Window& window,
-                            const WindowTruth* truth,
-                            RotationSource source,
-                            const std::stop_token& stop) {
-  const auto& gyroscope = recording.gyroscope;
-  if (source == RotationSource::gyro) {
-    return {gyro_rotations(*gyroscope, window.timestamps_ns), "", gyroscope->bias_rad_s, 0};
-  }
-  if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
-  if (auto reason = reason_not_to_try(window)) return {{}, *reason};
-  return source == RotationSource::averaging ? averaged_rotations(window, stop)
-                                             : calibrated_gyro_rotations(*gyroscope, window, stop);
-}
-
 /// The plane z = 0 of a board.
 const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};
 
@@ -288,7 +242,7 @@ bool Inspector::Stages::update_window(const Settings& settings,
   });
   return rotations.update({span, ransac, source}, [&]() -> std::optional<Rotations> {
     Rotations computed =
-        compute_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
+        window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
     return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
   });
 }
@@ -333,7 +287,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  inspection.rotations_used = choose_source(*stages.recording, settings.rotations);
+  inspection.rotations_used = rotation_source_used(*stages.recording, settings.rotations);
   const bool prepared = stages.update_tracks(settings, stop, progress) &&
                         stages.update_truth(settings, stop, progress) &&
                         stages.update_window(settings, inspection.rotations_used, stop);

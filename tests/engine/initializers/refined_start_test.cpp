@@ -12,15 +12,13 @@ namespace {
 using test::Motion;
 using test::simulate;
 
-// Methods take their stop token by value.
-// NOLINTBEGIN(performance-unnecessary-value-param)
-Initialization no_start(const Window& /*unused*/, std::stop_token /*unused*/) {
+Initialization no_start(const Window& /*unused*/, const std::stop_token& /*unused*/) {
   Initialization result = failed("the moon is full");
   result.candidates.resize(3);
   return result;
 }
 
-Initialization some_start(const Window& /*unused*/, std::stop_token /*unused*/) {
+Initialization some_start(const Window& /*unused*/, const std::stop_token& /*unused*/) {
   Initialization result;
   result.ok = true;
   result.candidates.resize(2);
@@ -29,14 +27,12 @@ Initialization some_start(const Window& /*unused*/, std::stop_token /*unused*/) 
 
 Initialization refine(const Window& /*unused*/,
                       const Initialization& start,
-                      std::stop_token /*unused*/) {
+                      const std::stop_token& /*unused*/) {
   Initialization result;
   result.ok = start.ok;
   result.rms_px = 0.5;
   return result;
 }
-
-// NOLINTEND(performance-unnecessary-value-param)
 
 TEST(RefinedStart, IsTheRefinementWithTheCandidatesOfTheStart) {
   const Initialization result =

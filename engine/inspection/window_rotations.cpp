@@ -1,0 +1,61 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/window_rotations.h"
+
+#include "engine/error.h"
+#include "engine/frontend/gyro_calibration.h"
+#include "engine/frontend/homography_rotations.h"
+#include "engine/initializers/window_checks.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start) {
+  std::vector<Eigen::Matrix3d> R_wc;
+  for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
+    const auto& reference = truth->cameras.front();
+    if (!reference || !truth->cameras[i]) {
+      throw InputError(fmt::format("--rotations truth: frame {} has no ground truth ({})",
+                                   start + static_cast<int>(reference ? i : 0),
+                                   truth->source));
+    }
+    R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
+  }
+  if (R_wc.empty()) throw InputError("--rotations truth: the window has no ground truth");
+  return R_wc;
+}
+
+}  // namespace
+
+RotationSource rotation_source_used(const Recording& recording, RotationSource asked) {
+  if (asked == RotationSource::automatic) {
+    return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  }
+  if (needs_gyroscope(asked) && !recording.gyroscope) {
+    throw InputError(
+        fmt::format("--rotations {}: {} has no gyroscope", to_string(asked), recording.name));
+  }
+  if (asked == RotationSource::truth && !recording.truth && !recording.board) {
+    throw InputError(fmt::format("--rotations truth: {} has no ground truth", recording.name));
+  }
+  return asked;
+}
+
+Rotations window_rotations(const Recording& recording,
+                           const Window& window,
+                           const WindowTruth* truth,
+                           RotationSource source,
+                           const std::stop_token& stop) {
+  const auto& gyroscope = recording.gyroscope;
+  if (source == RotationSource::gyro) {
+    return {gyro_rotations(*gyroscope, window.timestamps_ns), "", gyroscope->bias_rad_s, 0};
+  }
+  if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
+  if (auto reason = reason_not_to_try(window)) return {{}, *reason};
+  return source == RotationSource::averaging ? averaged_rotations(window, stop)
+                                             : calibrated_gyro_rotations(*gyroscope, window, stop);
+}
+
+}  // namespace gpo
