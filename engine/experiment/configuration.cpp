@@ -89,6 +89,7 @@ std::vector<Variation> variations(const Configuration& configuration) {
     keys.emplace_back(to_string(configuration.rotations));
   }
   std::vector<Variation> found;
+  found.reserve(keys.size());
   for (const std::string& key : keys) {
     found.push_back(*std::ranges::find(kVariations, key, &Variation::key));
   }

@@ -69,7 +69,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop) {
   const std::vector<Matrix3d> R_wc_given = gyro_rotations(gyroscope, window.timestamps_ns);
-  const Rotations visual = averaged_rotations(window, R_wc_given, stop);
+  Rotations visual = averaged_rotations(window, R_wc_given, stop);
   if (visual.R_wc.empty()) return visual;
   Gyroscope calibrated = gyroscope;
   calibrated.bias_rad_s = fit_gyro_bias(gyroscope, window.timestamps_ns, visual);

@@ -31,9 +31,11 @@ constexpr double kClimbDeg = 15;
 /// Share of all frames' weight that must lie in a core point's neighborhood: a handful of agreeing
 /// wide pairs, where the twins of a camera that turns its path scatter.
 constexpr double kLeastShare = 0.1;
-/// A second peak of this share of the density, beyond where the climb begins, makes the choice a
-/// guess.
+/// A second peak of this share of the density, beyond where the climb begins, is as likely.
 constexpr double kAmbiguousShare = 0.8;
+/// Of two likely peaks the one is taken whose readings' rotations are so much nearer to the given
+/// ones; else the choice would be a guess.
+constexpr double kTellingFactor = 1.25;
 
 struct Candidates {
   std::vector<HomographyCandidate> all;
@@ -162,16 +164,41 @@ Initialization failed_with(std::string reason, Candidates& candidates) {
   return result;
 }
 
-std::optional<std::string> reason_to_doubt(const Candidates& c, const Peak& peak) {
-  const auto other =
-      highest_member(c, [&](const Vector3d& n) { return angle_deg(n, peak.normal) > kClimbDeg; });
-  if (!other || other->density < kAmbiguousShare * peak.density) return std::nullopt;
-  return fmt::format(
-      "two planes, {:.0f} deg apart, gather the candidate normals alike (density {:.2f} and "
-      "{:.2f})",
-      angle_deg(other->normal, peak.normal),
-      peak.density,
-      other->density);
+/// Of the readings that gather at a normal: how far their rotations are from the given ones, the
+/// weighted mean [deg].
+double rotation_error_deg(const Candidates& c, const Vector3d& normal) {
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t k = 0; k < c.possible.size(); ++k) {
+    if (angle_deg(c.on_sphere[k].direction, normal) > kClimbDeg) continue;
+    sum += c.on_sphere[k].weight * c.all[c.possible[k]].score;
+    weights += c.on_sphere[k].weight;
+  }
+  return sum / weights;
+}
+
+/// The densest peak, or of two alike the one whose rotations are nearer; or why it is a guess.
+struct Choice {
+  Peak peak;
+  std::string doubt;
+};
+
+Choice choose_peak(const Candidates& c, const Peak& densest) {
+  const auto other = highest_member(
+      c, [&](const Vector3d& n) { return angle_deg(n, densest.normal) > kClimbDeg; });
+  if (!other || other->density < kAmbiguousShare * densest.density) return {densest, ""};
+  const double densest_deg = rotation_error_deg(c, densest.normal);
+  const double other_deg = rotation_error_deg(c, other->normal);
+  if (other_deg > kTellingFactor * densest_deg) return {densest, ""};
+  if (densest_deg > kTellingFactor * other_deg) return {*other, ""};
+  return {densest,
+          fmt::format("two planes, {:.0f} deg apart, gather the candidate normals alike (density "
+                      "{:.2f} and {:.2f}, rotations {:.1f} and {:.1f} deg from the given ones)",
+                      angle_deg(other->normal, densest.normal),
+                      densest.density,
+                      other->density,
+                      densest_deg,
+                      other_deg)};
 }
 
 /// Says of each candidate away from the peak how far it is.
@@ -198,10 +225,10 @@ Initialization initialize_dbscan(const Window& window, const std::stop_token& st
                                    kRadiusDeg),
                        candidates);
   }
-  const auto doubt = reason_to_doubt(candidates, *start);
-  const Vector3d normal = climb(candidates.on_sphere, start->normal);
+  const auto [peak, doubt] = choose_peak(candidates, *start);
+  const Vector3d normal = climb(candidates.on_sphere, peak.normal);
   reject_far_from(normal, candidates);
-  if (doubt) return failed_with(*doubt, candidates);
+  if (!doubt.empty()) return failed_with(doubt, candidates);
   Initialization result;
   result.plane = {normal, 1};
   result.cameras.push_back({});

@@ -6,14 +6,12 @@
 #include "engine/initializers/pba.h"
 #include "engine/initializers/refined_start.h"
 
-#include <utility>
-
 namespace gpo {
 
 Initialization initialize_fpba(const Window& window, const std::stop_token& stop) {
   const Refinement refine =
       [](const Window& w, const Initialization& start, const std::stop_token& s) {
-        return refine_on_plane(w, start, PlaneNormal::held, std::move(s));
+        return refine_on_plane(w, start, PlaneNormal::held, s);
       };
   return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
 }

@@ -7,7 +7,6 @@
 #include "engine/initializers/window_checks.h"
 
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,7 +65,7 @@ Initialization refine_on_plane(const Window& window,
 Initialization initialize_pba(const Window& window, const std::stop_token& stop) {
   const Refinement refine =
       [](const Window& w, const Initialization& start, const std::stop_token& s) {
-        return refine_on_plane(w, start, PlaneNormal::free, std::move(s));
+        return refine_on_plane(w, start, PlaneNormal::free, s);
       };
   return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
 }

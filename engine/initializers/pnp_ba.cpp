@@ -6,8 +6,6 @@
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/refined_start.h"
 
-#include <utility>
-
 namespace gpo {
 
 Initialization initialize_pnp_ba(const Window& window, const std::stop_token& stop) {

@@ -4,8 +4,6 @@
 
 #include "engine/initializers/window_checks.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 namespace gpo {
