@@ -219,7 +219,9 @@ void draw_compare_view(ImDrawList& list,
   draw_top(list, rect, *inspections.front(), frame);
   const Grid cells = grid(inspections);
   const Eigen::AlignedBox2d cubes = cubes_box(inspections, frame);
-  ImageViewOptions options{.tracks = false, .tail_frames = 0, .legend = false};
+  // Where there is no picture the tracks say what the cube stands on.
+  const bool no_pictures = !inspections.front()->recording->pictures;
+  ImageViewOptions options{.tracks = no_pictures, .tail_frames = 0, .legend = false};
   for (std::size_t i = 0; i < inspections.size(); ++i) {
     const Inspection& inspection = *inspections[i];
     const Column column = column_at(rect, cells, static_cast<int>(i), overlay_scale());

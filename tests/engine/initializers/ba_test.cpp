@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/ba.h"
 
+#include "engine/geometry/median.h"
 #include "tests/engine/initializers/perturbed_truth.h"
 #include "tests/engine/simulated_window.h"
 
@@ -38,11 +39,6 @@ void slip_tracks(Simulation& truth) {
       window.inlier[i][j] = false;
     }
   }
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 class BundleAdjustmentOnMotion : public ::testing::TestWithParam<Motion> {};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/dbscan.h"
 
+#include "tests/engine/initializers/median_error.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -19,15 +20,7 @@ using test::with_fitted_homographies;
 using ::testing::HasSubstr;
 
 double median_error_deg(Motion motion) {
-  std::vector<double> errors;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
-    const Initialization result = initialize_dbscan(truth.window, {});
-    EXPECT_TRUE(result.ok) << result.reason;
-    if (result.ok) errors.push_back(angle_deg(result.plane.normal, truth.plane.normal));
-  }
-  std::ranges::sort(errors);
-  return errors[errors.size() / 2];
+  return test::median_normal_error_deg(initialize_dbscan, motion, 30);
 }
 
 TEST(Dbscan, NormalIsGoodToATenthOfADegree) {

@@ -3,6 +3,7 @@
 #include "engine/initializers/gpo.h"
 
 #include "engine/evaluation/bound.h"
+#include "engine/geometry/median.h"
 #include "engine/initializers/window_checks.h"
 #include "tests/engine/simulated_window.h"
 
@@ -22,11 +23,6 @@ using ::testing::HasSubstr;
 
 double normal_error_deg(const Initialization& result, const Simulation& truth) {
   return angle_deg(result.plane.normal, truth.plane.normal);
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 class GpoOnMotion : public ::testing::TestWithParam<Motion> {};
