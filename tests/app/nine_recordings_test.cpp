@@ -32,7 +32,7 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotationWithAReaso
   const Experiment experiment = read_experiment(folder);
   EXPECT_EQ(experiment.recordings.size(), 9U);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
-  EXPECT_EQ(rows.size(), 9 * 2 * experiment.configurations.size());
+  EXPECT_EQ(rows.size(), std::size_t{9} * 2 * experiment.configurations.size());
   EXPECT_GE(experiment.configurations.size(), methods().size() + 4);
   for (const Row& row : rows) {
     SCOPED_TRACE(row.recording + " " + row.configuration);
