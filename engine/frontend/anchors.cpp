@@ -117,7 +117,7 @@ std::optional<RobustHomography> plane_homography(const Anchors& anchors,
   std::vector<int> seen;
   Matrix2Xd now(2, raw_px.cols());
   for (int j = 0; j < raw_px.cols(); ++j) {
-    if (!raw_px.col(j).allFinite()) continue;
+    if (!raw_px.col(j).allFinite() || !anchors.undistorted_px.col(j).allFinite()) continue;
     now.col(j) = undistort(anchors.camera, raw_px.col(j));
     if (now.col(j).allFinite()) seen.push_back(j);
   }

@@ -19,7 +19,7 @@ struct AnchorOptions {
   int most_rounds = 4;             ///< of homography and search [-]
   double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
   double least_correlation = 0.7;  ///< zero-mean normalized, below it a track is lost [-]
-  RansacOptions ransac;            ///< tells the tracks on the plane
+  RansacOptions ransac = {};       ///< tells the tracks on the plane; with a seed of its own
 };
 
 /// What a track looks like in the reference frame: the whole pixels around its corner.
