@@ -29,6 +29,8 @@ Settings settings_of(const Configuration& configuration, const Settings& window)
   if (configuration.ransac) settings.ransac = configuration.ransac;
   if (configuration.rotations != RotationSource::automatic)
     settings.rotations = configuration.rotations;
+  if (configuration.tracking != Tracking::frame_to_frame)
+    settings.tracking = configuration.tracking;
   return settings;
 }
 

@@ -43,6 +43,10 @@ void add_settings(CLI::App& command, Settings& settings) {
           option_name(info),
           [&value](const std::string& key) { value = rotation_source(key); },
           help);
+    } else if constexpr (std::is_same_v<Value, Tracking>) {
+      help += fmt::format(": {}", fmt::join(tracking_keys(), ", "));
+      command.add_option_function<std::string>(
+          option_name(info), [&value](const std::string& key) { value = tracking_of(key); }, help);
     } else if constexpr (std::is_same_v<Value, std::string>) {
       std::string known;
       for (const Method& method : methods()) known += " " + method.key;
@@ -81,10 +85,11 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   command->add_option("--output", arguments.output, "PNG file to write")->required();
   command->add_option(
       "--frame", arguments.frame, "Frame of the recording to draw; default: the window's last");
-  command->add_option("--methods",
-                      arguments.methods,
-                      "Of the views compare and curves: methods with commas, each with settings "
-                      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS]; default: every method");
+  command->add_option(
+      "--methods",
+      arguments.methods,
+      "Of the views compare and curves: methods with commas, each with settings "
+      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]; default: every method");
   command->add_option("--lengths",
                       arguments.lengths,
                       "Of the view curves: lengths of the windows [frames], FROM:TO:STEP; default: "
@@ -103,11 +108,12 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
 
 void add_experiment(CLI::App& command, EvaluateArguments& arguments) {
   command
-      .add_option("--methods",
-                  arguments.methods,
-                  "Methods with commas, each with settings that differ from its defaults: "
-                  "METHOD[+ransac|+no-ransac][+ROTATIONS]; all: every method and the paper's "
-                  "ablations")
+      .add_option(
+          "--methods",
+          arguments.methods,
+          "Methods with commas, each with settings that differ from its defaults: "
+          "METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]; all: every method and the paper's "
+          "ablations")
       ->capture_default_str();
   command
       .add_option("--lengths", arguments.lengths, "Lengths of the windows [frames], FROM:TO:STEP")

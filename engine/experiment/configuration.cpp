@@ -29,6 +29,7 @@ constexpr std::array kVariations{
     Variation{"gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
     Variation{"averaging", "with averaged rotations", 0xAA7711},
     Variation{"truth", "with true rotations", 0x666666},
+    Variation{"anchored", "with anchored tracks", 0x44AA99},
 };
 
 /// The paper's; beside them each method as it is.
@@ -50,6 +51,10 @@ bool is_source(const std::string& key) {
   return std::ranges::any_of(rotation_source_keys(), [&](const char* k) { return k == key; });
 }
 
+bool is_tracking(const std::string& key) {
+  return std::ranges::any_of(tracking_keys(), [&](const char* k) { return k == key; });
+}
+
 std::string known_methods() {
   std::vector<std::string> keys;
   for (const Method& method : methods()) keys.push_back(method.key);
@@ -58,20 +63,24 @@ std::string known_methods() {
 
 void set(Configuration& configuration, const std::string& setting, const std::string& text) {
   const bool is_ransac = setting == "ransac" || setting == "no-ransac";
-  if (!is_ransac && !is_source(setting)) {
-    throw InputError(
-        fmt::format("--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}",
-                    text,
-                    setting,
-                    fmt::join(rotation_source_keys(), ", ")));
+  if (!is_ransac && !is_source(setting) && !is_tracking(setting)) {
+    throw InputError(fmt::format(
+        "--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}, {}",
+        text,
+        setting,
+        fmt::join(rotation_source_keys(), ", "),
+        fmt::join(tracking_keys(), ", ")));
   }
-  const bool twice = is_ransac ? configuration.ransac.has_value()
-                               : configuration.rotations != RotationSource::automatic;
+  const bool twice = is_ransac            ? configuration.ransac.has_value()
+                     : is_source(setting) ? configuration.rotations != RotationSource::automatic
+                                          : configuration.tracking != Tracking::frame_to_frame;
   if (twice) throw InputError(fmt::format("--methods: '{}' sets one thing twice", text));
   if (is_ransac) {
     configuration.ransac = setting == "ransac";
-  } else {
+  } else if (is_source(setting)) {
     configuration.rotations = rotation_source(setting);
+  } else {
+    configuration.tracking = tracking_of(setting);
   }
 }
 
@@ -87,6 +96,9 @@ std::vector<Variation> variations(const Configuration& configuration) {
   if (configuration.ransac) keys.emplace_back(*configuration.ransac ? "ransac" : "no-ransac");
   if (configuration.rotations != RotationSource::automatic) {
     keys.emplace_back(to_string(configuration.rotations));
+  }
+  if (configuration.tracking != Tracking::frame_to_frame) {
+    keys.emplace_back(to_string(configuration.tracking));
   }
   std::vector<Variation> found;
   found.reserve(keys.size());
@@ -163,6 +175,7 @@ Settings apply(const Configuration& configuration, Settings settings) {
   settings.method = configuration.method;
   settings.ransac = configuration.ransac;
   settings.rotations = configuration.rotations;
+  settings.tracking = configuration.tracking;
   return settings;
 }
 

@@ -12,12 +12,13 @@
 namespace gpo {
 
 /// A method, and the settings in which it differs from its own defaults: what an experiment
-/// compares. Written `METHOD[+ransac|+no-ransac][+ROTATIONS]`, e.g. `gpo`, `gpo+no-ransac`,
-/// `gpo+averaging`.
+/// compares. Written `METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]`, e.g. `gpo`,
+/// `gpo+no-ransac`, `gpo+averaging`.
 struct Configuration {
   std::string method;                         ///< key in `methods()`
   std::optional<bool> ransac = std::nullopt;  ///< nothing: as the method does by default
   RotationSource rotations = RotationSource::automatic;
+  Tracking tracking = Tracking::frame_to_frame;
 
   bool operator==(const Configuration&) const = default;
 };
@@ -37,7 +38,7 @@ std::string title_of(const Configuration& configuration);
 /// The method's color, or for an ablation one of its own; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
-/// The settings with method, RANSAC and rotations as configured.
+/// The settings with method, RANSAC, rotations and tracking as configured.
 Settings apply(const Configuration& configuration, Settings settings);
 
 }  // namespace gpo

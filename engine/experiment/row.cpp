@@ -19,7 +19,7 @@ struct IsOptional<std::optional<T>> : std::true_type {};
 
 ordered_json value_json(const auto& value) {
   using Value = std::decay_t<decltype(value)>;
-  if constexpr (std::is_same_v<Value, RotationSource>) {
+  if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
   } else if constexpr (IsOptional<Value>::value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
@@ -32,6 +32,8 @@ template <class Value>
 void read_value(const ordered_json& json, Value& value) {
   if constexpr (std::is_same_v<Value, RotationSource>) {
     value = rotation_source(json.get<std::string>());
+  } else if constexpr (std::is_same_v<Value, Tracking>) {
+    value = tracking_of(json.get<std::string>());
   } else if constexpr (IsOptional<Value>::value) {
     value.reset();
     if (!json.is_null()) value = json.get<typename Value::value_type>();
@@ -50,7 +52,7 @@ std::string cell(const std::string& text) {
 
 std::string value_cell(const auto& value) {
   using Value = std::decay_t<decltype(value)>;
-  if constexpr (std::is_same_v<Value, RotationSource>) {
+  if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
   } else if constexpr (IsOptional<Value>::value) {
     return value ? fmt::format("{}", *value) : "";

@@ -145,6 +145,7 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
 }
 
 std::optional<Tracks> track_window(const FrameCache& pictures,
+                                   const Camera& camera,
                                    int start,
                                    int frames,
                                    const TrackerOptions& options,
@@ -152,6 +153,8 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
                                    const FrameProgress& progress) {
   Tracks tracks;
   tracks.start = start;
+  const bool anchored = options.tracking == Tracking::anchored;
+  Anchors anchors;
   Pyramid before;
   for (int i = 0; i < frames; ++i) {
     if (stop.stop_requested()) return std::nullopt;
@@ -160,8 +163,11 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
     if (i == 0) {
       tracks.raw_px.push_back(detect_corners(gray, options.detector));
       for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
+      if (anchored) anchors = make_anchors(gray, tracks.raw_px[0], camera, options.anchor);
     } else {
-      tracks.raw_px.push_back(follow(before, now, tracks.raw_px.back(), options));
+      Eigen::Matrix2Xd places = follow(before, now, tracks.raw_px.back(), options);
+      if (anchored) places = hold(anchors, gray, places, options.anchor);
+      tracks.raw_px.push_back(std::move(places));
     }
     before = std::move(now);
     if (progress) progress(i + 1, frames);

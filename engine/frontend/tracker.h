@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/anchors.h"
+#include "engine/frontend/tracking.h"
 #include "engine/frontend/window.h"
 #include "engine/recording/recording.h"
 
@@ -30,19 +32,23 @@ struct DetectorOptions {
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options = {});
 
 struct TrackerOptions {
-  DetectorOptions detector;
+  DetectorOptions detector = {};
   int window_px = 21;                ///< side of the patch that is compared [px]
   int pyramid_levels = 4;            ///< beside the full picture [-]
   double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
+  Tracking tracking = Tracking::frame_to_frame;
+  AnchorOptions anchor = {};  ///< of anchored tracking
 };
 
 /// Told of what is done; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
 
-/// Corners of the reference frame followed from frame to frame by pyramidal KLT, forward and back.
-/// A track is lost for good in the first frame in which it fails the check or leaves the picture.
+/// Corners of the reference frame followed from frame to frame by pyramidal KLT, forward and back;
+/// in anchored tracking, those on the plane are then held to their looks in the reference frame. A
+/// track is lost for good in the first frame in which it fails a check or leaves the picture.
 /// Nothing where stopped. Throws InputError for a picture that cannot be decoded.
 std::optional<Tracks> track_window(const FrameCache& pictures,
+                                   const Camera& camera,
                                    int start,
                                    int frames,
                                    const TrackerOptions& options = {},

@@ -8,6 +8,7 @@
 #include "engine/inspection/window_rotations.h"
 #include "engine/recording/board_truth.h"
 
+#include <array>
 #include <chrono>
 #include <tuple>
 
@@ -46,6 +47,7 @@ struct Kept {
 };
 
 using Span = std::tuple<int, int>;  // start, frames
+using TrackedSpan = std::tuple<Span, Tracking>;
 
 /// What is kept where it begins at the same frame and is long enough, else what is wanted.
 Span covering(const std::optional<Span>& kept, const Span& wanted) {
@@ -70,6 +72,7 @@ Tracked chosen_tracks(const Recording& recording, int start, int frames) {
 std::optional<Tracked> followed_tracks(const Recording& recording,
                                        int start,
                                        int frames,
+                                       Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
   if (!recording.pictures) {
@@ -82,7 +85,9 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
     tracked.milliseconds.push_back(milliseconds_since(begin));
     if (progress) progress("tracking", done, of);
   };
-  auto tracks = track_window(*recording.pictures, start, frames, {}, stop, told);
+  const TrackerOptions options{.tracking = tracking};
+  auto tracks =
+      track_window(*recording.pictures, recording.camera, start, frames, options, stop, told);
   if (!tracks) return std::nullopt;
   tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
   return tracked;
@@ -153,13 +158,13 @@ bool uses_ransac(const Settings& settings) {
 
 struct Inspector::Stages {
   std::shared_ptr<const Recording> recording;
-  Kept<Span, Tracked> longest_tracks;  // of the windows from one start
+  std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
   Kept<Span, std::shared_ptr<const WindowTruth>> longest_truth;
-  Kept<Span, std::shared_ptr<const Tracks>> tracks;
+  Kept<TrackedSpan, std::shared_ptr<const Tracks>> tracks;
   Kept<Span, std::shared_ptr<const WindowTruth>> truth;
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
-  Kept<std::tuple<Span, RansacOptions>, std::shared_ptr<const Window>> outliers;
-  Kept<std::tuple<Span, RansacOptions, RotationSource>, Rotations> rotations;
+  Kept<std::tuple<TrackedSpan, RansacOptions>, std::shared_ptr<const Window>> outliers;
+  Kept<std::tuple<TrackedSpan, RansacOptions, RotationSource>, Rotations> rotations;
 
   bool update_tracks(const Settings& settings,
                      const std::stop_token& stop,
@@ -181,15 +186,17 @@ bool Inspector::Stages::update_tracks(const Settings& settings,
                                       const std::stop_token& stop,
                                       const Progress& progress) {
   const Span span(settings.start, settings.frames);
-  const Span longest = covering(longest_tracks.key, span);
+  Kept<Span, Tracked>& kept = longest_tracks[static_cast<std::size_t>(settings.tracking)];
+  const Span longest = covering(kept.key, span);
   const int frames = std::get<1>(longest);
-  const bool done = longest_tracks.update(longest, [&]() {
+  const bool done = kept.update(longest, [&]() {
     return recording->tracks.empty()
-               ? followed_tracks(*recording, settings.start, frames, stop, progress)
+               ? followed_tracks(
+                     *recording, settings.start, frames, settings.tracking, stop, progress)
                : std::optional(chosen_tracks(*recording, settings.start, frames));
   });
-  return done && tracks.update(span, [&]() {
-    return std::optional(beginning(longest_tracks.value.tracks, settings.frames));
+  return done && tracks.update({span, settings.tracking}, [&]() {
+    return std::optional(beginning(kept.value.tracks, settings.frames));
   });
 }
 
@@ -234,7 +241,7 @@ bool Inspector::Stages::update_truth(const Settings& settings,
 bool Inspector::Stages::update_window(const Settings& settings,
                                       RotationSource source,
                                       const std::stop_token& stop) {
-  const Span span(settings.start, settings.frames);
+  const TrackedSpan span(Span(settings.start, settings.frames), settings.tracking);
   const RansacOptions ransac = ransac_options(settings);
   outliers.update({span, ransac}, [&]() {
     return std::optional(std::make_shared<const Window>(
@@ -259,7 +266,8 @@ void Inspector::Stages::initialize(const Settings& settings,
                                       ? failed(rotations.value.reason)
                                       : find_method(settings.method).initialize(window, stop);
   Timing& t = inspection.timing;
-  t.track = longest_tracks.value.milliseconds[settings.frames - 1];
+  t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
+                .value.milliseconds[settings.frames - 1];
   t.ransac = outliers.milliseconds;
   t.rotations = rotations.milliseconds;
   t.initialize = milliseconds_since(begin);

@@ -32,6 +32,8 @@ ordered_json settings_json(const Inspection& inspection) {
     if (key == "start" || key == "frames" || key == "method") return;  // told elsewhere
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, RotationSource>) {
       json[key] = to_string(inspection.rotations_used);
+    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Tracking>) {
+      json[key] = to_string(value);
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<bool>>) {
       json[key] = uses_ransac(inspection.settings);
     } else {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/frontend/rotations.h"
+#include "engine/frontend/tracking.h"
 
 #include <cstdint>
 #include <optional>
@@ -16,6 +17,7 @@ struct Settings {
   int frames = 30;             ///< length of the window
   std::string method = "gpo";  ///< key in `methods()`
   RotationSource rotations = RotationSource::automatic;  ///< gyroscope, else averaging
+  Tracking tracking = Tracking::frame_to_frame;          ///< of the built-in front end
   /// Whether tracks off the plane are rejected by homography RANSAC; nothing: as the method's
   /// authors do (`uses_ransac`).
   std::optional<bool> ransac = std::nullopt;
@@ -51,6 +53,8 @@ void visit_settings(S& settings, Visitor&& visit) {
   visit(SettingInfo{"method", "Method", "", "Initializer"}, settings.method);
   visit(SettingInfo{"rotations", "Rotations", "", "Where the camera rotations come from"},
         settings.rotations);
+  visit(SettingInfo{"tracking", "Tracking", "", "How the built-in front end follows corners"},
+        settings.tracking);
   visit(
       SettingInfo{
           "ransac",

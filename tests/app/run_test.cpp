@@ -38,6 +38,7 @@ TEST(Run, DeskGivesWhatTheContractPromises) {
   EXPECT_EQ(j["window"]["start"], 0);
   EXPECT_EQ(j["window"]["frames"], 30);
   EXPECT_EQ(j["settings"]["rotations"], "gyro");
+  EXPECT_EQ(j["settings"]["tracking"], "frame-to-frame");
   EXPECT_EQ(j["settings"]["ransac"], true);
   EXPECT_EQ(j["settings"]["ransac_threshold_px"], 2.0);
   EXPECT_EQ(j["settings"]["seed"], 1);
@@ -191,6 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"--start -1", "--start"},
         BadInput{"--start abc", "--start"},
         BadInput{"--rotations gyr", "unknown source 'gyr'"},
+        BadInput{"--tracking anchor", "unknown tracking 'anchor'"},
         BadInput{"--bogus", "--bogus"},
         BadInput{"--tracks no-such-file.csv", "no-such-file.csv"}));
 

@@ -140,6 +140,21 @@ struct SettingRows {
     }
     ImGui::EndCombo();
   }
+
+  void operator()(const SettingInfo& info, Tracking& value) {
+    label(info.title, info.help);
+    if (ImGui::BeginCombo((std::string("##") + info.key).c_str(), to_string(value))) {
+      for (std::size_t i = 0; i < tracking_keys().size(); ++i) {
+        const auto tracking = static_cast<Tracking>(i);
+        if (!ImGui::Selectable(to_string(tracking), tracking == value)) continue;
+        value = tracking;
+        changed = true;
+      }
+      ImGui::EndCombo();
+    } else {
+      tooltip(info.help);
+    }
+  }
 };
 
 void cube_row(const SettingRows& rows, const PanelInput& input, Commands& commands) {

@@ -15,7 +15,7 @@ constexpr float kPictureShare =
 constexpr float kMenuHeight = 26;
 constexpr float kStatusHeight = 26;
 constexpr float kTimelineHeight = 76;
-constexpr float kSettingsHeight = 240;
+constexpr float kSettingsHeight = 266;
 constexpr float kColumnWidth = 292;
 constexpr float kLeastResultsHeight = 206;
 

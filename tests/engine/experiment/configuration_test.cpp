@@ -23,11 +23,17 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
   EXPECT_EQ(both.rotations, RotationSource::averaging);
   EXPECT_EQ(key_of(both), "gpo+no-ransac+averaging");
   EXPECT_EQ(parse_configuration(key_of(both)), both);
+  const Configuration anchored = parse_configuration("ba+anchored+truth");
+  EXPECT_EQ(anchored.tracking, Tracking::anchored);
+  EXPECT_EQ(key_of(anchored), "ba+truth+anchored");
+  EXPECT_EQ(title_of(anchored), "BA with true rotations with anchored tracks");
+  EXPECT_EQ(apply(anchored, {}).tracking, Tracking::anchored);
 }
 
 TEST(Configuration, DropsWhatRepeatsADefault) {
   EXPECT_EQ(key_of(parse_configuration("gpo+ransac")), "gpo");
   EXPECT_EQ(key_of(parse_configuration("gpo+automatic")), "gpo");
+  EXPECT_EQ(key_of(parse_configuration("gpo+frame-to-frame")), "gpo");
 }
 
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
@@ -82,6 +88,7 @@ TEST(Configuration, NamesTheOptionAndWhatIsKnown) {
   EXPECT_THAT(error("gpo+gyr"),
               HasSubstr("'gpo+gyr': unknown setting 'gyr', expected one of ransac"));
   EXPECT_THAT(error("gpo+truth+gyro"), HasSubstr("sets one thing twice"));
+  EXPECT_THAT(error("gpo+anchored+anchored"), HasSubstr("sets one thing twice"));
 }
 
 }  // namespace

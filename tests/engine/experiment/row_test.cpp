@@ -47,6 +47,7 @@ TEST(Row, ComesBackFromJsonToTheBit) {
   Row row = made_row("gpo+no-ransac", 3, 7, 0.1 + 0.2);
   row.settings.rotations = RotationSource::averaging;
   row.settings.ransac = false;
+  row.settings.tracking = Tracking::anchored;
   row.iterations = 9;
   const auto text = to_json(row).dump();
   const Row back = row_from_json(nlohmann::ordered_json::parse(text));

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
+const Camera kCamera{kWidth, kHeight, 300, 300, 160, 120, Distortion::none, {}};
 
 /// A picture in closed form, so that a shift is exact: smooth blobs on a jittered grid.
 cv::Mat blobs(double shift_x, double shift_y) {
@@ -64,7 +65,7 @@ TEST(Detector, FindsNothingInAnEmptyPicture) {
 
 TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
   const FrameCache pictures = moving_picture(10);
-  const auto tracks = track_window(pictures, 0, 10);
+  const auto tracks = track_window(pictures, kCamera, 0, 10);
   ASSERT_TRUE(tracks);
   EXPECT_EQ(tracks->frame_count(), 10);
   double squares = 0;
@@ -81,7 +82,7 @@ TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
 
 TEST(Tracker, DropsWhatLeavesThePictureForGood) {
   const FrameCache pictures = moving_picture(30);
-  const auto tracks = track_window(pictures, 0, 30);
+  const auto tracks = track_window(pictures, kCamera, 0, 30);
   for (int j = 0; j < tracks->track_count(); ++j) {
     bool lost = false;
     for (int i = 0; i < 30; ++i) {
@@ -100,13 +101,13 @@ TEST(Tracker, StopsWhenAsked) {
   const FrameCache pictures = moving_picture(3);
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(pictures, 0, 3, {}, source.get_token()));
+  EXPECT_FALSE(track_window(pictures, kCamera, 0, 3, {}, source.get_token()));
 }
 
 TEST(Tracker, TellsItsProgress) {
   const FrameCache pictures = moving_picture(3);
   std::vector<int> told;
-  track_window(pictures, 0, 3, {}, {}, [&](int done, int of) {
+  track_window(pictures, kCamera, 0, 3, {}, {}, [&](int done, int of) {
     EXPECT_EQ(of, 3);
     told.push_back(done);
   });
@@ -130,7 +131,7 @@ TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
 
 TEST(MakeWindow, UndistortsAndMarksInliers) {
   const FrameCache pictures = moving_picture(6);
-  const auto tracks = track_window(pictures, 0, 6);
+  const auto tracks = track_window(pictures, kCamera, 0, 6);
   const Camera camera{
       kWidth, kHeight, 300, 300, 160, 120, Distortion::radial_tangential, {0.1, 0, 0, 0}};
   const std::vector<std::int64_t> times{0, 1, 2, 3, 4, 5};

@@ -32,6 +32,26 @@ TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
   EXPECT_EQ(moved->window->start, 3);
 }
 
+TEST(Inspector, KeepsTheTracksOfBothTrackings) {
+  Inspector inspector(desk());
+  Settings settings;
+  settings.frames = 12;
+  const auto drifting = inspector.inspect(settings);
+  settings.tracking = Tracking::anchored;
+  const auto held = inspector.inspect(settings);
+  EXPECT_NE(drifting->tracks->raw_px[11], held->tracks->raw_px[11]);
+  EXPECT_LT(held->initialization->rms_px, drifting->initialization->rms_px);
+  EXPECT_EQ(to_json(*held)["settings"]["tracking"], "anchored");
+  int tracked = 0;
+  const auto count = [&](const std::string& stage, int, int) { tracked += stage == "tracking"; };
+  settings.tracking = Tracking::frame_to_frame;
+  const auto again = inspector.inspect(settings, {}, count);
+  settings.tracking = Tracking::anchored;
+  inspector.inspect(settings, {}, count);
+  EXPECT_EQ(tracked, 0);
+  EXPECT_EQ(again->initialization->rms_px, drifting->initialization->rms_px);
+}
+
 TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
   const auto recording = desk();
   Inspector used(recording);

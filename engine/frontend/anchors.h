@@ -1,0 +1,55 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/homography_ransac.h"
+#include "engine/geometry/camera.h"
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+struct AnchorOptions {
+  int half_patch_px = 10;          ///< half the side of a look, in the reference picture [px]
+  double blur_px = 0.8;            ///< standard deviation, of both pictures before comparing [px]
+  double settled_px = 0.01;        ///< rounds end where the median place moves less [px]
+  int most_rounds = 4;             ///< of homography and search [-]
+  double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
+  double least_correlation = 0.7;  ///< zero-mean normalized, below it a track is lost [-]
+  RansacOptions ransac = {};       ///< tells the tracks on the plane; with a seed of its own
+};
+
+/// What a track looks like in the reference frame: the whole pixels around its corner.
+struct Look {
+  Eigen::Matrix2Xd undistorted_px;  ///< where they are
+  Eigen::VectorXd gray;             ///< how bright, in gray levels, their mean taken off
+};
+
+/// The looks of a window's tracks in its reference frame, to which `hold` compares later frames.
+struct Anchors {
+  Camera camera;
+  Eigen::Matrix2Xd undistorted_px;  ///< 2 x tracks, the corners
+  std::vector<Look> looks;          ///< one a track
+};
+
+/// `gray` is the reference picture, CV_8UC1; `raw_px` 2 x tracks, its corners in raw pixels.
+Anchors make_anchors(const cv::Mat& gray,
+                     const Eigen::Matrix2Xd& raw_px,
+                     const Camera& camera,
+                     const AnchorOptions& options = {});
+
+/// Takes the drift from tracks on the plane. `followed_px` is 2 x tracks, raw pixels of the picture
+/// `gray` to which frame-to-frame tracking came, NaN: lost. A track that agrees with the homography
+/// from the reference frame is searched for with its own look, carried over by that homography and
+/// the lens, whatever gain and offset the exposure has; the homography is estimated anew from what
+/// was found until nothing moves. Such a track is lost where its look is not found. The others stay
+/// as they are.
+Eigen::Matrix2Xd hold(const Anchors& anchors,
+                      const cv::Mat& gray,
+                      const Eigen::Matrix2Xd& followed_px,
+                      const AnchorOptions& options = {});
+
+}  // namespace gpo
