@@ -5,12 +5,14 @@
 #include "engine/frontend/rotation_averaging.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/homography_decomposition.h"
+#include "engine/geometry/median.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -183,9 +185,7 @@ double disagreement_deg(std::span<const Pair> pairs,
     const Matrix3d R_ij = rotation_of(pair, normal).transpose();
     angles.push_back(degrees(so3_log(R_wc_given[pair.j].transpose() * R_ij).norm()));
   }
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::ranges::nth_element(angles, middle);
-  return *middle;
+  return median(std::move(angles));
 }
 
 /// An error of the normal enters the rotations in proportion to the parallax.

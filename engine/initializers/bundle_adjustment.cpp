@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/bundle_adjustment.h"
 
+#include "engine/geometry/median.h"
 #include "engine/initializers/point_view.h"
 #include "engine/initializers/pose_block.h"
 
@@ -51,13 +52,8 @@ class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
                                       point.head<2>(),
                                       point.z());
     if (!view.in_front) return false;
-    Eigen::Map<Vector2d> residual(residuals);
-    residual = view.pixel - observed_;
+    write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
     if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> J(jacobians[0]);
-      J << view.d_rotation, view.d_position;
-    }
     if (jacobians[1] != nullptr) {
       Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>> J(jacobians[1]);
       J << view.d_pixel_1, view.d_inverse_depth;
@@ -94,10 +90,7 @@ std::vector<Observation> without_outliers(const Matrix3d& K,
                                           std::span<const Observation> observations,
                                           double least_sigma_px) {
   const std::vector<double> errors = reprojection_errors_px(K, bundle, observations);
-  std::vector<double> sorted = errors;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  const double limit = kDropAtSigmas * std::max(least_sigma_px, *middle / kMedianLength);
+  const double limit = kDropAtSigmas * std::max(least_sigma_px, median(errors) / kMedianLength);
   std::vector<bool> agrees(observations.size());
   std::vector<PointTally> tally(bundle.points.cols());
   for (std::size_t k = 0; k < observations.size(); ++k) {

@@ -37,13 +37,8 @@ class PlaneObservationCost : public ceres::SizedCostFunction<2, 7, 2, 4> {
                                       pixel_1,
                                       depth.inverse_depth);
     if (!view.in_front) return false;
-    Eigen::Map<Vector2d> residual(residuals);
-    residual = view.pixel - observed_;
+    write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
     if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> J(jacobians[0]);
-      J << view.d_rotation, view.d_position;
-    }
     if (jacobians[1] != nullptr) {
       Eigen::Map<Eigen::Matrix<double, 2, 2, Eigen::RowMajor>> J(jacobians[1]);
       J = view.d_pixel_1 + view.d_inverse_depth * depth.d_pixel_1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/geometry/pose.h"
+#include "engine/initializers/point_view.h"
 
 #include <array>
 #include <optional>
@@ -19,6 +20,13 @@ using PoseBlock = std::array<double, 7>;
 
 std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras);
 Pose pose_of(const PoseBlock& block);
+
+/// The residual p - p_observed, and where `d_pose` is not null its derivative by the camera's
+/// block, 2 x 7, row by row.
+void write_residual(const PointView& view,
+                    const Eigen::Vector2d& observed,
+                    double* residual,
+                    double* d_pose);
 
 /// Adds the cameras as unknowns of group 1, the first one held; that of `scale_frame`, where given,
 /// keeps its distance from the world's origin.
