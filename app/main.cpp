@@ -23,6 +23,15 @@ std::string option_name(const SettingInfo& info) {
   return "--" + name;
 }
 
+/// `value` is one, or an optional one.
+template <Choice E>
+void add_choice(CLI::App& command, const std::string& name, const std::string& help, auto& value) {
+  command.add_option_function<std::string>(
+      name,
+      [&value](const std::string& key) { value = choice<E>(key); },
+      help + fmt::format(": {}", fmt::join(ChoiceKeys<E>::keys, ", ")));
+}
+
 /// One option a setting: `visit_settings` is the only place that declares them.
 void add_settings(CLI::App& command, Settings& settings) {
   visit_settings(settings, [&](const SettingInfo& info, auto& value) {
@@ -43,10 +52,12 @@ void add_settings(CLI::App& command, Settings& settings) {
           option_name(info),
           [&value](const std::string& key) { value = rotation_source(key); },
           help);
-    } else if constexpr (std::is_same_v<Value, Tracking>) {
-      help += fmt::format(": {}", fmt::join(tracking_keys(), ", "));
-      command.add_option_function<std::string>(
-          option_name(info), [&value](const std::string& key) { value = tracking_of(key); }, help);
+    } else if constexpr (Choice<Value>) {
+      add_choice<Value>(command, option_name(info), help, value);
+    } else if constexpr (std::is_same_v<Value, std::optional<Inliers>>) {
+      add_choice<Inliers>(command, option_name(info), help, value);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      command.add_flag(option_name(info), value, help);
     } else if constexpr (std::is_same_v<Value, std::string>) {
       std::string known;
       for (const Method& method : methods()) known += " " + method.key;

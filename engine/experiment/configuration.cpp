@@ -52,7 +52,7 @@ bool is_source(const std::string& key) {
 }
 
 bool is_tracking(const std::string& key) {
-  return std::ranges::any_of(tracking_keys(), [&](const char* k) { return k == key; });
+  return std::ranges::any_of(ChoiceKeys<Tracking>::keys, [&](const char* k) { return k == key; });
 }
 
 std::string known_methods() {
@@ -69,7 +69,7 @@ void set(Configuration& configuration, const std::string& setting, const std::st
         text,
         setting,
         fmt::join(rotation_source_keys(), ", "),
-        fmt::join(tracking_keys(), ", ")));
+        fmt::join(ChoiceKeys<Tracking>::keys, ", ")));
   }
   const bool twice = is_ransac            ? configuration.ransac.has_value()
                      : is_source(setting) ? configuration.rotations != RotationSource::automatic
@@ -80,7 +80,7 @@ void set(Configuration& configuration, const std::string& setting, const std::st
   } else if (is_source(setting)) {
     configuration.rotations = rotation_source(setting);
   } else {
-    configuration.tracking = tracking_of(setting);
+    configuration.tracking = choice<Tracking>(setting);
   }
 }
 

@@ -17,12 +17,12 @@ struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
-ordered_json value_json(const auto& value) {
-  using Value = std::decay_t<decltype(value)>;
+template <class Value>
+ordered_json value_json(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
   } else if constexpr (IsOptional<Value>::value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
+    return value ? value_json(*value) : ordered_json(nullptr);
   } else {
     return value;
   }
@@ -32,11 +32,11 @@ template <class Value>
 void read_value(const ordered_json& json, Value& value) {
   if constexpr (std::is_same_v<Value, RotationSource>) {
     value = rotation_source(json.get<std::string>());
-  } else if constexpr (std::is_same_v<Value, Tracking>) {
-    value = tracking_of(json.get<std::string>());
+  } else if constexpr (Choice<Value>) {
+    value = choice<Value>(json.get<std::string>());
   } else if constexpr (IsOptional<Value>::value) {
     value.reset();
-    if (!json.is_null()) value = json.get<typename Value::value_type>();
+    if (!json.is_null()) read_value(json, value.emplace());
   } else {
     value = json.get<Value>();
   }
@@ -50,12 +50,12 @@ std::string cell(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string value_cell(const auto& value) {
-  using Value = std::decay_t<decltype(value)>;
+template <class Value>
+std::string value_cell(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
   } else if constexpr (IsOptional<Value>::value) {
-    return value ? fmt::format("{}", *value) : "";
+    return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
     return cell(value);
   } else {
@@ -93,6 +93,7 @@ Row refused_row(const std::string& recording,
   row.configuration = key_of(configuration);
   row.settings = apply(configuration, settings);
   row.settings.ransac = uses_ransac(row.settings);
+  row.settings.inliers = inliers_used(row.settings);
   row.status = "failed";
   row.reason = reason;
   return row;

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <string>
+#include "engine/choice.h"
 
 namespace gpo {
 
@@ -11,10 +10,20 @@ namespace gpo {
 /// first look, so that they do not drift (method.md, "Tracks drift, and on a plane they need not").
 enum class Tracking { frame_to_frame, anchored };
 
-/// Keys on the command line and in files, in the order of the enumeration.
-std::span<const char* const> tracking_keys();
-const char* to_string(Tracking tracking);
-/// Throws InputError that names the known ones.
-Tracking tracking_of(const std::string& key);
+template <>
+struct ChoiceKeys<Tracking> {
+  static constexpr const char* option = "--tracking";
+  static constexpr std::array keys{"frame-to-frame", "anchored"};
+};
+
+/// Which tracks count as on the plane: in each frame those that agree with its homography (the
+/// paper), or those that agree with the refined homographies in nearly all frames that see them.
+enum class Inliers { per_frame, consistent };
+
+template <>
+struct ChoiceKeys<Inliers> {
+  static constexpr const char* option = "--inliers";
+  static constexpr std::array keys{"per-frame", "consistent"};
+};
 
 }  // namespace gpo

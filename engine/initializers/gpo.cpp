@@ -108,7 +108,9 @@ Initialization deliver(const Window& window, const Unknowns& unknowns) {
 
 }  // namespace
 
-Initialization initialize_gpo(const Window& window, const std::stop_token& stop) {
+Initialization initialize_gpo(const Window& window,
+                              const InitializerOptions& /*options*/,
+                              const std::stop_token& stop) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Unknowns unknowns;
   unknowns.tau.assign(window.frame_count(), Vector3d::Zero());

@@ -4,6 +4,7 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
+#include "engine/initializers/initializer_options.h"
 
 #include <stop_token>
 
@@ -12,6 +13,8 @@ namespace gpo {
 /// Global plane optimization (Du et al. 2020): minimizes over the plane's normal and the scaled
 /// translations of all frames the summed squared transfer error of the inliers, the window's
 /// rotations held fixed; 3m - 1 unknowns. No homography is decomposed, no point triangulated.
-Initialization initialize_gpo(const Window& window, const std::stop_token& stop);
+Initialization initialize_gpo(const Window& window,
+                              const InitializerOptions& options,
+                              const std::stop_token& stop);
 
 }  // namespace gpo

@@ -5,7 +5,10 @@
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/initializers/uncertainty.h"
+#include "engine/initializers/verdict.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +50,10 @@ struct Initialization {
   std::vector<MapPoint> points;  ///< inlier tracks; all that it used of a method without a plane
   SolverReport solver;
   double rms_px = 0;  ///< root mean square reprojection error over the observations used
+  std::optional<Eigen::Vector3d> bias_rad_s;  ///< of the gyroscope, where the method estimates it
+  std::optional<double> time_offset_s;        ///< gyroscope clock = camera clock + offset, likewise
+  std::optional<Uncertainty> uncertainty;     ///< of a result that is ok, where it is determined
+  std::optional<Verdict> verdict;             ///< also of a window that was refused
   /// Of methods that decompose homographies: all readings, also where the method failed.
   std::vector<HomographyCandidate> candidates;
 };

@@ -24,15 +24,30 @@ Initialization failed(std::string reason, SolverReport solver) {
   return result;
 }
 
+namespace {
+
+/// Of a method that leaves its user no choice.
+template <Initialization (*initialize)(const Window&, const std::stop_token&)>
+Initialization plain(const Window& window,
+                     const InitializerOptions& /*options*/,
+                     const std::stop_token& stop) {
+  return initialize(window, stop);
+}
+
+}  // namespace
+
 std::span<const Method> methods() {
+  using enum MethodFamily;
+  using enum Inliers;
   static const std::array table{
-      Method{"gpo", "GPO", 0x009E73, MethodFamily::optimization, true, initialize_gpo},
-      Method{"pnp", "PnP", 0xE69F00, MethodFamily::aggregation, true, initialize_pnp},
-      Method{"dbscan", "DBSCAN", 0xF0E442, MethodFamily::aggregation, true, initialize_dbscan},
-      Method{"ba", "BA", 0xD55E00, MethodFamily::optimization, false, initialize_ba},
-      Method{"pnp_ba", "PnP + BA", 0xCC79A7, MethodFamily::optimization, false, initialize_pnp_ba},
-      Method{"pba", "PBA", 0x8B5A2B, MethodFamily::optimization, true, initialize_pba},
-      Method{"fpba", "FPBA", 0x6E7681, MethodFamily::optimization, true, initialize_fpba},
+      Method{"gpo", "GPO", 0x009E73, optimization, true, per_frame, initialize_gpo},
+      Method{"pnp", "PnP", 0xE69F00, aggregation, true, per_frame, plain<initialize_pnp>},
+      Method{"dbscan", "DBSCAN", 0xF0E442, aggregation, true, per_frame, plain<initialize_dbscan>},
+      Method{"ba", "BA", 0xD55E00, optimization, false, per_frame, plain<initialize_ba>},
+      Method{
+          "pnp_ba", "PnP + BA", 0xCC79A7, optimization, false, per_frame, plain<initialize_pnp_ba>},
+      Method{"pba", "PBA", 0x8B5A2B, optimization, true, per_frame, plain<initialize_pba>},
+      Method{"fpba", "FPBA", 0x6E7681, optimization, true, per_frame, plain<initialize_fpba>},
   };
   return table;
 }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/tracking.h"
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
+#include "engine/initializers/initializer_options.h"
 
 #include <cstdint>
 #include <span>
@@ -23,7 +25,10 @@ struct Method {
   std::uint32_t rgb;  ///< 0xRRGGBB, Okabe-Ito
   MethodFamily family;
   bool needs_plane;  ///< takes every track that it is given to lie on the plane
-  Initialization (*initialize)(const Window& window, const std::stop_token& stop);
+  Inliers inliers;   ///< by default: as its authors do
+  Initialization (*initialize)(const Window& window,
+                               const InitializerOptions& options,
+                               const std::stop_token& stop);
 };
 
 std::span<const Method> methods();

@@ -156,6 +156,10 @@ bool uses_ransac(const Settings& settings) {
   return settings.ransac.value_or(find_method(settings.method).needs_plane);
 }
 
+Inliers inliers_used(const Settings& settings) {
+  return settings.inliers.value_or(find_method(settings.method).inliers);
+}
+
 struct Inspector::Stages {
   std::shared_ptr<const Recording> recording;
   std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
@@ -262,9 +266,10 @@ void Inspector::Stages::initialize(const Settings& settings,
   inspection.gyroscope_bias_rad_s = rotations.value.bias_rad_s;
   if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
   const auto begin = Clock::now();
-  Initialization initialization = rotations.value.R_wc.empty()
-                                      ? failed(rotations.value.reason)
-                                      : find_method(settings.method).initialize(window, stop);
+  Initialization initialization =
+      rotations.value.R_wc.empty()
+          ? failed(rotations.value.reason)
+          : find_method(settings.method).initialize(window, settings.initializer, stop);
   Timing& t = inspection.timing;
   t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
                 .value.milliseconds[settings.frames - 1];

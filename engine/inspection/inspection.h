@@ -14,6 +14,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -33,6 +34,8 @@ struct Inspection {
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
   std::shared_ptr<const Initialization> initialization;
+  /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
+  std::vector<Verdict> growth;
   std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
   std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
   std::optional<CubeAnchor>

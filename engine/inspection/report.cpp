@@ -32,8 +32,10 @@ ordered_json settings_json(const Inspection& inspection) {
     if (key == "start" || key == "frames" || key == "method") return;  // told elsewhere
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, RotationSource>) {
       json[key] = to_string(inspection.rotations_used);
-    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Tracking>) {
+    } else if constexpr (Choice<std::decay_t<decltype(value)>>) {
       json[key] = to_string(value);
+    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<Inliers>>) {
+      json[key] = to_string(inliers_used(inspection.settings));
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<bool>>) {
       json[key] = uses_ransac(inspection.settings);
     } else {

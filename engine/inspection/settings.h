@@ -4,6 +4,7 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/frontend/tracking.h"
+#include "engine/initializers/initializer_options.h"
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +23,10 @@ struct Settings {
   /// authors do (`uses_ransac`).
   std::optional<bool> ransac = std::nullopt;
   double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
-  std::uint64_t seed = 1;            ///< of every random choice
+  /// Which tracks count as inliers; nothing: as the method does (`inliers_used`).
+  std::optional<Inliers> inliers = std::nullopt;
+  std::uint64_t seed = 1;  ///< of every random choice
+  InitializerOptions initializer = {};
 
   bool operator==(const Settings&) const = default;
 };
@@ -30,6 +34,9 @@ struct Settings {
 /// What `ransac` comes to. Chosen, or by default on for the methods that need a plane and off for
 /// those that use all tracks (ba, pnp_ba). Throws InputError for an unknown method.
 bool uses_ransac(const Settings& settings);
+
+/// What `inliers` comes to. Throws InputError for an unknown method.
+Inliers inliers_used(const Settings& settings);
 
 /// How a setting is called and explained, wherever it is shown.
 struct SettingInfo {
@@ -67,7 +74,24 @@ void visit_settings(S& settings, Visitor&& visit) {
       SettingInfo{
           "ransac_threshold_px", "Threshold", "px", "Largest transfer error of an inlier", 0.1, 50},
       settings.ransac_threshold_px);
+  visit(SettingInfo{"inliers",
+                    "Inliers",
+                    "",
+                    "Tracks on the plane: told frame by frame, or consistent over the window; "
+                    "default: as the method does"},
+        settings.inliers);
   visit(SettingInfo{"seed", "Seed", "", "Seed of every random choice", 0, 1e9}, settings.seed);
+  visit(SettingInfo{"solver", "Solver", "", "Who minimizes: our own Schur solver, or Ceres"},
+        settings.initializer.solver);
+  visit(SettingInfo{"error", "Error", "", "Of gpo_joint: one-sided transfer error, or Sampson's"},
+        settings.initializer.error);
+  visit(SettingInfo{"loss", "Loss", "", "Of gpo_joint: squared, or Huber's, linear for outliers"},
+        settings.initializer.loss);
+  visit(SettingInfo{"time_offset",
+                    "Time offset",
+                    "",
+                    "Of gpo_joint: estimate the offset between the clocks of camera and gyroscope"},
+        settings.initializer.time_offset);
 }
 
 }  // namespace gpo

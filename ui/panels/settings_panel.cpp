@@ -141,19 +141,37 @@ struct SettingRows {
     ImGui::EndCombo();
   }
 
-  void operator()(const SettingInfo& info, Tracking& value) {
+  template <Choice E>
+  void operator()(const SettingInfo& info, E& value) {
     label(info.title, info.help);
-    if (ImGui::BeginCombo((std::string("##") + info.key).c_str(), to_string(value))) {
-      for (std::size_t i = 0; i < tracking_keys().size(); ++i) {
-        const auto tracking = static_cast<Tracking>(i);
-        if (!ImGui::Selectable(to_string(tracking), tracking == value)) continue;
-        value = tracking;
-        changed = true;
-      }
-      ImGui::EndCombo();
-    } else {
+    choose(info, value, value);
+  }
+
+  void operator()(const SettingInfo& info, std::optional<Inliers>& value) {
+    label(info.title, info.help);
+    choose(info, value, inliers_used(input.state.settings));
+  }
+
+  void operator()(const SettingInfo& info, bool& value) {
+    label(info.title, info.help);
+    changed |= ImGui::Checkbox((std::string("##") + info.key).c_str(), &value);
+    tooltip(info.help);
+  }
+
+  /// A combo box; `value` is a choice, or an optional one that comes to `used`.
+  template <Choice E>
+  void choose(const SettingInfo& info, auto& value, E used) {
+    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), to_string(used))) {
       tooltip(info.help);
+      return;
     }
+    for (std::size_t i = 0; i < ChoiceKeys<E>::keys.size(); ++i) {
+      const auto each = static_cast<E>(i);
+      if (!ImGui::Selectable(to_string(each), each == used)) continue;
+      value = each;
+      changed = true;
+    }
+    ImGui::EndCombo();
   }
 };
 

@@ -30,7 +30,7 @@ class GpoOnMotion : public ::testing::TestWithParam<Motion> {};
 TEST_P(GpoOnMotion, RecoversNoiseFreeWindowsExactly) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .noise_px = 0, .seed = seed});
-    const Initialization result = initialize_gpo(truth.window, {});
+    const Initialization result = initialize_gpo(truth.window, {}, {});
     ASSERT_TRUE(result.ok) << result.reason;
     EXPECT_LT(normal_error_deg(result, truth), 1e-6);
     for (int i = 0; i < truth.window.frame_count(); ++i) {
@@ -47,7 +47,7 @@ TEST_P(GpoOnMotion, MedianNormalErrorIsWithinTheCramerRaoBoundTimesOnePointTwo) 
   std::vector<double> bounds;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .seed = seed});
-    const Initialization result = initialize_gpo(truth.window, {});
+    const Initialization result = initialize_gpo(truth.window, {}, {});
     ASSERT_TRUE(result.ok) << result.reason;
     errors.push_back(normal_error_deg(result, truth));
     bounds.push_back(*normal_bound_deg(truth.window, truth.plane, truth.cameras, 0.5));
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Gpo, CountsUnknownsAndResidualsAsThePaperDoes) {
   const Simulation truth = simulate({});
-  const Initialization result = initialize_gpo(truth.window, {});
+  const Initialization result = initialize_gpo(truth.window, {}, {});
   EXPECT_EQ(result.solver.unknowns, 3 * 30 - 1);
   EXPECT_EQ(result.solver.residuals, 2 * 150 * 29);
   EXPECT_EQ(result.solver.termination, "convergence");
@@ -76,7 +76,7 @@ TEST(Gpo, CountsUnknownsAndResidualsAsThePaperDoes) {
 
 TEST(Gpo, DeliversTheGaugeOfTheMethodPage) {
   const Simulation truth = simulate({.motion = Motion::orbit});
-  const Initialization result = initialize_gpo(truth.window, {});
+  const Initialization result = initialize_gpo(truth.window, {}, {});
   EXPECT_EQ(result.plane.distance, 1);
   EXPECT_NEAR(result.plane.normal.norm(), 1, 1e-12);
   EXPECT_LT(result.plane.normal.z(), 0);
@@ -88,8 +88,8 @@ TEST(Gpo, DoesNotDependOnTheOrderOfTracks) {
   const Simulation truth = simulate({.motion = Motion::wander});
   Window reversed = truth.window;
   for (auto& points : reversed.points_px) points = points.rowwise().reverse().eval();
-  const Initialization a = initialize_gpo(truth.window, {});
-  const Initialization b = initialize_gpo(reversed, {});
+  const Initialization a = initialize_gpo(truth.window, {}, {});
+  const Initialization b = initialize_gpo(reversed, {}, {});
   EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 1e-6);
 }
 
@@ -107,8 +107,8 @@ TEST(Gpo, FollowsARotatedReferenceFrame) {
     turned.H_i1[i] = H * truth.window.H_i1[i] * H.inverse();
     turned.R_wc[i] = turn * truth.window.R_wc[i] * turn.transpose();
   }
-  const Initialization a = initialize_gpo(truth.window, {});
-  const Initialization b = initialize_gpo(turned, {});
+  const Initialization a = initialize_gpo(truth.window, {}, {});
+  const Initialization b = initialize_gpo(turned, {}, {});
   EXPECT_LT(angle_deg(turn * a.plane.normal, b.plane.normal), 1e-6);
 }
 
@@ -120,7 +120,7 @@ TEST(Gpo, UsesTracksOnlyWhereTheyAreSeen) {
       truth.window.inlier[i][j] = false;
     }
   }
-  const Initialization result = initialize_gpo(truth.window, {});
+  const Initialization result = initialize_gpo(truth.window, {}, {});
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_LT(normal_error_deg(result, truth), 1e-6);
   EXPECT_EQ(result.solver.residuals, 2 * (150 * 9 + 90 * 20));
@@ -129,7 +129,7 @@ TEST(Gpo, UsesTracksOnlyWhereTheyAreSeen) {
 TEST(Gpo, FailsOnPureRotationWithAReason) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation truth = simulate({.motion = Motion::rotation_only, .seed = seed});
-    const Initialization result = initialize_gpo(truth.window, {});
+    const Initialization result = initialize_gpo(truth.window, {}, {});
     EXPECT_FALSE(result.ok);
     EXPECT_THAT(result.reason, HasSubstr("no parallax"));
     EXPECT_TRUE(result.cameras.empty());
@@ -139,14 +139,14 @@ TEST(Gpo, FailsOnPureRotationWithAReason) {
 
 TEST(Gpo, AcceptsLowParallaxOfFourPercent) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    EXPECT_TRUE(initialize_gpo(simulate({.travel = 0.04, .seed = seed}).window, {}).ok);
+    EXPECT_TRUE(initialize_gpo(simulate({.travel = 0.04, .seed = seed}).window, {}, {}).ok);
   }
 }
 
 TEST(Gpo, NamesTheLeastNumberOfInliers) {
   Simulation truth = simulate({});
   for (int j = 7; j < 150; ++j) truth.window.inlier[12][j] = false;
-  const Initialization result = initialize_gpo(truth.window, {});
+  const Initialization result = initialize_gpo(truth.window, {}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.reason, "too few inliers: frame 12 has 7, at least 8 are needed");
 }
@@ -154,15 +154,15 @@ TEST(Gpo, NamesTheLeastNumberOfInliers) {
 TEST(Gpo, RefusesRotationsThatDoNotBelongToThePictures) {
   Simulation truth = simulate({.motion = Motion::orbit});
   for (int i = 0; i < 30; ++i) truth.window.R_wc[i] = so3_exp({0, 0, 0.02 * i});
-  const Initialization result = initialize_gpo(truth.window, {});
+  const Initialization result = initialize_gpo(truth.window, {}, {});
   EXPECT_FALSE(result.ok);
   EXPECT_THAT(result.reason, HasSubstr("no convergence"));
 }
 
 TEST(Gpo, IsTheSameToTheBitWhenRepeated) {
   const Simulation truth = simulate({.motion = Motion::wander});
-  const Initialization a = initialize_gpo(truth.window, {});
-  const Initialization b = initialize_gpo(truth.window, {});
+  const Initialization a = initialize_gpo(truth.window, {}, {});
+  const Initialization b = initialize_gpo(truth.window, {}, {});
   EXPECT_EQ(a.plane.normal, b.plane.normal);
   EXPECT_EQ(a.solver.final_cost, b.solver.final_cost);
 }

@@ -14,7 +14,8 @@ namespace gpo::test {
 
 /// Median over seeds of the normal's error [deg], on default windows with homographies as fitted to
 /// noisy tracks. A window that is refused is a failure of the test.
-inline double median_normal_error_deg(decltype(Method::initialize) initialize,
+inline double median_normal_error_deg(Initialization (*initialize)(const Window&,
+                                                                   const std::stop_token&),
                                       Motion motion,
                                       std::uint64_t seeds) {
   std::vector<double> errors;

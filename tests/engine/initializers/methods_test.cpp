@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 /// What every row of the table promises.
 class EveryMethod : public ::testing::TestWithParam<Method> {
  protected:
-  static Initialization run(const Window& window) { return GetParam().initialize(window, {}); }
+  static Initialization run(const Window& window) { return GetParam().initialize(window, {}, {}); }
 
   /// Where a camera approaches a plane along its normal, the two readings of its homographies
   /// coincide; a method that moves the rotations, too, finds the normal to the root of the noise
