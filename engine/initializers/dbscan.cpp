@@ -5,6 +5,7 @@
 #include "engine/initializers/density_clusters.h"
 #include "engine/initializers/homography_candidates.h"
 #include "engine/initializers/map_points.h"
+#include "engine/initializers/plane_translations.h"
 #include "engine/initializers/window_checks.h"
 
 #include <algorithm>
@@ -129,33 +130,6 @@ Vector3d climb(std::span<const WeightedDirection> points, Vector3d normal) {
     radius_deg = std::min(kClimbDeg, 2.5 * median_angle_deg(points, normal, radius_deg));
   }
   return normal;
-}
-
-/// tau of a frame given the plane's normal, by linear least squares over its inliers. With
-/// y = R_ciw (x_1 - tau (n.x_1)), (u, v, 1) ~ y gives the rows (e_1 - u e_3).y = 0 and
-/// (e_2 - v e_3).y = 0; divided by y_z of the round before they are pixel errors.
-Vector3d translation_given_normal(const Window& window, int frame, const Vector3d& normal) {
-  const Matrix3d K_inverse = window.K.inverse();
-  const Matrix3d R_ciw = window.R_wc[frame].transpose();
-  Vector3d tau = Vector3d::Zero();
-  for (int round = 0; round < 3; ++round) {
-    Matrix3d AtA = Matrix3d::Zero();
-    Vector3d Atb = Vector3d::Zero();
-    for (int j = 0; j < window.track_count(); ++j) {
-      if (!window.inlier[frame][j]) continue;
-      const Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
-      const Vector3d seen = K_inverse * window.points_px[frame].col(j).homogeneous();
-      const double height = normal.dot(ray_1);
-      Eigen::Matrix<double, 2, 3> rows;
-      rows << window.K(0, 0), 0, -window.K(0, 0) * seen.x(), 0, window.K(1, 1),
-          -window.K(1, 1) * seen.y();
-      rows = rows * R_ciw / R_ciw.row(2).dot(ray_1 - tau * height);
-      AtA += height * height * rows.transpose() * rows;
-      Atb += height * rows.transpose() * (rows * ray_1);
-    }
-    tau = AtA.ldlt().solve(Atb);
-  }
-  return tau;
 }
 
 Initialization failed_with(std::string reason, Candidates& candidates) {

@@ -5,14 +5,21 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/initializer_options.h"
+#include "engine/initializers/plane_solver.h"
 
 #include <stop_token>
 
 namespace gpo {
 
+/// The minimum of `initialize_gpo`, not yet judged: the sign is arbitrary.
+PlaneSolution solve_gpo(const Window& window,
+                        const InitializerOptions& options,
+                        const std::stop_token& stop);
+
 /// Global plane optimization (Du et al. 2020): minimizes over the plane's normal and the scaled
 /// translations of all frames the summed squared transfer error of the inliers, the window's
 /// rotations held fixed; 3m - 1 unknowns. No homography is decomposed, no point triangulated.
+/// Ceres starts from rest as in the paper, our own solver from the closed form.
 Initialization initialize_gpo(const Window& window,
                               const InitializerOptions& options,
                               const std::stop_token& stop);

@@ -4,9 +4,11 @@
 
 #include "engine/error.h"
 #include "engine/initializers/ba.h"
+#include "engine/initializers/closed_form.h"
 #include "engine/initializers/dbscan.h"
 #include "engine/initializers/fpba.h"
 #include "engine/initializers/gpo.h"
+#include "engine/initializers/gpo_joint.h"
 #include "engine/initializers/pba.h"
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/pnp_ba.h"
@@ -48,6 +50,15 @@ std::span<const Method> methods() {
           "pnp_ba", "PnP + BA", 0xCC79A7, optimization, false, per_frame, plain<initialize_pnp_ba>},
       Method{"pba", "PBA", 0x8B5A2B, optimization, true, per_frame, plain<initialize_pba>},
       Method{"fpba", "FPBA", 0x6E7681, optimization, true, per_frame, plain<initialize_fpba>},
+      Method{"closed_form",
+             "Closed form",
+             0x56B4E9,
+             aggregation,
+             true,
+             consistent,
+             plain<initialize_closed_form>},
+      Method{
+          "gpo_joint", "GPO joint", 0x0072B2, optimization, true, consistent, initialize_gpo_joint},
   };
   return table;
 }

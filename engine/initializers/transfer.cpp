@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/transfer.h"
 
+#include "engine/geometry/pose.h"
+
 #include <cmath>
 
 namespace gpo {
@@ -39,6 +41,7 @@ Transfer transfer_on_plane(const Eigen::Matrix3d& K,
   transfer.pixel = K.topLeftCorner<2, 2>() * x + K.topRightCorner<2, 1>();
   transfer.d_tau = -height * d_world;
   transfer.d_normal = -(d_world * tau) * ray_1.transpose();
+  transfer.d_rotation = d_y * skew(y);
   transfer.in_front = y.z() > 0;
   return transfer;
 }

@@ -10,10 +10,11 @@ namespace gpo {
 /// Where a plane point of the reference frame is seen in frame i, and how that changes:
 /// y = R_ciw (I - tau n^T) x_1,  p = pi(K y)   (method.md, "Frames, signs, gauge"; R_wc1 = I).
 struct Transfer {
-  Eigen::Vector2d pixel;                 ///< undistorted [px]
-  Eigen::Matrix<double, 2, 3> d_normal;  ///< dp/dn [px]
-  Eigen::Matrix<double, 2, 3> d_tau;     ///< dp/dtau [px]
-  bool in_front = false;                 ///< y_z > 0
+  Eigen::Vector2d pixel;                   ///< undistorted [px]
+  Eigen::Matrix<double, 2, 3> d_normal;    ///< dp/dn [px]
+  Eigen::Matrix<double, 2, 3> d_tau;       ///< dp/dtau [px]
+  Eigen::Matrix<double, 2, 3> d_rotation;  ///< dp/dphi of R_wci exp(phi) [px/rad]
+  bool in_front = false;                   ///< y_z > 0
 };
 
 /// `ray_1` is K^-1 p_1. One-sided transfer; the residual of GPO is `pixel - p_i`.

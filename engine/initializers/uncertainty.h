@@ -3,8 +3,12 @@
 #pragma once
 
 #include "engine/frontend/window.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/initializers/plane_kernel.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,5 +30,27 @@ struct Uncertainty {
   std::optional<double> bound_known_rotations_deg;
   std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only
 };
+
+/// Information on what the frames share, the translations (and free rotations) marginalized, per
+/// square pixel of noise: over the normal's tangents u and, with an unknown bias, the bias.
+using SharedInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 5, 5>;
+
+/// What the prior says before the first frame.
+SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px);
+/// What one frame adds; `normals` with rotation.
+SharedInformation frame_information(const Window& window,
+                                    int frame,
+                                    const FrameNormals& normals,
+                                    RotationModel model);
+
+/// Standard deviation of the normal's angle, root of its covariance's trace [deg]; nothing where it
+/// is not determined.
+std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px);
+
+/// Of a solution on the window's inliers, with what the window says of its rotations. Nothing where
+/// the solution is not determined or a point lies behind a camera.
+std::optional<Uncertainty> uncertainty_of(const Window& window,
+                                          const Plane& plane,
+                                          std::span<const Pose> cameras);
 
 }  // namespace gpo

@@ -1,0 +1,55 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/closed_form.h"
+
+#include "engine/initializers/delivery.h"
+#include "engine/initializers/plane_translations.h"
+#include "engine/initializers/window_checks.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+
+/// The middle singular value, from the characteristic polynomial of M^T M: a fraction of the time
+/// of an SVD, and as exact as a start needs.
+double middle_singular_value(const Matrix3d& M) {
+  Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
+  eigen.computeDirect(M.transpose() * M, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()(1)));
+}
+
+}  // namespace
+
+std::optional<PlaneMotion> closed_form_motion(const Window& window) {
+  const Matrix3d K_inverse = window.K.inverse();
+  std::vector<Matrix3d> rank_one;  // tau_i n^T
+  Matrix3d gram = Matrix3d::Zero();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const Matrix3d H = window.R_wc[i] * K_inverse * window.H_i1[i] * window.K;
+    const double lambda = std::copysign(middle_singular_value(H), H.determinant());
+    rank_one.emplace_back(Matrix3d::Identity() - H / lambda);
+    gram += rank_one.back().transpose() * rank_one.back();
+  }
+  if (!gram.allFinite()) return std::nullopt;
+  PlaneMotion motion = resting(window);
+  motion.normal = Eigen::SelfAdjointEigenSolver<Matrix3d>(gram).eigenvectors().col(2);
+  for (int i = 1; i < window.frame_count(); ++i) motion.tau[i] = rank_one[i] * motion.normal;
+  return facing(window, std::move(motion));
+}
+
+Initialization initialize_closed_form(const Window& window, const std::stop_token& /*stop*/) {
+  if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  auto motion = closed_form_motion(window);
+  if (!motion) return failed("a frame has no homography");
+  for (int i = 1; i < window.frame_count(); ++i)
+    motion->tau[i] = translation_given_normal(window, i, motion->normal);
+  return deliver(window, *motion, {});
+}
+
+}  // namespace gpo

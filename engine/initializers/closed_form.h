@@ -1,0 +1,24 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+#include "engine/initializers/plane_motion.h"
+
+#include <optional>
+#include <stop_token>
+
+namespace gpo {
+
+/// Normal and translations from all homographies at once, without a choice among decompositions:
+/// I - H'_i / lambda_i = tau_i n^T with H'_i = R_wci K^-1 H_i1 K and lambda_i its middle singular
+/// value; stacked over the frames, the matrix has rank one and n is its right singular vector
+/// (method.md, "Closed form"). Its sign is that of a visible plane. Nothing where a homography is
+/// missing.
+std::optional<PlaneMotion> closed_form_motion(const Window& window);
+
+/// The closed form's normal, with translations by linear least squares over the inliers.
+Initialization initialize_closed_form(const Window& window, const std::stop_token& stop);
+
+}  // namespace gpo

@@ -1,0 +1,26 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/delivery.h"
+
+#include "engine/initializers/map_points.h"
+#include "engine/initializers/window_checks.h"
+
+namespace gpo {
+
+Initialization deliver(const Window& window,
+                       const PlaneMotion& motion,
+                       const SolverReport& solver) {
+  const PlaneMotion visible = facing(window, motion);
+  Initialization result;
+  result.solver = solver;
+  result.plane = {visible.normal, 1};
+  result.cameras = cameras_of(visible);
+  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
+    return failed(*reason, solver);
+  result.points = lift_to_plane(window, result.plane, result.cameras);
+  result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
+  result.ok = true;
+  return result;
+}
+
+}  // namespace gpo

@@ -1,0 +1,21 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/window.h"
+#include "engine/initializers/initialization.h"
+#include "engine/initializers/initializer_options.h"
+
+#include <stop_token>
+
+namespace gpo {
+
+/// Global plane optimization in which what is uncertain of the rotations is unknown, too: a
+/// constant gyroscope bias (Gaussian prior) and, asked for, the offset between the clocks; without
+/// a gyroscope the rotation of every frame. Starts from GPO with the rotations as given, never from
+/// rest, and says so where it ends in a wrong minimum.
+Initialization initialize_gpo_joint(const Window& window,
+                                    const InitializerOptions& options,
+                                    const std::stop_token& stop);
+
+}  // namespace gpo

@@ -1,0 +1,50 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+struct FrameObservations;
+
+inline constexpr std::size_t kKernelWidth = 4;  ///< observations a step of the kernels takes
+
+/// Where a frame's transfer error is linearized.
+struct FrameState {
+  Eigen::Matrix3d R_cw = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d tau_c = Eigen::Vector3d::Zero();  ///< R_cw tau, in the frame's camera axes [d]
+  Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
+  Eigen::Matrix<double, 3, 2> tangents;  ///< orthonormal, in which the normal moves
+  double fx = 1, fy = 1;                 ///< [px]
+};
+
+/// Gauss-Newton's normal equations of one frame's transfer errors (paper, eq. 8) over
+/// (u, phi, t), of 2, 3 and 3 numbers: normal [+] tangents u, R_wc exp(phi), tau + R_wc t.
+struct FrameNormals {
+  Eigen::Matrix<double, 8, 8> JtJ;  ///< [px^2]
+  Eigen::Matrix<double, 8, 1> Jtr;  ///< [px^2]
+  double cost = 0;                  ///< half the summed squares [px^2]
+  bool in_front = false;            ///< all points before the camera; else the rest is worthless
+};
+
+enum class Rotating { no, yes };  ///< no: the rows and columns of phi are left at zero
+
+/// One pass over the observations, as wide as this processor is.
+FrameNormals frame_normals(const FrameObservations& observations,
+                           const FrameState& state,
+                           Rotating rotating);
+
+/// The versions that it chooses from.
+FrameNormals frame_normals_baseline(const FrameObservations& observations,
+                                    const FrameState& state,
+                                    Rotating rotating);
+bool has_avx2_fma();
+/// Only where `has_avx2_fma`.
+FrameNormals frame_normals_avx2_fma(const FrameObservations& observations,
+                                    const FrameState& state,
+                                    Rotating rotating);
+
+}  // namespace gpo
