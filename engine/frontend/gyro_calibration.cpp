@@ -16,7 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kPrior_rad_s = 0.01;      // what a phone's own calibration leaves
 constexpr double kLeastSigma_rad = 0.001;  // of visual rotations, by drifting tracks
 
 std::vector<Vector3d> residuals_rad(Gyroscope& gyroscope,
@@ -49,7 +48,7 @@ Vector3d fit_gyro_bias(const Gyroscope& given,
       for (std::size_t i = 0; i < J.size(); ++i)
         J[i].col(k) = (moved[i] - residuals[i]) / kStep_rad_s;
     }
-    const double prior = 1 / (kPrior_rad_s * kPrior_rad_s);
+    const double prior = 1 / (given.bias_sigma_rad_s * given.bias_sigma_rad_s);
     Matrix3d JtJ = prior * Matrix3d::Identity();
     Vector3d Jtr = prior * (bias - given.bias_rad_s);
     for (std::size_t i = 0; i < J.size(); ++i) {
@@ -73,7 +72,9 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
   if (visual.R_wc.empty()) return visual;
   Gyroscope calibrated = gyroscope;
   calibrated.bias_rad_s = fit_gyro_bias(gyroscope, window.timestamps_ns, visual);
-  return {gyro_rotations(calibrated, window.timestamps_ns), "", calibrated.bias_rad_s, 0};
+  Rotations rotations = sensitive_gyro_rotations(calibrated, window.timestamps_ns);
+  rotations.gyro->prior_rad_s = gyroscope.bias_rad_s;
+  return rotations;
 }
 
 }  // namespace gpo

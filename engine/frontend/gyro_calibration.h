@@ -15,9 +15,9 @@ namespace gpo {
 
 /// The constant bias [rad/s], in the gyroscope's axes, whose integrated rotations fit the visual
 /// ones best: robust least squares over the frames, around the bias that the gyroscope comes with
-/// (Gaussian, 0.01 rad/s). Errors of the visual rotations share their cause, the plane's normal, so
-/// that all frames together count as one: a short or ill-conditioned window, which cannot tell,
-/// keeps the gyroscope's own bias.
+/// (Gaussian, its `bias_sigma_rad_s`). Errors of the visual rotations share their cause, the
+/// plane's normal, so that all frames together count as one: a short or ill-conditioned window,
+/// which cannot tell, keeps the gyroscope's own bias.
 Eigen::Vector3d fit_gyro_bias(const Gyroscope& gyroscope,
                               std::span<const std::int64_t> frame_times_ns,
                               const Rotations& visual);

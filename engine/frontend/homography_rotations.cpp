@@ -220,7 +220,8 @@ Rotations rotations_given_plane(const Window& window,
   }
   return {average_rotations(relative, std::move(R_wc)),
           "",
-          {},
+          RotationModel::free,
+          std::nullopt,
           rotation_sigma_rad(reference_pairs, plane)};
 }
 

@@ -75,11 +75,25 @@ Eigen::Vector3d rate_at(const Gyroscope& gyroscope, std::int64_t t_ns) {
   return (1 - u) * gyroscope.rates_rad_s[k - 1] + u * gyroscope.rates_rad_s[k];
 }
 
-/// Rotation from the axes at `to_ns` to those at `from_ns`: mid-point rule over the samples
-/// between.
-Eigen::Matrix3d integrate(const Gyroscope& gyroscope, std::int64_t from_ns, std::int64_t to_ns) {
+/// Rotation from the gyroscope's axes now to those at the first frame, and how it moves with the
+/// bias: R_first_now(bias + db) ~ R_first_now exp(d_bias db).
+struct Turn {
+  Eigen::Matrix3d R_first_now = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d d_bias = Eigen::Matrix3d::Zero();  ///< [s]
+};
+
+/// Goes on at a constant rate (Forster et al., "On-Manifold Preintegration", eq. 44 with its sum as
+/// a recursion).
+void advance(Turn& turn, const Eigen::Vector3d& rate_rad_s, double dt_s) {
+  const Eigen::Vector3d step = rate_rad_s * dt_s;
+  const Eigen::Matrix3d R_step = so3_exp(step);
+  turn.R_first_now = turn.R_first_now * R_step;
+  turn.d_bias = R_step.transpose() * turn.d_bias - so3_right_jacobian(step) * dt_s;
+}
+
+/// From one time to another by the mid-point rule over the samples between.
+void advance(Turn& turn, const Gyroscope& gyroscope, std::int64_t from_ns, std::int64_t to_ns) {
   const auto& t = gyroscope.timestamps_ns;
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   std::int64_t now_ns = from_ns;
   Eigen::Vector3d rate = rate_at(gyroscope, from_ns);
   auto sample = static_cast<std::size_t>(std::ranges::upper_bound(t, from_ns) - t.begin());
@@ -88,12 +102,11 @@ Eigen::Matrix3d integrate(const Gyroscope& gyroscope, std::int64_t from_ns, std:
     const std::int64_t next_ns = has_sample ? t[sample] : to_ns;
     const Eigen::Vector3d next_rate =
         has_sample ? gyroscope.rates_rad_s[sample] : rate_at(gyroscope, to_ns);
-    R = R * so3_exp((0.5 * (rate + next_rate) - gyroscope.bias_rad_s) * seconds(next_ns - now_ns));
+    advance(turn, 0.5 * (rate + next_rate) - gyroscope.bias_rad_s, seconds(next_ns - now_ns));
     now_ns = next_ns;
     rate = next_rate;
     ++sample;
   }
-  return R;
 }
 
 }  // namespace
@@ -113,19 +126,35 @@ RotationSource rotation_source(const std::string& key) {
       "--rotations: unknown source '{}', expected one of {}", key, fmt::join(kKeys, ", ")));
 }
 
-std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
-                                            std::span<const std::int64_t> frame_times_ns) {
+Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
+                                   std::span<const std::int64_t> frame_times_ns) {
   std::vector<std::int64_t> times_ns(frame_times_ns.begin(), frame_times_ns.end());
   for (std::int64_t& t : times_ns) t += gyroscope.time_offset_ns;
   check_coverage(gyroscope, times_ns.front(), times_ns.back());
-  const Eigen::Matrix3d& R_gc = gyroscope.R_gyro_camera;
-  Eigen::Matrix3d R_first_now = Eigen::Matrix3d::Identity();  // of the gyroscope's axes
-  std::vector<Eigen::Matrix3d> R_wc{Eigen::Matrix3d::Identity()};
-  for (std::size_t i = 1; i < times_ns.size(); ++i) {
-    R_first_now = R_first_now * integrate(gyroscope, times_ns[i - 1], times_ns[i]);
-    R_wc.push_back(R_gc.transpose() * R_first_now * R_gc);
+  const Eigen::Matrix3d R_cg = gyroscope.R_gyro_camera.transpose();
+  const auto rate = [&](std::int64_t t_ns) -> Eigen::Vector3d {
+    return rate_at(gyroscope, t_ns) - gyroscope.bias_rad_s;
+  };
+  const Eigen::Vector3d first_rate = rate(times_ns.front());
+  Rotations rotations{.model = RotationModel::bias};
+  GyroSensitivity gyro{
+      gyroscope.bias_rad_s, gyroscope.bias_rad_s, gyroscope.bias_sigma_rad_s, {}, {}};
+  Turn turn;
+  for (std::size_t i = 0; i < times_ns.size(); ++i) {
+    if (i > 0) advance(turn, gyroscope, times_ns[i - 1], times_ns[i]);
+    rotations.R_wc.push_back(R_cg * turn.R_first_now * R_cg.transpose());
+    gyro.d_bias.push_back(R_cg * turn.d_bias);
+    // A later clock drops the first frame's turn and adds the last one's:
+    // exp(-w_1 dt) R exp(w_i dt) = R exp((w_i - R^T w_1) dt), all in the gyroscope's axes.
+    gyro.d_offset.push_back(R_cg * (rate(times_ns[i]) - turn.R_first_now.transpose() * first_rate));
   }
-  return R_wc;
+  rotations.gyro = std::move(gyro);
+  return rotations;
+}
+
+std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
+                                            std::span<const std::int64_t> frame_times_ns) {
+  return sensitive_gyro_rotations(gyroscope, frame_times_ns).R_wc;
 }
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/window.h"
 #include "engine/recording/recording.h"
 
 #include <cstdint>
@@ -16,11 +17,11 @@ namespace gpo {
 
 /// Camera rotations of a window, one a frame, R_wc of its first frame is I; or why there are none.
 struct Rotations {
-  std::vector<Eigen::Matrix3d> R_wc;
+  std::vector<Eigen::Matrix3d> R_wc = {};
   std::string reason = "";
-  std::optional<Eigen::Vector3d> bias_rad_s =
-      std::nullopt;      ///< of the gyroscope, where it was used
-  double sigma_rad = 0;  ///< of rotations from pictures, roughly; else 0
+  RotationModel model = RotationModel::known;          ///< what is uncertain of them
+  std::optional<GyroSensitivity> gyro = std::nullopt;  ///< where they are a gyroscope's
+  double sigma_rad = 0;                                ///< of rotations from pictures, roughly
 };
 
 enum class RotationSource { automatic, gyro, gyro_calibrated, averaging, truth };
@@ -39,5 +40,9 @@ RotationSource rotation_source(const std::string& key);
 /// the samples do not cover the times or leave a gap of more than five sample periods between them.
 std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
                                             std::span<const std::int64_t> frame_times_ns);
+
+/// The same, with how they move with the gyroscope's bias, whose prior is its own, and its clock.
+Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
+                                   std::span<const std::int64_t> frame_times_ns);
 
 }  // namespace gpo

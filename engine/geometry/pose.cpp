@@ -36,6 +36,15 @@ Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
   return angle_axis.angle() * angle_axis.axis();
 }
 
+Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  const Eigen::Matrix3d V = skew(rotation_rad);
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() - V / 2 + V * V / 6;  // error < angle^3 / 24
+  const double sine_half = std::sin(angle / 2);
+  return Eigen::Matrix3d::Identity() - 2 * sine_half * sine_half / (angle * angle) * V +
+         (angle - std::sin(angle)) / (angle * angle * angle) * V * V;
+}
+
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

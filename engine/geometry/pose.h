@@ -22,6 +22,8 @@ Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w);
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad);
 /// Rotation vector [rad] of a rotation matrix, norm in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
+/// exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., "On-Manifold Preintegration", eq. 8).
+Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& rotation_rad);
 /// [v]x, such that [v]x w = v x w.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 /// Angle between two vectors, accurate near 0 and pi [deg].

@@ -263,7 +263,9 @@ void Inspector::Stages::initialize(const Settings& settings,
                                    Inspection& inspection) const {
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
-  inspection.gyroscope_bias_rad_s = rotations.value.bias_rad_s;
+  window.rotations = rotations.value.model;
+  window.gyro = rotations.value.gyro;
+  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
   if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
   const auto begin = Clock::now();
   Initialization initialization =

@@ -50,7 +50,7 @@ Rotations window_rotations(const Recording& recording,
                            const std::stop_token& stop) {
   const auto& gyroscope = recording.gyroscope;
   if (source == RotationSource::gyro) {
-    return {gyro_rotations(*gyroscope, window.timestamps_ns), "", gyroscope->bias_rad_s, 0};
+    return sensitive_gyro_rotations(*gyroscope, window.timestamps_ns);
   }
   if (source == RotationSource::truth) return {true_rotations(truth, window.start), ""};
   if (auto reason = reason_not_to_try(window)) return {{}, *reason};

@@ -41,11 +41,19 @@ void add_pictures(Recording& recording,
   recording.pictures = open_picture_files(std::move(files), recording.camera, cache_bytes);
 }
 
-/// The gyroscope's axes in the body, and its bias where the sensor's file has one.
+/// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has
+/// them.
 struct ImuCalibration {
   Eigen::Matrix3d R_body_gyro = Eigen::Matrix3d::Identity();
   std::optional<Eigen::Vector3d> bias_rad_s;
+  std::optional<double> bias_sigma_rad_s;
 };
+
+double positive_number(const YamlEntry& entry, const std::string& expected) {
+  const double value = number(entry, expected);
+  if (value <= 0) yaml_fail(entry, expected);
+  return value;
+}
 
 ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::string>& notes) {
   ImuCalibration result;
@@ -59,6 +67,8 @@ ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::strin
     const auto b = numbers(*bias, 3, "3 (x, y, z) in rad/s");
     result.bias_rad_s = Eigen::Vector3d(b[0], b[1], b[2]);
   }
+  if (const auto sigma = find(root, "gyroscope_bias_sigma"))
+    result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
   return result;
 }
 
@@ -102,6 +112,7 @@ void add_gyroscope(Recording& recording,
     gyroscope.bias_rad_s = *path->mean_gyro_bias_rad_s;
     gyroscope.bias_source = "mean of the ground truth's";
   }
+  if (imu.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *imu.bias_sigma_rad_s;
   recording.gyroscope = std::move(gyroscope);
 }
 

@@ -4,6 +4,9 @@
 
 #include "engine/error.h"
 
+#include <cmath>
+#include <random>
+
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -77,6 +80,90 @@ TEST(GyroRotations, BiasAndExtrinsicsAndClockOffsetAreApplied) {
   for (auto& t : late.timestamps_ns) t += 20'000'000;
   late.time_offset_ns = 20'000'000;
   EXPECT_LT((gyro_rotations(late, times)[29] - gyro_rotations(gyroscope, times)[29]).norm(), 1e-12);
+}
+
+/// Rates that wander by some rad/s, at times that jitter by a fifth of a period, with axes, a bias
+/// and a clock of their own.
+Gyroscope wandering_rate(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> jitter_ns(-1e6, 1e6);
+  std::normal_distribution<double> normal;
+  const auto vector = [&]() { return Vector3d(normal(random), normal(random), normal(random)); };
+  Gyroscope gyroscope = constant_rate(vector());
+  const Vector3d swing = 2 * vector();
+  const Vector3d phase = vector();
+  for (std::size_t k = 0; k < gyroscope.rates_rad_s.size(); ++k) {
+    gyroscope.timestamps_ns[k] += static_cast<std::int64_t>(jitter_ns(random));
+    const double t = static_cast<double>(gyroscope.timestamps_ns[k] - 1'000'000'000) * 1e-9;
+    for (int axis = 0; axis < 3; ++axis)
+      gyroscope.rates_rad_s[k][axis] += swing[axis] * std::sin(5 * t + phase[axis]);
+  }
+  gyroscope.bias_rad_s = 0.05 * vector();
+  gyroscope.R_gyro_camera = so3_exp(vector());
+  gyroscope.time_offset_ns = 3'456'789;
+  return gyroscope;
+}
+
+/// Of R_wc by right perturbation, from the rotations a step before and a step after.
+Vector3d slope(const Matrix3d& before, const Matrix3d& after, double step) {
+  return so3_log(before.transpose() * after) / (2 * step);
+}
+
+TEST(GyroSensitivity, OfTheBiasIsTheDifferenceQuotient) {
+  constexpr double kStep_rad_s = 1e-5;
+  const auto times = frame_times();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Gyroscope gyroscope = wandering_rate(seed);
+    const Rotations rotations = sensitive_gyro_rotations(gyroscope, times);
+    for (int axis = 0; axis < 3; ++axis) {
+      Gyroscope before = gyroscope;
+      Gyroscope after = gyroscope;
+      before.bias_rad_s[axis] -= kStep_rad_s;
+      after.bias_rad_s[axis] += kStep_rad_s;
+      const auto R_before = gyro_rotations(before, times);
+      const auto R_after = gyro_rotations(after, times);
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        const Vector3d expected = slope(R_before[i], R_after[i], kStep_rad_s);
+        EXPECT_LT((rotations.gyro->d_bias[i].col(axis) - expected).norm(), 1e-8)
+            << "seed " << seed << " frame " << i;
+      }
+    }
+  }
+}
+
+// To the order of the samples' own linear interpolation: 0.1 % of the rates, which reach 5 rad/s.
+TEST(GyroSensitivity, OfTheClockIsTheDifferenceQuotient) {
+  constexpr std::int64_t kStep_ns = 20'000;
+  const auto times = frame_times();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Gyroscope gyroscope = wandering_rate(seed);
+    const Rotations rotations = sensitive_gyro_rotations(gyroscope, times);
+    Gyroscope before = gyroscope;
+    Gyroscope after = gyroscope;
+    before.time_offset_ns -= kStep_ns;
+    after.time_offset_ns += kStep_ns;
+    const auto R_before = gyro_rotations(before, times);
+    const auto R_after = gyro_rotations(after, times);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const Vector3d expected =
+          slope(R_before[i], R_after[i], static_cast<double>(kStep_ns) * 1e-9);
+      EXPECT_LT((rotations.gyro->d_offset[i] - expected).norm(), 5e-3)
+          << "seed " << seed << " frame " << i << " " << expected.transpose();
+    }
+  }
+}
+
+TEST(GyroSensitivity, KnowsTheBiasAndItsPrior) {
+  Gyroscope gyroscope = constant_rate(Vector3d(0.1, 0.2, 0.3));
+  gyroscope.bias_rad_s = Vector3d(0.01, 0.02, -0.03);
+  gyroscope.bias_sigma_rad_s = 0.002;
+  const Rotations rotations = sensitive_gyro_rotations(gyroscope, frame_times());
+  EXPECT_EQ(rotations.model, RotationModel::bias);
+  EXPECT_EQ(rotations.gyro->bias_rad_s, gyroscope.bias_rad_s);
+  EXPECT_EQ(rotations.gyro->prior_rad_s, gyroscope.bias_rad_s);
+  EXPECT_EQ(rotations.gyro->prior_sigma_rad_s, 0.002);
+  EXPECT_EQ(rotations.gyro->d_bias.size(), 30U);
+  EXPECT_EQ(rotations.gyro->d_offset.size(), 30U);
 }
 
 TEST(GyroRotations, SayWhereAGapIs) {

@@ -119,6 +119,28 @@ TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {
   EXPECT_NEAR(plane.normal.dot(inspection->cube->origin) + plane.distance, 0, 1e-12);
 }
 
+TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
+  const auto recording = desk();
+  Inspector inspector(recording);
+  const auto window = [&](RotationSource source) {
+    return inspector.inspect({.frames = 16, .rotations = source})->window;
+  };
+  const Eigen::Vector3d own = recording->gyroscope->bias_rad_s;
+  const auto gyro = window(RotationSource::gyro);
+  EXPECT_EQ(gyro->rotations, RotationModel::bias);
+  EXPECT_EQ(gyro->gyro->bias_rad_s, own);
+  EXPECT_EQ(gyro->gyro->prior_rad_s, own);
+  EXPECT_EQ(gyro->gyro->d_bias.size(), 16U);
+  const auto calibrated = window(RotationSource::gyro_calibrated);
+  EXPECT_EQ(calibrated->rotations, RotationModel::bias);
+  EXPECT_NE(calibrated->gyro->bias_rad_s, own);
+  EXPECT_EQ(calibrated->gyro->prior_rad_s, own);
+  EXPECT_EQ(window(RotationSource::averaging)->rotations, RotationModel::free);
+  EXPECT_FALSE(window(RotationSource::averaging)->gyro);
+  EXPECT_EQ(window(RotationSource::truth)->rotations, RotationModel::known);
+  EXPECT_FALSE(window(RotationSource::truth)->gyro);
+}
+
 std::string message(const std::shared_ptr<const Recording>& recording, const Settings& settings) {
   try {
     Inspector(recording).inspect(settings);

@@ -230,6 +230,18 @@ TEST_F(EurocReader, NamesAGyroscopeBiasOfTwoNumbers) {
               HasSubstr("sensor.yaml:2: key `gyroscope_bias`: found 2 numbers, expected 3"));
 }
 
+TEST_F(EurocReader, ReadsHowSureTheBiasIs) {
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.01);
+  folder.write("mav0/imu0/sensor.yaml", std::string(kTbsImu) + "gyroscope_bias_sigma: 0.002\n");
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.002);
+  for (const char* bad : {"0", "-0.01", "small", "nan", "[0.1, 0.1, 0.1]"}) {
+    folder.write("mav0/imu0/sensor.yaml",
+                 std::string(kTbsImu) + "gyroscope_bias_sigma: " + bad + "\n");
+    EXPECT_THAT(error(), HasSubstr("sensor.yaml:2: key `gyroscope_bias_sigma`: found")) << bad;
+    EXPECT_THAT(error(), HasSubstr("expected a positive number in rad/s")) << bad;
+  }
+}
+
 /// Textured, so that every part of the file carries picture.
 cv::Mat noise() {
   cv::Mat picture(48, 64, CV_8UC3);
