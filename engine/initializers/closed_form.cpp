@@ -26,14 +26,17 @@ double middle_singular_value(const Matrix3d& M) {
 
 }  // namespace
 
+Matrix3d translation_times_normal(const Window& window, int frame) {
+  const Matrix3d H = window.R_wc[frame] * window.K.inverse() * window.H_i1[frame] * window.K;
+  const double lambda = std::copysign(middle_singular_value(H), H.determinant());
+  return Matrix3d::Identity() - H / lambda;
+}
+
 std::optional<PlaneMotion> closed_form_motion(const Window& window) {
-  const Matrix3d K_inverse = window.K.inverse();
   std::vector<Matrix3d> rank_one;  // tau_i n^T
   Matrix3d gram = Matrix3d::Zero();
   for (int i = 0; i < window.frame_count(); ++i) {
-    const Matrix3d H = window.R_wc[i] * K_inverse * window.H_i1[i] * window.K;
-    const double lambda = std::copysign(middle_singular_value(H), H.determinant());
-    rank_one.emplace_back(Matrix3d::Identity() - H / lambda);
+    rank_one.push_back(translation_times_normal(window, i));
     gram += rank_one.back().transpose() * rank_one.back();
   }
   if (!gram.allFinite()) return std::nullopt;

@@ -12,7 +12,10 @@
 #include "engine/initializers/pba.h"
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/pnp_ba.h"
+#include "engine/initializers/uncertainty.h"
+#include "engine/initializers/window_evidence.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -41,26 +44,38 @@ Initialization plain(const Window& window,
 std::span<const Method> methods() {
   using enum MethodFamily;
   using enum Inliers;
+  using enum RotationModel;
+  // clang-format off
   static const std::array table{
-      Method{"gpo", "GPO", 0x009E73, optimization, true, per_frame, initialize_gpo},
-      Method{"pnp", "PnP", 0xE69F00, aggregation, true, per_frame, plain<initialize_pnp>},
-      Method{"dbscan", "DBSCAN", 0xF0E442, aggregation, true, per_frame, plain<initialize_dbscan>},
-      Method{"ba", "BA", 0xD55E00, optimization, false, per_frame, plain<initialize_ba>},
-      Method{
-          "pnp_ba", "PnP + BA", 0xCC79A7, optimization, false, per_frame, plain<initialize_pnp_ba>},
-      Method{"pba", "PBA", 0x8B5A2B, optimization, true, per_frame, plain<initialize_pba>},
-      Method{"fpba", "FPBA", 0x6E7681, optimization, true, per_frame, plain<initialize_fpba>},
-      Method{"closed_form",
-             "Closed form",
-             0x56B4E9,
-             aggregation,
-             true,
-             consistent,
-             plain<initialize_closed_form>},
-      Method{
-          "gpo_joint", "GPO joint", 0x0072B2, optimization, true, consistent, initialize_gpo_joint},
+      Method{"gpo",        "GPO",        0x009E73, optimization, true,  per_frame,  known,        initialize_gpo},
+      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  per_frame,  free,         plain<initialize_pnp>},
+      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  per_frame,  known,        plain<initialize_dbscan>},
+      Method{"ba",         "BA",         0xD55E00, optimization, false, per_frame,  free,         plain<initialize_ba>},
+      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, per_frame,  free,         plain<initialize_pnp_ba>},
+      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  per_frame,  free,         plain<initialize_pba>},
+      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  per_frame,  free,         plain<initialize_fpba>},
+      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  consistent, known,        plain<initialize_closed_form>},
+      Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  consistent, std::nullopt, initialize_gpo_joint},
   };
+  // clang-format on
   return table;
+}
+
+Initialization assessed(const Method& method, const Window& window, Initialization result) {
+  if (!result.ok) return result;
+  const auto judged_by = uncertainty_of(window, result.plane, result.cameras, window.rotations);
+  double travel = 0;
+  for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
+  result.verdict = judged(evidence_of(window),
+                          judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
+                          travel / result.plane.distance);
+  result.uncertainty = uncertainty_of(
+      window, result.plane, result.cameras, method.rotations.value_or(window.rotations));
+  if (result.verdict->readiness != Readiness::degenerate) return result;
+  Initialization refused = failed(result.verdict->reason, result.solver);
+  refused.candidates = std::move(result.candidates);
+  refused.verdict = std::move(result.verdict);
+  return refused;
 }
 
 const Method& find_method(const std::string& key) {

@@ -8,6 +8,7 @@
 #include "engine/initializers/initializer_options.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -26,12 +27,19 @@ struct Method {
   MethodFamily family;
   bool needs_plane;  ///< takes every track that it is given to lie on the plane
   Inliers inliers;   ///< by default: as its authors do
+  /// Whether it takes the rotations as given, or moves them: all of them (free), or as far as the
+  /// window says that they are uncertain (nothing).
+  std::optional<RotationModel> rotations;
   Initialization (*initialize)(const Window& window,
                                const InitializerOptions& options,
                                const std::stop_token& stop);
 };
 
 std::span<const Method> methods();
+
+/// What a method made of the window, with its uncertainty and the verdict on the window. A
+/// degenerate window's result becomes a failure.
+Initialization assessed(const Method& method, const Window& window, Initialization result);
 
 /// The row named `key`. Throws InputError that names the known ones.
 const Method& find_method(const std::string& key);

@@ -24,10 +24,10 @@ struct FrameState {
 /// Gauss-Newton's normal equations of one frame's transfer errors (paper, eq. 8) over
 /// (u, phi, t), of 2, 3 and 3 numbers: normal [+] tangents u, R_wc exp(phi), tau + R_wc t.
 struct FrameNormals {
-  Eigen::Matrix<double, 8, 8> JtJ;  ///< [px^2]
-  Eigen::Matrix<double, 8, 1> Jtr;  ///< [px^2]
-  double cost = 0;                  ///< half the summed squares [px^2]
-  bool in_front = false;            ///< all points before the camera; else the rest is worthless
+  Eigen::Matrix<double, 8, 8> JtJ = Eigen::Matrix<double, 8, 8>::Zero();  ///< [px^2]
+  Eigen::Matrix<double, 8, 1> Jtr = Eigen::Matrix<double, 8, 1>::Zero();  ///< [px^2]
+  double cost = 0;        ///< half the summed squares [px^2]
+  bool in_front = false;  ///< all points before the camera; else the rest is worthless
 };
 
 enum class Rotating { no, yes };  ///< no: the rows and columns of phi are left at zero

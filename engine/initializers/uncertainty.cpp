@@ -67,7 +67,9 @@ struct Linearization {
   double sigma_px = 0;
 };
 
-std::optional<Linearization> linearize(const Window& window, const PlaneMotion& motion) {
+std::optional<Linearization> linearize(const Window& window,
+                                       const PlaneMotion& motion,
+                                       RotationModel model) {
   const PlaneObservations observations = plane_observations(window);
   Linearization all;
   all.frames.resize(window.frame_count());
@@ -78,8 +80,7 @@ std::optional<Linearization> linearize(const Window& window, const PlaneMotion& 
     if (!all.frames[i].in_front) return std::nullopt;
     cost += all.frames[i].cost;
   }
-  const int freedom =
-      2 * observations.count() - unknown_count(window.frame_count(), window.rotations);
+  const int freedom = 2 * observations.count() - unknown_count(window.frame_count(), model);
   all.sigma_px = std::sqrt(2 * cost / std::max(1, freedom));
   return all;
 }
@@ -144,11 +145,11 @@ std::optional<double> normal_sigma_deg(const SharedInformation& information, dou
 
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
-                                          std::span<const Pose> cameras) {
+                                          std::span<const Pose> cameras,
+                                          RotationModel model) {
   const PlaneMotion motion = motion_of(plane, cameras);
-  const auto linearized = linearize(window, motion);
+  const auto linearized = linearize(window, motion, model);
   if (!linearized) return std::nullopt;
-  const RotationModel model = window.rotations;
   const auto inverse = inverse_of(information_of(window, *linearized, model));
   if (!inverse) return std::nullopt;
   Uncertainty result;

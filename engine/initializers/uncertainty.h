@@ -47,10 +47,11 @@ SharedInformation frame_information(const Window& window,
 /// is not determined.
 std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px);
 
-/// Of a solution on the window's inliers, with what the window says of its rotations. Nothing where
-/// the solution is not determined or a point lies behind a camera.
+/// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.
+/// Nothing where the solution is not determined or a point lies behind a camera.
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
-                                          std::span<const Pose> cameras);
+                                          std::span<const Pose> cameras,
+                                          RotationModel rotations);
 
 }  // namespace gpo

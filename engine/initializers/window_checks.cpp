@@ -30,10 +30,7 @@ constexpr double kLeastParallaxPx = 0.5;
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
 
-struct FrameErrors {
-  double homography_px;  ///< median transfer error of the frame's homography
-  double rotation_px;    ///< the same of the best rotation
-};
+}  // namespace
 
 FrameErrors frame_errors(const Window& window, int frame) {
   std::vector<int> inliers;
@@ -47,16 +44,19 @@ FrameErrors frame_errors(const Window& window, int frame) {
   const Matrix3Xd rays_i = (K_inverse * to.colwise().homogeneous()).colwise().normalized();
   const Matrix3d R_i1 = Eigen::umeyama(rays_1, rays_i, false).topLeftCorner<3, 3>();
   const Matrix3d H_rotation = window.K * R_i1 * K_inverse;
+  FrameErrors errors{.inliers = static_cast<int>(inliers.size())};
   std::vector<double> homography;
   std::vector<double> rotation;
   for (Eigen::Index k = 0; k < from.cols(); ++k) {
     homography.push_back((transfer(window.H_i1[frame], from.col(k)) - to.col(k)).norm());
     rotation.push_back((transfer(H_rotation, from.col(k)) - to.col(k)).norm());
+    errors.homography_squares += homography.back() * homography.back();
+    errors.rotation_squares += rotation.back() * rotation.back();
   }
-  return {median(std::move(homography)), median(std::move(rotation))};
+  errors.homography_px = median(std::move(homography));
+  errors.rotation_px = median(std::move(rotation));
+  return errors;
 }
-
-}  // namespace
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
   for (int i = 1; i < window.frame_count(); ++i) {
@@ -68,7 +68,7 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
                          kLeastInliers);
     }
   }
-  FrameErrors widest{0, 0};
+  FrameErrors widest;
   double least_px = 0;
   for (int i = 1; i < window.frame_count(); ++i) {
     const FrameErrors errors = frame_errors(window, i);

@@ -28,6 +28,16 @@ std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras);
 
+/// How a homography and the best rotation explain one frame's inliers.
+struct FrameErrors {
+  int inliers = 0;
+  double homography_px = 0;       ///< median transfer error of the frame's homography
+  double rotation_px = 0;         ///< the same of the best rotation
+  double homography_squares = 0;  ///< summed over both coordinates [px^2]
+  double rotation_squares = 0;    ///< [px^2]
+};
+FrameErrors frame_errors(const Window& window, int frame);
+
 /// Reprojection errors of the inlier observations [px], the reference frame's left out; infinite
 /// where the point falls behind the camera.
 std::vector<double> reprojection_errors_px(const Window& window,

@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/frontend/tracker.h"
+#include "engine/initializers/growth.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window_rotations.h"
 #include "engine/recording/board_truth.h"
@@ -136,6 +137,12 @@ void check_window(const Recording& recording, const Settings& settings) {
   }
 }
 
+std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
+  std::vector<Verdict> verdicts;
+  for (const GrowthStep& step : steps) verdicts.push_back(step.verdict);
+  return verdicts;
+}
+
 /// The plane z = 0 of a board.
 const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};
 
@@ -169,6 +176,7 @@ struct Inspector::Stages {
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
   Kept<std::tuple<TrackedSpan, RansacOptions>, std::shared_ptr<const Window>> outliers;
   Kept<std::tuple<TrackedSpan, RansacOptions, RotationSource>, Rotations> rotations;
+  Kept<std::tuple<TrackedSpan, RansacOptions, RotationSource>, std::vector<Verdict>> growth;
 
   bool update_tracks(const Settings& settings,
                      const std::stop_token& stop,
@@ -180,9 +188,7 @@ struct Inspector::Stages {
                                                    int frames,
                                                    const std::stop_token& stop,
                                                    const Progress& progress) const;
-  void initialize(const Settings& settings,
-                  const std::stop_token& stop,
-                  Inspection& inspection) const;
+  void initialize(const Settings& settings, const std::stop_token& stop, Inspection& inspection);
   bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
 };
 
@@ -260,7 +266,7 @@ bool Inspector::Stages::update_window(const Settings& settings,
 
 void Inspector::Stages::initialize(const Settings& settings,
                                    const std::stop_token& stop,
-                                   Inspection& inspection) const {
+                                   Inspection& inspection) {
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
   window.rotations = rotations.value.model;
@@ -280,6 +286,13 @@ void Inspector::Stages::initialize(const Settings& settings,
   t.initialize = milliseconds_since(begin);
   t.optimize = initialization.solver.milliseconds;
   t.total = t.track + t.ransac + t.rotations + t.initialize;
+  if (!rotations.value.R_wc.empty()) {
+    growth.update(*rotations.key, [&]() { return std::optional(verdicts_of(grow(window, stop))); });
+    inspection.growth = growth.value;
+    initialization = assessed(find_method(settings.method), window, std::move(initialization));
+    if (!initialization.verdict && static_cast<int>(growth.value.size()) == settings.frames - 1)
+      initialization.verdict = growth.value.back();
+  }
   inspection.tracks = tracks.value;
   inspection.truth = truth.value;
   inspection.window = std::make_shared<const Window>(std::move(window));

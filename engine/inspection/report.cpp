@@ -98,6 +98,54 @@ ordered_json metrics_json(const Evaluation& evaluation) {
           {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
 }
 
+ordered_json matrix_json(const auto& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(Eigen::VectorXd(row)));
+  return rows;
+}
+
+/// World = reference camera, plane distance 1; one center covariance and distance ratio a frame.
+ordered_json uncertainty_json(const Initialization& result) {
+  const Uncertainty& u = *result.uncertainty;
+  ordered_json centers = ordered_json::array();
+  for (const Eigen::Matrix3d& covariance : u.center_covariances)
+    centers.push_back(matrix_json(covariance));
+  ordered_json ratios = ordered_json::array();
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
+                      {"sigma", u.distance_ratio_sigmas[i]}});
+  }
+  ordered_json json = {{"rotations", to_string(u.rotations)},
+                       {"sigma_px", u.sigma_px},
+                       {"normal_sigma_deg", u.normal_sigma_deg},
+                       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
+                       {"distance_ratios", ratios},
+                       {"center_covariances", centers}};
+  if (u.bias_covariance) json["bias_covariance_rad2_s2"] = matrix_json(*u.bias_covariance);
+  json["bounds_deg"] = {{"known_rotations", optional_json(u.bound_known_rotations_deg)},
+                        {"unknown_bias", optional_json(u.bound_unknown_bias_deg)}};
+  return json;
+}
+
+ordered_json verdict_json(const Verdict& verdict) {
+  return {{"readiness", to_string(verdict.readiness)},
+          {"reason", verdict.reason},
+          {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)},
+          {"rotation_rms_px", optional_json(verdict.rotation_rms_px)},
+          {"noise_px", optional_json(verdict.noise_px)},
+          {"largest_translation", optional_json(verdict.largest_translation)}};
+}
+
+ordered_json growth_json(const Inspection& inspection) {
+  ordered_json growth = ordered_json::array();
+  for (std::size_t k = 0; k < inspection.growth.size(); ++k) {
+    growth.push_back({{"frames", k + 2},
+                      {"readiness", to_string(inspection.growth[k].readiness)},
+                      {"normal_sigma_deg", optional_json(inspection.growth[k].normal_sigma_deg)}});
+  }
+  return growth;
+}
+
 std::string row(const char* name, const std::string& value) {
   return fmt::format("{:<12}{}\n", name, value);
 }
@@ -121,6 +169,23 @@ std::string rotations_text(const Inspection& inspection) {
                      inspection.rotations_used == RotationSource::gyro
                          ? inspection.recording->gyroscope->bias_source
                          : "estimated from the window");
+}
+
+std::string uncertainty_text(const Initialization& result) {
+  std::string text;
+  if (result.uncertainty) {
+    text += row("certain to",
+                fmt::format("{:.3f} deg (one standard deviation, rotations {})",
+                            result.uncertainty->normal_sigma_deg,
+                            to_string(result.uncertainty->rotations)));
+  }
+  if (result.bias_rad_s) {
+    const Eigen::Vector3d& b = *result.bias_rad_s;
+    text += row("bias", fmt::format("{:.5f} {:.5f} {:.5f} rad/s", b.x(), b.y(), b.z()));
+  }
+  if (result.time_offset_s)
+    text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
+  return text;
 }
 
 std::string metrics_text(const Evaluation& e) {
@@ -162,6 +227,11 @@ ordered_json to_json(const Inspection& inspection) {
   }
   json["frames"] = frames_json(inspection);
   json["points"] = points_json(inspection);
+  if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
+  if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.uncertainty) json["uncertainty"] = uncertainty_json(result);
+  if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
+  if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
   json["solver"] = {{"iterations", solver.iterations},
                     {"initial_cost", solver.initial_cost},
@@ -194,13 +264,18 @@ std::string to_text(const Inspection& inspection) {
       row("rotations", rotations_text(inspection)) +
       row("status", result.ok ? "ok" : "failed: " + result.reason) +
       row("inliers", fmt::format("{} of {} tracks", window.inlier_count(0), window.track_count()));
+  if (result.verdict) {
+    text +=
+        row("verdict",
+            fmt::format("{}: {}", to_string(result.verdict->readiness), result.verdict->reason));
+  }
   if (result.ok) {
     const Eigen::Vector3d& n = result.plane.normal;
     text +=
         row("normal",
             fmt::format(
                 "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
-        row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
+        uncertainty_text(result) + row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
         row("solver",
             fmt::format("{} iterations, {} unknowns, {} residuals",
                         result.solver.iterations,

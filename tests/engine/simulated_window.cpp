@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_window.h"
 
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
 
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -13,6 +15,7 @@
 namespace gpo::test {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Vector3d position(const SimulationOptions& options, const Vector3d& normal, double s) {
@@ -23,10 +26,17 @@ Vector3d position(const SimulationOptions& options, const Vector3d& normal, doub
     case Motion::orbit:
       return options.travel *
              Vector3d(std::sin(angle), 0.4 * (1 - std::cos(angle)), 0.5 * (1 - std::cos(angle)));
+    case Motion::forward:
+      return options.travel * s * Vector3d::UnitZ();
     case Motion::approach:
       return -options.travel * s * normal;
     case Motion::oblique:
       return -options.travel * s * (normal + 0.6 * normal.unitOrthogonal()).normalized();
+    case Motion::up_down:
+      return options.travel * std::sin(2 * angle) * Vector3d::UnitY();
+    case Motion::arc:
+      return options.travel *
+             Vector3d(std::sin(angle), 1 - std::cos(angle), 0.2 * std::sin(2 * angle));
     case Motion::wander:
       return options.travel *
              Vector3d(0.5 * std::sin(4 * s), 0.4 * std::sin(3 * s), 0.3 * std::sin(5 * s));
@@ -34,6 +44,54 @@ Vector3d position(const SimulationOptions& options, const Vector3d& normal, doub
       break;
   }
   return Vector3d::Zero();
+}
+
+constexpr double kFramePeriod_s = 1.0 / 30;
+constexpr std::int64_t kFirst_ns = 1'000'000'000;
+
+/// Amplitudes of the camera's rotation [rad].
+Matrix3d rotation(const Vector3d& wobble_rad, double s) {
+  return so3_exp(
+      wobble_rad.cwiseProduct(Vector3d(std::sin(3 * s), std::sin(2 * s), std::sin(4 * s))));
+}
+
+/// 200 Hz, mounted across; of the true rotation, with noise of a phone's and the bias.
+Gyroscope gyroscope_of(const SimulationOptions& options,
+                       const Vector3d& wobble_rad,
+                       const Vector3d& bias_rad_s) {
+  std::mt19937_64 random(options.seed + 1'000'003);
+  std::normal_distribution<double> normal_noise;
+  Gyroscope gyroscope;
+  gyroscope.R_gyro_camera = so3_exp(Vector3d(1.2, -0.7, 2));
+  const double last_s = kFramePeriod_s * (options.frames - 1);
+  constexpr double kPeriod_s = 0.005;
+  for (double t = -kPeriod_s; t < last_s + 2 * kPeriod_s; t += kPeriod_s) {
+    const auto at = [&](double seconds) { return rotation(wobble_rad, seconds / last_s); };
+    const Vector3d rate_c =
+        so3_log(at(t - kPeriod_s / 2).transpose() * at(t + kPeriod_s / 2)) / kPeriod_s;
+    const Vector3d noise(normal_noise(random), normal_noise(random), normal_noise(random));
+    gyroscope.timestamps_ns.push_back(kFirst_ns + std::llround(1e9 * t));
+    gyroscope.rates_rad_s.emplace_back(gyroscope.R_gyro_camera * rate_c + bias_rad_s +
+                                       options.gyro_noise_rad_s * noise);
+    gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 2);
+  }
+  return gyroscope;
+}
+
+/// The given rotations from the gyroscope instead of the truth.
+void give_gyroscope(const SimulationOptions& options,
+                    const Vector3d& wobble_rad,
+                    Simulation& simulation) {
+  std::mt19937_64 random(options.seed + 2'000'003);
+  std::normal_distribution<double> normal_noise;
+  const Vector3d direction(normal_noise(random), normal_noise(random), normal_noise(random));
+  simulation.bias_rad_s = *options.gyro_bias_rad_s * direction.normalized();
+  Window& window = simulation.window;
+  Rotations rotations = sensitive_gyro_rotations(
+      gyroscope_of(options, wobble_rad, simulation.bias_rad_s), window.timestamps_ns);
+  window.R_wc = rotations.R_wc;
+  window.rotations = rotations.model;
+  window.gyro = rotations.gyro;
 }
 
 }  // namespace
@@ -45,7 +103,7 @@ Simulation simulate(const SimulationOptions& options) {
   Simulation simulation;
   Window& window = simulation.window;
   window.K << 500, 0, 319.5, 0, 500, 239.5, 0, 0, 1;
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const Matrix3d K_inverse = window.K.inverse();
   const double azimuth = 2 * std::numbers::pi * uniform(random);
   const double tilt = radians(options.tilt_deg);
   simulation.plane = {
@@ -56,10 +114,8 @@ Simulation simulate(const SimulationOptions& options) {
       0.1 * Vector3d(normal_noise(random), normal_noise(random), normal_noise(random));
   for (int i = 0; i < options.frames; ++i) {
     const double s = static_cast<double>(i) / std::max(1, options.frames - 1);
-    const Vector3d rotation =
-        wobble.cwiseProduct(Vector3d(std::sin(3 * s), std::sin(2 * s), std::sin(4 * s)));
     simulation.cameras.push_back(
-        {so3_exp(rotation), position(options, simulation.plane.normal, s)});
+        {rotation(wobble, s), position(options, simulation.plane.normal, s)});
   }
   window.points_px.assign(options.frames, Eigen::Matrix2Xd(2, options.points));
   for (int j = 0; j < options.points; ++j) {
@@ -81,13 +137,14 @@ Simulation simulate(const SimulationOptions& options) {
   }
   for (int i = 0; i < options.frames; ++i) {
     const auto& [R, p] = simulation.cameras[i];
-    const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-    window.timestamps_ns.push_back(1'000'000'000 + 33'333'333LL * i);
+    const Matrix3d I = Matrix3d::Identity();
+    window.timestamps_ns.push_back(kFirst_ns + std::llround(1e9 * kFramePeriod_s * i));
     window.inlier.push_back(simulation.on_plane);
     window.R_wc.push_back(R);
     window.H_i1.push_back(window.K * R.transpose() * (I + p * simulation.plane.normal.transpose()) *
                           K_inverse);
   }
+  if (options.gyro_bias_rad_s) give_gyroscope(options, wobble, simulation);
   return simulation;
 }
 

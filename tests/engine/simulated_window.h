@@ -7,13 +7,26 @@
 #include "engine/geometry/pose.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace gpo::test {
 
-/// oblique: towards the plane at 31 deg to its normal, along a straight line; both readings of its
-/// homographies are visible.
-enum class Motion { sideways, orbit, approach, oblique, wander, rotation_only };
+/// forward: along the optical axis. approach: along the plane's normal, where a rotation and a
+/// turn of the normal look alike. wander: hand-held. arc: sideways on a curve that turns with the
+/// camera, fast. oblique: towards the plane at 31 deg to its normal, along a straight line; both
+/// readings of its homographies are visible.
+enum class Motion {
+  sideways,
+  orbit,
+  forward,
+  approach,
+  oblique,
+  up_down,
+  wander,
+  arc,
+  rotation_only
+};
 
 struct SimulationOptions {
   Motion motion = Motion::sideways;
@@ -23,6 +36,10 @@ struct SimulationOptions {
   double travel = 0.3;    ///< length of the path [plane distance]
   double tilt_deg = 40;   ///< angle between the optical axis and the plane's normal
   double off_plane = 0;   ///< share of the tracks that do not lie on the plane
+  /// Rotations are integrated from a gyroscope whose bias of this length, in a random direction, is
+  /// not known [rad/s]; nothing: the true rotations.
+  std::optional<double> gyro_bias_rad_s = std::nullopt;
+  double gyro_noise_rad_s = 0;  ///< of a sample, each axis, at 200 Hz; a phone's is about 0.002
   std::uint64_t seed = 1;
 };
 
@@ -33,6 +50,7 @@ struct Simulation {
   Plane plane;
   std::vector<Pose> cameras;
   std::vector<bool> on_plane;
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< true, in the gyroscope's axes
 };
 
 Simulation simulate(const SimulationOptions& options);
