@@ -31,6 +31,7 @@ Settings settings_of(const Configuration& configuration, const Settings& window)
     settings.rotations = configuration.rotations;
   if (configuration.tracking != Tracking::frame_to_frame)
     settings.tracking = configuration.tracking;
+  if (configuration.inliers) settings.inliers = configuration.inliers;
   return settings;
 }
 

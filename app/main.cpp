@@ -100,7 +100,8 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
       "--methods",
       arguments.methods,
       "Of the views compare and curves: methods with commas, each with settings "
-      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]; default: every method");
+      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]; "
+      "default: every method");
   command->add_option("--lengths",
                       arguments.lengths,
                       "Of the view curves: lengths of the windows [frames], FROM:TO:STEP; default: "
@@ -123,8 +124,8 @@ void add_experiment(CLI::App& command, EvaluateArguments& arguments) {
           "--methods",
           arguments.methods,
           "Methods with commas, each with settings that differ from its defaults: "
-          "METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]; all: every method and the paper's "
-          "ablations")
+          "METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]; all: every "
+          "method and the paper's ablations")
       ->capture_default_str();
   command
       .add_option("--lengths", arguments.lengths, "Lengths of the windows [frames], FROM:TO:STEP")

@@ -30,6 +30,8 @@ constexpr std::array kVariations{
     Variation{"averaging", "with averaged rotations", 0xAA7711},
     Variation{"truth", "with true rotations", 0x666666},
     Variation{"anchored", "with anchored tracks", 0x44AA99},
+    Variation{"per-frame", "with inliers frame by frame", 0x661100},
+    Variation{"consistent", "with consistent inliers", 0x999933},
 };
 
 /// The paper's; beside them each method as it is.
@@ -51,8 +53,9 @@ bool is_source(const std::string& key) {
   return std::ranges::any_of(rotation_source_keys(), [&](const char* k) { return k == key; });
 }
 
-bool is_tracking(const std::string& key) {
-  return std::ranges::any_of(ChoiceKeys<Tracking>::keys, [&](const char* k) { return k == key; });
+template <Choice E>
+bool is_key_of(const std::string& key) {
+  return std::ranges::any_of(ChoiceKeys<E>::keys, [&](const char* k) { return k == key; });
 }
 
 std::string known_methods() {
@@ -62,25 +65,27 @@ std::string known_methods() {
 }
 
 void set(Configuration& configuration, const std::string& setting, const std::string& text) {
-  const bool is_ransac = setting == "ransac" || setting == "no-ransac";
-  if (!is_ransac && !is_source(setting) && !is_tracking(setting)) {
+  const auto once = [&](auto& value, auto untouched, auto chosen) {
+    if (value != untouched)
+      throw InputError(fmt::format("--methods: '{}' sets one thing twice", text));
+    value = chosen;
+  };
+  if (setting == "ransac" || setting == "no-ransac") {
+    once(configuration.ransac, std::nullopt, setting == "ransac");
+  } else if (is_source(setting)) {
+    once(configuration.rotations, RotationSource::automatic, rotation_source(setting));
+  } else if (is_key_of<Tracking>(setting)) {
+    once(configuration.tracking, Tracking::frame_to_frame, choice<Tracking>(setting));
+  } else if (is_key_of<Inliers>(setting)) {
+    once(configuration.inliers, std::nullopt, choice<Inliers>(setting));
+  } else {
     throw InputError(fmt::format(
-        "--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}, {}",
+        "--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}, {}, {}",
         text,
         setting,
         fmt::join(rotation_source_keys(), ", "),
-        fmt::join(ChoiceKeys<Tracking>::keys, ", ")));
-  }
-  const bool twice = is_ransac            ? configuration.ransac.has_value()
-                     : is_source(setting) ? configuration.rotations != RotationSource::automatic
-                                          : configuration.tracking != Tracking::frame_to_frame;
-  if (twice) throw InputError(fmt::format("--methods: '{}' sets one thing twice", text));
-  if (is_ransac) {
-    configuration.ransac = setting == "ransac";
-  } else if (is_source(setting)) {
-    configuration.rotations = rotation_source(setting);
-  } else {
-    configuration.tracking = choice<Tracking>(setting);
+        fmt::join(ChoiceKeys<Tracking>::keys, ", "),
+        fmt::join(ChoiceKeys<Inliers>::keys, ", ")));
   }
 }
 
@@ -100,6 +105,7 @@ std::vector<Variation> variations(const Configuration& configuration) {
   if (configuration.tracking != Tracking::frame_to_frame) {
     keys.emplace_back(to_string(configuration.tracking));
   }
+  if (configuration.inliers) keys.emplace_back(to_string(*configuration.inliers));
   std::vector<Variation> found;
   found.reserve(keys.size());
   for (const std::string& key : keys) {
@@ -128,8 +134,9 @@ Configuration parse_configuration(const std::string& text) {
   }
   Configuration configuration{.method = parts.front()};
   for (std::size_t i = 1; i < parts.size(); ++i) set(configuration, parts[i], text);
-  const bool by_default = uses_ransac({.method = configuration.method});
-  if (configuration.ransac == by_default) configuration.ransac.reset();
+  const Settings by_default{.method = configuration.method};
+  if (configuration.ransac == uses_ransac(by_default)) configuration.ransac.reset();
+  if (configuration.inliers == inliers_used(by_default)) configuration.inliers.reset();
   return configuration;
 }
 
@@ -176,6 +183,7 @@ Settings apply(const Configuration& configuration, Settings settings) {
   settings.ransac = configuration.ransac;
   settings.rotations = configuration.rotations;
   settings.tracking = configuration.tracking;
+  settings.inliers = configuration.inliers;
   return settings;
 }
 

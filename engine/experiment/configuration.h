@@ -12,13 +12,14 @@
 namespace gpo {
 
 /// A method, and the settings in which it differs from its own defaults: what an experiment
-/// compares. Written `METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored]`, e.g. `gpo`,
-/// `gpo+no-ransac`, `gpo+averaging`.
+/// compares. Written `METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]`,
+/// e.g. `gpo`, `gpo+no-ransac`, `gpo+averaging`.
 struct Configuration {
   std::string method;                         ///< key in `methods()`
   std::optional<bool> ransac = std::nullopt;  ///< nothing: as the method does by default
   RotationSource rotations = RotationSource::automatic;
   Tracking tracking = Tracking::frame_to_frame;
+  std::optional<Inliers> inliers = std::nullopt;  ///< nothing: as the method does by default
 
   bool operator==(const Configuration&) const = default;
 };
@@ -38,7 +39,7 @@ std::string title_of(const Configuration& configuration);
 /// The method's color, or for an ablation one of its own; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
-/// The settings with method, RANSAC, rotations and tracking as configured.
+/// The settings with method, RANSAC, rotations, tracking and inliers as configured.
 Settings apply(const Configuration& configuration, Settings settings);
 
 }  // namespace gpo

@@ -104,6 +104,7 @@ Row make_row(const Configuration& configuration, const Inspection& inspection) {
   Row row =
       refused_row(inspection.recording->name, configuration, inspection.settings, result.reason);
   row.settings.rotations = inspection.rotations_used;
+  row.settings.inliers = inspection.window->inliers;
   row.status = result.ok ? "ok" : "failed";
   row.tracks = inspection.window->track_count();
   row.inliers = inspection.window->inlier_count(0);

@@ -18,7 +18,7 @@ namespace gpo {
 struct Row {
   std::string recording;      ///< name
   std::string configuration;  ///< key
-  Settings settings;          ///< as used: RANSAC and rotations are what the defaults came to
+  Settings settings;          ///< as used: RANSAC, inliers, rotations are what the defaults came to
   std::string status;         ///< ok | failed
   std::string reason;         ///< of a failure
   std::optional<int> tracks, inliers;
@@ -44,7 +44,7 @@ void visit_row(R& row, Visitor&& visit) {
   visit("status", row.status);
   visit("reason", row.reason);
   visit("tracks", row.tracks);
-  visit("inliers", row.inliers);
+  visit("inlier_tracks", row.inliers);
   visit("rms_px", row.rms_px);
   visit("iterations", row.iterations);
   visit("unknowns", row.unknowns);

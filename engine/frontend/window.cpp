@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/window.h"
 
-#include "engine/geometry/homography.h"
+#include "engine/frontend/consistent_inliers.h"
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +31,16 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
+/// Leaves the window as it is where too few tracks are consistent.
+void keep_consistent(Window& window, double threshold_px) {
+  auto kept = consistent_inliers(
+      window.points_px, {window.H_i1, window.inlier}, {.threshold_px = threshold_px});
+  if (!kept) return;
+  window.H_i1 = std::move(kept->H_i1);
+  window.inlier = std::move(kept->inlier);
+  window.inliers = Inliers::consistent;
+}
+
 }  // namespace
 
 int Window::inlier_count(int frame) const {
@@ -50,7 +60,8 @@ bool Window::is_inlier_track(int track) const {
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
-                   const RansacOptions& ransac) {
+                   const RansacOptions& ransac,
+                   Inliers inliers) {
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
@@ -61,6 +72,8 @@ Window make_window(const Tracks& tracks,
   window.H_i1.push_back(Eigen::Matrix3d::Identity());
   window.inlier.emplace_back(tracks.track_count(), false);
   for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+  if (inliers == Inliers::consistent && ransac.enabled)
+    keep_consistent(window, ransac.threshold_px);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Eigen::Matrix3d::Identity());
   return window;

@@ -4,6 +4,7 @@
 
 #include "engine/choice.h"
 #include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/tracking.h"
 #include "engine/geometry/camera.h"
 
 #include <cstdint>
@@ -56,6 +57,7 @@ struct Window {
   std::vector<Eigen::Matrix2Xd> points_px;  ///< one a frame, 2 x tracks, undistorted; NaN: not seen
   std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
+  Inliers inliers = Inliers::per_frame;     ///< how they were told
   std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< what is uncertain of them
   std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope
@@ -71,11 +73,13 @@ struct Window {
 };
 
 /// Undistorts the tracks once and rejects outliers between the reference frame and each other
-/// frame. Rotations are left at the identity. `recording_timestamps_ns` are those of all frames of
-/// the recording.
+/// frame, then also over the window where `inliers` says so and enough tracks are consistent.
+/// Rotations are left at the identity. `recording_timestamps_ns` are those of all frames of the
+/// recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
-                   const RansacOptions& ransac);
+                   const RansacOptions& ransac,
+                   Inliers inliers = Inliers::per_frame);
 
 }  // namespace gpo

@@ -49,6 +49,7 @@ struct Kept {
 
 using Span = std::tuple<int, int>;  // start, frames
 using TrackedSpan = std::tuple<Span, Tracking>;
+using Rejected = std::tuple<TrackedSpan, RansacOptions, Inliers>;
 
 /// What is kept where it begins at the same frame and is long enough, else what is wanted.
 Span covering(const std::optional<Span>& kept, const Span& wanted) {
@@ -167,6 +168,13 @@ Inliers inliers_used(const Settings& settings) {
   return settings.inliers.value_or(find_method(settings.method).inliers);
 }
 
+std::string inliers_note(const Inspection& inspection) {
+  if (inspection.window->inliers == Inliers::consistent) return "tracks, consistent";
+  const Settings& settings = inspection.settings;
+  const bool asked = uses_ransac(settings) && inliers_used(settings) == Inliers::consistent;
+  return asked ? "tracks, per frame: too few are consistent" : "tracks";
+}
+
 struct Inspector::Stages {
   std::shared_ptr<const Recording> recording;
   std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
@@ -174,9 +182,9 @@ struct Inspector::Stages {
   Kept<TrackedSpan, std::shared_ptr<const Tracks>> tracks;
   Kept<Span, std::shared_ptr<const WindowTruth>> truth;
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
-  Kept<std::tuple<TrackedSpan, RansacOptions>, std::shared_ptr<const Window>> outliers;
-  Kept<std::tuple<TrackedSpan, RansacOptions, RotationSource>, Rotations> rotations;
-  Kept<std::tuple<TrackedSpan, RansacOptions, RotationSource>, std::vector<Verdict>> growth;
+  Kept<Rejected, std::shared_ptr<const Window>> outliers;
+  Kept<std::tuple<Rejected, RotationSource>, Rotations> rotations;
+  Kept<std::tuple<Rejected, RotationSource>, std::vector<Verdict>> growth;
 
   bool update_tracks(const Settings& settings,
                      const std::stop_token& stop,
@@ -253,11 +261,13 @@ bool Inspector::Stages::update_window(const Settings& settings,
                                       const std::stop_token& stop) {
   const TrackedSpan span(Span(settings.start, settings.frames), settings.tracking);
   const RansacOptions ransac = ransac_options(settings);
-  outliers.update({span, ransac}, [&]() {
+  const Inliers inliers = inliers_used(settings);
+  const Rejected rejected(span, ransac, inliers);
+  outliers.update(rejected, [&]() {
     return std::optional(std::make_shared<const Window>(
-        make_window(*tracks.value, recording->camera, recording->timestamps_ns, ransac)));
+        make_window(*tracks.value, recording->camera, recording->timestamps_ns, ransac, inliers)));
   });
-  return rotations.update({span, ransac, source}, [&]() -> std::optional<Rotations> {
+  return rotations.update({rejected, source}, [&]() -> std::optional<Rotations> {
     Rotations computed =
         window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
     return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));

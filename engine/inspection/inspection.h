@@ -44,6 +44,9 @@ struct Inspection {
   Timing timing;
 };
 
+/// What its inliers are a share of and how they were told, for people: "tracks, consistent".
+std::string inliers_note(const Inspection& inspection);
+
 /// "tracking 41/60": a stage's name, what is done, of how many (0: unknown).
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
 

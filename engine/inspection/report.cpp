@@ -35,7 +35,7 @@ ordered_json settings_json(const Inspection& inspection) {
     } else if constexpr (Choice<std::decay_t<decltype(value)>>) {
       json[key] = to_string(value);
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<Inliers>>) {
-      json[key] = to_string(inliers_used(inspection.settings));
+      json[key] = to_string(inspection.window->inliers);
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<bool>>) {
       json[key] = uses_ransac(inspection.settings);
     } else {
@@ -253,17 +253,20 @@ std::string to_text(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
   const Timing& t = inspection.timing;
-  std::string text =
-      row("recording", inspection.recording->name) +
-      row("window",
-          fmt::format("frames {} to {} ({})",
-                      window.start,
-                      window.start + window.frame_count() - 1,
-                      window.frame_count())) +
-      row("method", find_method(inspection.settings.method).title) +
-      row("rotations", rotations_text(inspection)) +
-      row("status", result.ok ? "ok" : "failed: " + result.reason) +
-      row("inliers", fmt::format("{} of {} tracks", window.inlier_count(0), window.track_count()));
+  std::string text = row("recording", inspection.recording->name) +
+                     row("window",
+                         fmt::format("frames {} to {} ({})",
+                                     window.start,
+                                     window.start + window.frame_count() - 1,
+                                     window.frame_count())) +
+                     row("method", find_method(inspection.settings.method).title) +
+                     row("rotations", rotations_text(inspection)) +
+                     row("status", result.ok ? "ok" : "failed: " + result.reason) +
+                     row("inliers",
+                         fmt::format("{} of {} {}",
+                                     window.inlier_count(0),
+                                     window.track_count(),
+                                     inliers_note(inspection)));
   if (result.verdict) {
     text +=
         row("verdict",

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -160,6 +161,16 @@ Simulation with_fitted_homographies(Simulation simulation) {
     window.H_i1[i] = refine_homography(*fit_homography(from, to), from, to);
   }
   return simulation;
+}
+
+Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers) {
+  const Camera camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
+  Tracks tracks{0, std::vector<std::int64_t>(simulation.window.track_count()), {}};
+  std::iota(tracks.ids.begin(), tracks.ids.end(), 0);
+  tracks.raw_px = simulation.window.points_px;
+  Window window = make_window(tracks, camera, simulation.window.timestamps_ns, {}, inliers);
+  window.R_wc = simulation.window.R_wc;
+  return window;
 }
 
 }  // namespace gpo::test

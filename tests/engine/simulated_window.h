@@ -59,4 +59,7 @@ Simulation simulate(const SimulationOptions& options);
 /// exact ones.
 Simulation with_fitted_homographies(Simulation simulation);
 
+/// The same tracks as the front end marks them, by RANSAC; rotations are the true ones.
+Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers);
+
 }  // namespace gpo::test

@@ -87,7 +87,7 @@ ResultGroup result_group(const Inspection& inspection) {
                         result.ok ? Tone::good : Tone::bad});
   group.rows.push_back({"Inliers",
                         fmt::format("{} / {}", window.inlier_count(0), window.track_count()),
-                        "tracks",
+                        inliers_note(inspection),
                         "Tracks that agree with the plane's homographies, of all"});
   const std::string no_solution = "Not known: the initialization failed";
   if (result.ok) {

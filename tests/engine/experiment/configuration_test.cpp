@@ -28,12 +28,19 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
   EXPECT_EQ(key_of(anchored), "ba+truth+anchored");
   EXPECT_EQ(title_of(anchored), "BA with true rotations with anchored tracks");
   EXPECT_EQ(apply(anchored, {}).tracking, Tracking::anchored);
+  const Configuration consistent = parse_configuration("gpo+consistent+truth+anchored");
+  EXPECT_EQ(consistent.inliers, Inliers::consistent);
+  EXPECT_EQ(key_of(consistent), "gpo+truth+anchored+consistent");
+  EXPECT_EQ(parse_configuration(key_of(consistent)), consistent);
+  EXPECT_EQ(title_of(parse_configuration("gpo+consistent")), "GPO with consistent inliers");
+  EXPECT_EQ(apply(consistent, {}).inliers, Inliers::consistent);
 }
 
 TEST(Configuration, DropsWhatRepeatsADefault) {
   EXPECT_EQ(key_of(parse_configuration("gpo+ransac")), "gpo");
   EXPECT_EQ(key_of(parse_configuration("gpo+automatic")), "gpo");
   EXPECT_EQ(key_of(parse_configuration("gpo+frame-to-frame")), "gpo");
+  EXPECT_EQ(key_of(parse_configuration("pnp+per-frame")), "pnp");
 }
 
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
@@ -89,6 +96,7 @@ TEST(Configuration, NamesTheOptionAndWhatIsKnown) {
               HasSubstr("'gpo+gyr': unknown setting 'gyr', expected one of ransac"));
   EXPECT_THAT(error("gpo+truth+gyro"), HasSubstr("sets one thing twice"));
   EXPECT_THAT(error("gpo+anchored+anchored"), HasSubstr("sets one thing twice"));
+  EXPECT_THAT(error("gpo+per-frame+consistent"), HasSubstr("sets one thing twice"));
 }
 
 }  // namespace

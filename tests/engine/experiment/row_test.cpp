@@ -48,12 +48,15 @@ TEST(Row, ComesBackFromJsonToTheBit) {
   row.settings.rotations = RotationSource::averaging;
   row.settings.ransac = false;
   row.settings.tracking = Tracking::anchored;
+  row.settings.inliers = Inliers::consistent;
+  row.inliers = 118;
   row.iterations = 9;
   const auto text = to_json(row).dump();
   const Row back = row_from_json(nlohmann::ordered_json::parse(text));
   EXPECT_EQ(back.pne_deg, row.pne_deg);
   EXPECT_EQ(to_csv(std::vector{back}), to_csv(std::vector{row}));
   EXPECT_EQ(back.settings, row.settings);
+  EXPECT_EQ(back.inliers, row.inliers);
 }
 
 TEST(Row, QuotesReasonsAndLeavesTheUnknownEmpty) {

@@ -96,11 +96,22 @@ TEST(Rotations, WhatTheRecordingLacksIsExplained) {
   EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("ground truth"));
 }
 
+TEST(Results, SayHowInliersWereTold) {
+  Inspection inspection = inspected();
+  inspection.settings.inliers = Inliers::consistent;
+  EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, per frame: too few are consistent");
+  Window window = *inspection.window;
+  window.inliers = Inliers::consistent;
+  inspection.window = std::make_shared<const Window>(window);
+  EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
+}
+
 TEST(Results, CarryUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection);
   EXPECT_EQ(rows.at("Status").value, "ok");
   EXPECT_EQ(rows.at("Inliers").value, "2 / 3");
+  EXPECT_EQ(rows.at("Inliers").note, "tracks");
   EXPECT_EQ(rows.at("RMS").value, "0.43 px");
   EXPECT_EQ(rows.at("Iterations").value, "9");
   EXPECT_EQ(rows.at("PNE").value, "0.315\u00b0");

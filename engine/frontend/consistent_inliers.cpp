@@ -1,0 +1,130 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/consistent_inliers.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/geometry/median.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+
+/// The median length of a two-dimensional Gaussian error of standard deviation 1 (Rayleigh's).
+const double kRayleighMedian = std::sqrt(2 * std::log(2));
+/// A Gaussian's standard deviation, in its median absolute deviations.
+constexpr double kMadToSigma = 1.4826;
+
+std::vector<int> indices(const std::vector<bool>& flags) {
+  std::vector<int> of_true;
+  for (std::size_t j = 0; j < flags.size(); ++j) {
+    if (flags[j]) of_true.push_back(static_cast<int>(j));
+  }
+  return of_true;
+}
+
+/// The homographies of the inliers; whether there are enough in every frame.
+bool fit(PlaneTracks& tracks,
+         const std::vector<Matrix2Xd>& points_px,
+         const ConsistencyOptions& options) {
+  for (std::size_t i = 1; i < points_px.size(); ++i) {
+    const std::vector<int> inliers = indices(tracks.inlier[i]);
+    if (static_cast<int>(inliers.size()) < options.least_inliers) return false;
+    tracks.H_i1[i] = refine_homography(
+        tracks.H_i1[i], points_px[0](Eigen::all, inliers), points_px[i](Eigen::all, inliers));
+  }
+  return true;
+}
+
+/// Transfer errors of the tracks, frames x tracks, in standard deviations of one coordinate of
+/// their frame's inliers; NaN where not seen. Beside it, how large an error still agrees, one a
+/// frame.
+struct Errors {
+  Eigen::ArrayXXd normalized;
+  Eigen::ArrayXd gate;
+};
+
+Errors errors_of(const PlaneTracks& tracks,
+                 const std::vector<Matrix2Xd>& points_px,
+                 const ConsistencyOptions& options) {
+  const auto frames = static_cast<Eigen::Index>(points_px.size());
+  Errors errors{Eigen::ArrayXXd(frames, points_px[0].cols()), Eigen::ArrayXd(frames)};
+  for (Eigen::Index i = 1; i < frames; ++i) {
+    std::vector<double> of_inliers_px;
+    for (Eigen::Index j = 0; j < points_px[0].cols(); ++j) {
+      const double error_px =
+          (transfer(tracks.H_i1[i], points_px[0].col(j)) - points_px[i].col(j)).norm();
+      errors.normalized(i, j) = error_px;
+      if (tracks.inlier[i][j]) of_inliers_px.push_back(error_px);
+    }
+    const double sigma_px =
+        std::max(median(std::move(of_inliers_px)) / kRayleighMedian, options.least_sigma_px);
+    errors.normalized.row(i) /= sigma_px;
+    errors.gate[i] = std::min(options.sigmas, options.threshold_px / sigma_px);
+  }
+  return errors;
+}
+
+/// Mean square over the frames that see the track, each error at most its gate; nothing where it
+/// agrees in too few of them.
+std::optional<double> mean_square(const Errors& errors, Eigen::Index track, double share) {
+  int seen = 0;
+  int agreeing = 0;
+  double sum = 0;
+  for (Eigen::Index i = 1; i < errors.gate.size(); ++i) {
+    const double error = errors.normalized(i, track);
+    if (std::isnan(error)) continue;
+    ++seen;
+    agreeing += error <= errors.gate[i] ? 1 : 0;
+    sum += std::pow(std::min(error, errors.gate[i]), 2);
+  }
+  const bool enough = agreeing > 0 && agreeing >= share * seen;
+  return enough ? std::optional(sum / seen) : std::nullopt;
+}
+
+/// Above it a mean square stands out among the others; never below that of pure noise.
+double largest_mean_square(const std::vector<std::optional<double>>& mean_squares, double sigmas) {
+  std::vector<double> values;
+  for (const auto& value : mean_squares) {
+    if (value) values.push_back(*value);
+  }
+  if (values.empty()) return 0;
+  const double middle = median(values);
+  for (double& value : values) value = std::abs(value - middle);
+  return std::max(middle + sigmas * kMadToSigma * median(std::move(values)), 2.0);
+}
+
+/// The inliers, one a frame and track; none in the reference frame.
+std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOptions& options) {
+  const Eigen::Index tracks = errors.normalized.cols();
+  std::vector<std::optional<double>> mean_squares;
+  for (Eigen::Index j = 0; j < tracks; ++j)
+    mean_squares.push_back(mean_square(errors, j, options.share));
+  const double largest = largest_mean_square(mean_squares, options.sigmas_of_track);
+  std::vector<std::vector<bool>> inlier(errors.gate.size(), std::vector<bool>(tracks, false));
+  for (Eigen::Index j = 0; j < tracks; ++j) {
+    if (!mean_squares[j] || *mean_squares[j] > largest) continue;
+    for (Eigen::Index i = 1; i < errors.gate.size(); ++i)
+      inlier[i][j] = errors.normalized(i, j) <= errors.gate[i];
+  }
+  return inlier;
+}
+
+}  // namespace
+
+std::optional<PlaneTracks> consistent_inliers(const std::vector<Matrix2Xd>& points_px,
+                                              PlaneTracks found,
+                                              const ConsistencyOptions& options) {
+  for (int round = 0;; ++round) {
+    if (!fit(found, points_px, options)) return std::nullopt;
+    auto inlier = choose(errors_of(found, points_px, options), options);
+    if (inlier == found.inlier || round == options.most_rounds) return found;
+    found.inlier = std::move(inlier);
+  }
+}
+
+}  // namespace gpo
