@@ -15,17 +15,27 @@ namespace gpo {
 struct AnchorOptions {
   int half_patch_px = 10;          ///< half the side of a look, in the reference picture [px]
   double blur_px = 0.8;            ///< standard deviation, of both pictures before comparing [px]
-  double settled_px = 0.01;        ///< rounds end where the median place moves less [px]
-  int most_rounds = 4;             ///< of homography and search [-]
   double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
   double least_correlation = 0.7;  ///< zero-mean normalized, below it a track is lost [-]
   RansacOptions ransac = {};       ///< tells the tracks on the plane; with a seed of its own
 };
 
+/// A look's pixels where they are carried to, exact at 3 x 3 nodes: left, middle and right of its
+/// first, middle and last row. 2 x 9, row by row.
+using Nodes = Eigen::Matrix<double, 2, 9>;
+
+/// The places of all pixels, row by row, on the quadratics through those of the nodes; 2 x pixels.
+Eigen::Matrix2Xf places_between(const Nodes& nodes_px, int width, int height);
+
 /// What a track looks like in the reference frame: the whole pixels around its corner.
 struct Look {
-  Eigen::Matrix2Xd undistorted_px;  ///< where they are
-  Eigen::VectorXd gray;             ///< how bright, in gray levels, their mean taken off
+  int width = 0;         ///< [px]
+  int height = 0;        ///< [px]
+  Nodes undistorted_px;  ///< where its nodes are
+  /// One pixel a row: slopes of the brightness along x and y [gray levels / px], brightness with
+  /// the mean taken off [gray levels], 1.
+  Eigen::Matrix<float, Eigen::Dynamic, 4> model;
+  Eigen::Matrix4f normal;  ///< model^T model
 };
 
 /// The looks of a window's tracks in its reference frame, to which `hold` compares later frames.
@@ -44,9 +54,8 @@ Anchors make_anchors(const cv::Mat& gray,
 /// Takes the drift from tracks on the plane. `followed_px` is 2 x tracks, raw pixels of the picture
 /// `gray` to which frame-to-frame tracking came, NaN: lost. A track that agrees with the homography
 /// from the reference frame is searched for with its own look, carried over by that homography and
-/// the lens, whatever gain and offset the exposure has; the homography is estimated anew from what
-/// was found until nothing moves. Such a track is lost where its look is not found. The others stay
-/// as they are.
+/// the lens, whatever gain and offset the exposure has; it is lost where its look is not found. The
+/// others stay as they are.
 Eigen::Matrix2Xd hold(const Anchors& anchors,
                       const cv::Mat& gray,
                       const Eigen::Matrix2Xd& followed_px,

@@ -27,6 +27,34 @@ std::vector<bool> agreeing(const Matrix3d& H,
   return inlier;
 }
 
+/// The homography that takes three points to three points and a fourth one, their sum once they are
+/// scaled, to the fourth one. Not fit for use where three are in a line.
+Matrix3d through_four(const Matrix2Xd& from, const Matrix2Xd& to, const std::array<int, 4>& four) {
+  const auto basis = [&four](const Matrix2Xd& x) -> Matrix3d {
+    Matrix3d three;
+    for (int k = 0; k < 3; ++k) three.col(k) = x.col(four[k]).homogeneous();
+    return three * (three.inverse() * x.col(four[3]).homogeneous()).asDiagonal();
+  };
+  return basis(to) * basis(from).inverse();
+}
+
+/// Whether more than `most` pairs agree with H, up to rounding; ends as soon as they cannot. For
+/// the many samples that are to be refused, at a tenth of the time of fitting and `agreeing`.
+bool more_agree(const Matrix3d& H,
+                const Matrix2Xd& from,
+                const Matrix2Xd& to,
+                double threshold_px,
+                std::ptrdiff_t most) {
+  std::ptrdiff_t may_refuse = from.cols() - most;
+  for (Eigen::Index j = 0; j < from.cols() && may_refuse > 0; ++j) {
+    const Eigen::Vector3d y = H * from.col(j).homogeneous();
+    const Eigen::Vector2d error = y.head<2>() - y.z() * to.col(j);
+    const double radius = threshold_px * y.z();
+    if (!(y.z() * H(2, 2) > 0 && error.squaredNorm() <= radius * radius)) --may_refuse;
+  }
+  return may_refuse > 0;
+}
+
 Matrix2Xd columns(const Matrix2Xd& x, const std::vector<bool>& chosen) {
   Matrix2Xd out(2, std::ranges::count(chosen, true));
   Eigen::Index k = 0;
@@ -72,6 +100,7 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
   int needed = options.most_iterations;
   for (int iteration = 0; iteration < needed; ++iteration) {
     const std::array<int, 4> sample = draw_four(random, n);
+    if (!more_agree(through_four(from, to, sample), from, to, options.threshold_px, most)) continue;
     const auto H = fit_homography(from(Eigen::all, sample), to(Eigen::all, sample));
     if (!H) continue;
     std::vector<bool> inlier = agreeing(*H, from, to, options.threshold_px);

@@ -108,6 +108,34 @@ Eigen::Matrix2Xd follow(const Pyramid& from,
   return after;
 }
 
+Eigen::Index count_living(const Eigen::Matrix2Xd& places) {
+  return places.row(0).array().isFinite().count();
+}
+
+/// The picture with mean and contrast of the other one.
+cv::Mat as_bright_as(const cv::Mat& other, const cv::Mat& gray) {
+  cv::Scalar mean_other, contrast_other, mean, contrast;
+  cv::meanStdDev(other, mean_other, contrast_other);
+  cv::meanStdDev(gray, mean, contrast);
+  const double gain = contrast_other[0] / std::max(contrast[0], 1.0);
+  cv::Mat alike;
+  gray.convertTo(alike, -1, gain, mean_other[0] - gain * mean[0]);
+  return alike;
+}
+
+/// `follow` for a picture whose exposure may have jumped: KLT compares brightness as it is.
+Eigen::Matrix2Xd follow_exposed(const Pyramid& from,
+                                const Pyramid& to,
+                                const Eigen::Matrix2Xd& before,
+                                const TrackerOptions& options) {
+  Eigen::Matrix2Xd after = follow(from, to, before, options);
+  const auto enough = options.least_followed * static_cast<double>(count_living(before));
+  if (static_cast<double>(count_living(after)) >= enough) return after;
+  const Pyramid alike = build_pyramid(as_bright_as(from.front(), to.front()), options);
+  Eigen::Matrix2Xd again = follow(from, alike, before, options);
+  return count_living(again) > count_living(after) ? again : after;
+}
+
 }  // namespace
 
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options) {
@@ -165,9 +193,10 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
       for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
       if (anchored) anchors = make_anchors(gray, tracks.raw_px[0], camera, options.anchor);
     } else {
-      Eigen::Matrix2Xd places = follow(before, now, tracks.raw_px.back(), options);
-      if (anchored) places = hold(anchors, gray, places, options.anchor);
-      tracks.raw_px.push_back(std::move(places));
+      const Eigen::Matrix2Xd& last = tracks.raw_px.back();
+      tracks.raw_px.push_back(
+          anchored ? hold(anchors, gray, follow_exposed(before, now, last, options), options.anchor)
+                   : follow(before, now, last, options));
     }
     before = std::move(now);
     if (progress) progress(i + 1, frames);

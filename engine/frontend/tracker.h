@@ -37,7 +37,9 @@ struct TrackerOptions {
   int pyramid_levels = 4;            ///< beside the full picture [-]
   double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
   Tracking tracking = Tracking::frame_to_frame;
-  AnchorOptions anchor = {};  ///< of anchored tracking
+  AnchorOptions anchor = {};    ///< of anchored tracking
+  double least_followed = 0.9;  ///< of the tracks; where anchored tracking follows fewer into a
+                                ///< picture, it tries again with their brightness made alike [-]
 };
 
 /// Told of what is done; "tracking 41/60".

@@ -7,6 +7,7 @@
 
 #include <functional>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -88,6 +89,20 @@ TEST(Anchors, SurviveExposureAndBlur) {
   EXPECT_GT(living(held, kLast), 0.85 * living(undisturbed, kLast));
 }
 
+TEST(Anchors, SurviveAJumpOfTheExposure) {
+  const auto recording = desk();
+  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  for (const double gain : {0.7, 0.85, 1.2}) {
+    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+      if (i >= 10 && i < 20) bgr.convertTo(bgr, -1, gain);
+    });
+    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    EXPECT_LT(median_error_px(*recording, held, kLast), 0.05) << gain;
+    EXPECT_GE(living(held, 10), 0.95 * living(undisturbed, 10)) << gain;
+    EXPECT_GE(living(held, kLast), 0.9 * living(undisturbed, kLast)) << gain;
+  }
+}
+
 TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
   const auto recording = desk();
   const cv::Rect hidden(200, 140, 200, 180);
@@ -106,6 +121,47 @@ TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
   }
   EXPECT_LT(living(held, kLast), living(held, 9) - 20);
   EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
+  // Nothing that lives took hold of what hid it: where it is, it also is without.
+  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  for (int j = 0; j < held.track_count(); ++j) {
+    if (!held.seen(kLast, j) || !undisturbed.seen(kLast, j)) continue;
+    EXPECT_LT((held.raw_px[kLast].col(j) - undisturbed.raw_px[kLast].col(j)).norm(), 0.5) << j;
+  }
+}
+
+// The quadratics between nine exact places against every pixel's own, with the recordings' lens and
+// a camera that went 15 degrees around the middle of the picture.
+TEST(Anchors, CarryPatchesToAFewThousandthsOfAPixel) {
+  const Camera camera = desk()->camera;
+  const Eigen::Matrix3d K = intrinsic_matrix(camera);
+  const Eigen::Matrix3d R(Eigen::AngleAxisd(0.26, Eigen::Vector3d(0.2, 0.9, 0.3).normalized()));
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();  // the middle; the plane is Z = 1
+  const Eigen::Vector3d center = z - R.transpose() * z;
+  const Eigen::Matrix3d H =
+      K * R * (Eigen::Matrix3d::Identity() - center * z.transpose()) * K.inverse();
+  constexpr int kHalf = 10;
+  constexpr int kSide = 2 * kHalf + 1;
+  int patches = 0;
+  for (int corner = 0; corner < 32 * 24; ++corner) {
+    const cv::Point first(20 * (corner % 32), 20 * (corner / 32));
+    const auto exact = [&](int u, int v) {
+      const Eigen::Vector2d px(first.x + u, first.y + v);
+      return distort(camera, (H * undistort(camera, px).homogeneous()).hnormalized());
+    };
+    Nodes nodes;
+    for (int k = 0; k < 9; ++k) nodes.col(k) = exact(kHalf * (k % 3), kHalf * (k / 3));
+    const Eigen::Vector2d middle = nodes.col(4);
+    if (middle.minCoeff() < 0 || middle.x() > camera.width || middle.y() > camera.height) continue;
+    ++patches;
+    const Eigen::Matrix2Xf places = places_between(nodes, kSide, kSide);
+    double worst_px = 0;
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const Eigen::Vector2d error = places.col(k).cast<double>() - exact(k % kSide, k / kSide);
+      worst_px = std::max(worst_px, error.norm());
+    }
+    EXPECT_LT(worst_px, 0.005) << middle.transpose();
+  }
+  EXPECT_GT(patches, 400);
 }
 
 TEST(Anchors, AreTheSameInEveryRun) {
