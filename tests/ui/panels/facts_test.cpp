@@ -96,6 +96,22 @@ TEST(Rotations, WhatTheRecordingLacksIsExplained) {
   EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("ground truth"));
 }
 
+TEST(Settings, ThatDoNothingSayWhy) {
+  Settings settings;
+  for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"}) {
+    EXPECT_EQ(why_idle(settings, key), "") << key;
+  }
+  for (const char* key : {"error", "loss", "time_offset"}) {
+    EXPECT_THAT(why_idle(settings, key), HasSubstr("gpo_joint")) << key;
+  }
+  settings.ransac = false;
+  EXPECT_THAT(why_idle(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
+  EXPECT_THAT(why_idle(settings, "inliers"), HasSubstr("RANSAC"));
+  settings.method = "ba";  // takes all tracks, and still counts inliers
+  EXPECT_EQ(why_idle(settings, "ransac_threshold_px"), "");
+  EXPECT_THAT(why_idle(settings, "solver"), HasSubstr("gpo"));
+}
+
 TEST(Results, CarryUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection);
@@ -171,6 +187,13 @@ TEST(Numbers, KeepThreeDigitsThatMeanSomething) {
   EXPECT_EQ(angle_text(0.00123), "0.001\u00b0");
   EXPECT_EQ(angle_text(178.6), "179\u00b0");
   EXPECT_EQ(milliseconds_text(1234.5), "1234 ms");
+}
+
+TEST(Numbers, ErrorsTellHowManyDigitsMeanSomething) {
+  EXPECT_EQ(uncertain_text(0.91234, 0.0042), "0.9123 \u00b10.0042");
+  EXPECT_EQ(uncertain_text(12.34, 3.2), "12.3 \u00b13.2");
+  EXPECT_EQ(uncertain_text(123.4, 32), "123 \u00b132");
+  EXPECT_EQ(uncertain_text(0.5, 1e-9), "0.500000 \u00b10.000000");
 }
 
 }  // namespace
