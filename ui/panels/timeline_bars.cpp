@@ -20,16 +20,17 @@ using palette::kText;
 using palette::kTextDim;
 
 struct BarColors {
-  std::uint32_t inliers, others;
+  ImU32 inliers, others;
 };
 
 /// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
 /// taken for one, so what is no inlier is gray then. Without a verdict it is told by green and red.
 BarColors bar_colors(const Inspection& inspection, int frame) {
   const auto& growth = inspection.growth;
-  if (growth.empty()) return {kGood, kBad};
+  if (growth.empty()) return {imgui_color(kGood, 0.75), imgui_color(kBad, 0.75)};
   const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
-  return {judged ? look_of(growth[frame - 1].readiness).rgb : kTextDim, palette::kActive};
+  const std::uint32_t rgb = judged ? look_of(growth[frame - 1].readiness).rgb : kTextDim;
+  return {imgui_color(rgb, 0.75), imgui_color(kTextDim, 0.4)};
 }
 
 }  // namespace
@@ -45,10 +46,9 @@ void draw_tracks(
     const float left = slot_begin(axis, window.start + i);
     const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
     const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
-    list.AddRectFilled({left, bottom - a_track * static_cast<float>(seen)},
-                       {right, inliers},
-                       imgui_color(colors.others, 0.75));
-    list.AddRectFilled({left, inliers}, {right, bottom}, imgui_color(colors.inliers, 0.75));
+    list.AddRectFilled(
+        {left, bottom - a_track * static_cast<float>(seen)}, {right, inliers}, colors.others);
+    list.AddRectFilled({left, inliers}, {right, bottom}, colors.inliers);
   }
 }
 

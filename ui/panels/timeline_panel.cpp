@@ -121,7 +121,11 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   if (ImGui::IsItemActive()) {
     push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
-    const int frame = frame_at(axis, ImGui::GetIO().MousePos.x);
+    const float x = ImGui::GetIO().MousePos.x;
+    const int frame = frame_at(axis, x);
+    // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
+    const float share = x / ImGui::GetIO().DisplaySize.x;
+    ImGui::SetNextWindowPos({x, bar.y - 8 * input.scale}, 0, {share, 1});
     tooltip(shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame));
   }
   draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
