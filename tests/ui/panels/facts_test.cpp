@@ -15,6 +15,7 @@ using testing::HasSubstr;
 
 std::vector<std::int64_t> times(int count, double rate_hz) {
   std::vector<std::int64_t> all;
+  all.reserve(count);
   for (int i = 0; i < count; ++i) all.push_back(static_cast<std::int64_t>(i * 1e9 / rate_hz));
   return all;
 }
