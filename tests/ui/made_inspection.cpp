@@ -154,6 +154,60 @@ void add_truth(Inspection& inspection) {
   inspection.true_cube = anchor_on_plane(plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
 }
 
+/// A normal uncertain mostly about the way of the camera, centers ever more along theirs.
+Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
+  Uncertainty uncertainty;
+  uncertainty.sigma_px = 0.4;
+  uncertainty.rotations = RotationModel::bias;
+  const double sigma = radians(normal_sigma_deg);
+  const Vector3d x = Vector3d::UnitX(), y = estimate.plane.normal.cross(x).normalized();
+  const Vector3d z = y.cross(estimate.plane.normal);
+  uncertainty.normal_covariance =
+      sigma * sigma * (0.8 * y * y.transpose() + 0.2 * z * z.transpose());
+  uncertainty.normal_sigma_deg = normal_sigma_deg;
+  for (const Pose& pose : estimate.cameras) {
+    const Vector3d p = pose.p_wc;
+    uncertainty.center_covariances.push_back(
+        sigma * sigma * (p * p.transpose() + 0.1 * p.squaredNorm() * Eigen::Matrix3d::Identity()));
+    uncertainty.distance_ratio_sigmas.push_back(0.5 * sigma * p.norm());
+  }
+  uncertainty.bias_covariance = 0.25e-6 * Eigen::Matrix3d::Identity();
+  uncertainty.bound_known_rotations_deg = 0.6 * normal_sigma_deg;
+  uncertainty.bound_unknown_bias_deg = 0.9 * normal_sigma_deg;
+  return uncertainty;
+}
+
+/// Of the window of so many frames: degenerate, then weak, then ready.
+Verdict made_verdict(int frames, double normal_sigma_deg) {
+  Verdict verdict;
+  verdict.normal_sigma_deg = normal_sigma_deg * kLength / frames;
+  verdict.rotation_rms_px = 0.4 + 0.3 * (frames - 2);
+  verdict.noise_px = 0.4;
+  verdict.largest_translation = 0.45 * frames / kLength;
+  verdict.readiness = frames < 6    ? Readiness::degenerate
+                      : frames < 15 ? Readiness::weak
+                                    : Readiness::ready;
+  verdict.reason = frames < 6    ? "hardly any parallax: rotation alone explains the tracks"
+                   : frames < 15 ? "the normal is uncertain; a longer window would help"
+                                 : "the normal is sure enough";
+  return verdict;
+}
+
+void add_uncertainty(Inspection& inspection, double normal_sigma_deg) {
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  for (int frames = 2; frames <= kLength; ++frames)
+    inspection.growth.push_back(made_verdict(frames, normal_sigma_deg));
+  result->verdict = inspection.growth.back();
+  if (result->ok) {
+    result->uncertainty = made_uncertainty(*result, normal_sigma_deg);
+    result->bias_rad_s = Vector3d(0.0123, -0.0045, 0.0008);
+  } else {
+    result->verdict = inspection.growth.front();
+    result->verdict->reason = result->reason;
+  }
+  inspection.initialization = result;
+}
+
 }  // namespace
 
 Inspection made_inspection(const MadeOptions& options) {
@@ -170,6 +224,7 @@ Inspection made_inspection(const MadeOptions& options) {
         "no parallax: rotation alone explains the tracks to 0.48 px, where noise is 0.40 px";
     inspection.initialization = estimate;
   }
+  if (options.normal_sigma_deg > 0) add_uncertainty(inspection, options.normal_sigma_deg);
   if (options.truth) add_truth(inspection);
   return inspection;
 }

@@ -222,6 +222,17 @@ TEST(WindowSnapshot, IsDrawnAtAnySize) {
   }
 }
 
+TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
+  const auto judged = made({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
+  for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1280, 720), cv::Size(1920, 1080)}) {
+    const cv::Mat picture = snapshot_window(judged, 29, size);
+    EXPECT_FALSE(same_bytes(picture, snapshot_window(made(), 29, size)));
+    const std::filesystem::path folder = GPO_TEST_OUTPUT_DIR;
+    std::filesystem::create_directories(folder);
+    cv::imwrite((folder / ("window_" + std::to_string(size.width) + ".png")).string(), picture);
+  }
+}
+
 /// Draws in a real window; in a process that has a display.
 TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
   const auto inspection = made();

@@ -3,7 +3,9 @@
 #include "ui/panels/facts.h"
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/initializers/methods.h"
 #include "engine/recording/timestamps.h"
+#include "ui/panels/uncertainty_facts.h"
 
 #include <optional>
 
@@ -11,12 +13,6 @@
 
 namespace gpo {
 namespace {
-
-constexpr const char* kDash = "\u2013";
-
-ResultRow dash(std::string label, std::string why) {
-  return {std::move(label), kDash, "", std::move(why), Tone::dim};
-}
 
 std::string why_no_metric(const Inspection& inspection) {
   if (!inspection.truth) return "Not known: the recording has no ground truth";
@@ -142,6 +138,10 @@ ResultGroup nothing(std::string title, std::vector<std::string> labels) {
 
 }  // namespace
 
+ResultRow dash(std::string label, std::string why) {
+  return {std::move(label), "\u2013", "", std::move(why), Tone::dim};
+}
+
 std::vector<std::string> recording_facts(const Recording& recording) {
   std::vector<std::string> facts = {
       recording.name,
@@ -169,14 +169,31 @@ std::string why_no_rotations(const Recording& recording, RotationSource source) 
   return "";
 }
 
+std::string why_idle(const Settings& settings, const std::string& key) {
+  const std::string& method = settings.method;
+  const bool all_inliers = !uses_ransac(settings) && find_method(method).needs_plane;
+  if ((key == "ransac_threshold_px" || key == "inliers") && all_inliers)
+    return "Without RANSAC every track counts as an inlier";
+  if (key == "solver" && method != "gpo" && method != "gpo_joint")
+    return "Only gpo and gpo_joint let one choose who minimizes";
+  if ((key == "error" || key == "loss" || key == "time_offset") && method != "gpo_joint")
+    return "Only gpo_joint lets one choose this";
+  return "";
+}
+
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings) {
   if (!inspection || !inspection->initialization || !inspection->window) {
-    return {nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
+    return {nothing(kVerdictTitle, {"Rotation alone", "Moved"}),
+            nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
             nothing("AGAINST THE TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
+            nothing("UNCERTAINTY",
+                    {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             nothing("TIME", {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
   }
-  return {result_group(*inspection),
+  return {verdict_group(*inspection),
+          result_group(*inspection),
           metrics_group(*inspection),
+          uncertainty_group(*inspection),
           timing_group(inspection->timing, timings)};
 }
 

@@ -29,9 +29,8 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
     if (action.checked) {
       row.on = action.checked(state);
       row.value = row.on ? "on" : "off";
-    } else if (action.value) {
-      row.value = action.value(state);
     }
+    if (action.value) row.value = action.value(state);
     rows.push_back(std::move(row));
   }
   const std::array<std::array<const char*, 2>, 5> mouse = {

@@ -3,8 +3,10 @@
 #include "ui/context/gui.h"
 #include "ui/panels/facts.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/uncertainty_facts.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/palette.h"
+#include "ui/views/verdict_look.h"
 
 #include <cmath>
 
@@ -71,6 +73,31 @@ void draw_pairs(const ResultGroup& group, float left, float right, float gap) {
   ImGui::PopFont();
 }
 
+/// Sign and word to the left, the normal's standard deviation to the right; the reason below.
+void draw_verdict(const Verdict& verdict, float left, float right, float gap, float scale) {
+  const ReadinessLook look = look_of(verdict.readiness);
+  ImGui::SetCursorPosX(left);
+  ImGui::BeginGroup();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 middle(at.x + 6 * scale, at.y + ImGui::GetTextLineHeight() / 2);
+  draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
+  ImGui::SetCursorPosX(std::round(left + 18 * scale));
+  ImGui::PushFont(font(Font::bold));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(look.rgb));
+  ImGui::TextUnformatted(to_string(verdict.readiness));
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  if (verdict.normal_sigma_deg)
+    draw_value({"", "\u00b1" + angle_text(*verdict.normal_sigma_deg), "normal", ""}, right, gap);
+  ImGui::PushFont(font(Font::small));
+  ImGui::PushTextWrapPos(right);
+  ImGui::TextUnformatted(verdict.reason.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  ImGui::EndGroup();
+  tooltip("Whether the window is fit to initialize from: " + verdict_text(verdict));
+}
+
 void draw_state(const PanelInput& input, float right) {
   const bool stale = input.inspection && !(input.inspection->settings == input.state.settings);
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
@@ -91,11 +118,15 @@ void results_panel(const PanelInput& input, const Rectangle& place) {
   const float left = ImGui::GetCursorPosX();
   const float right = left + ImGui::GetContentRegionAvail().x;
   const float gap = std::round(8 * s);
+  const Initialization* result =
+      input.inspection ? input.inspection->initialization.get() : nullptr;
   bool first = true;
   for (const ResultGroup& group : result_groups(input.inspection, input.timings)) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(input, right);
+    if (group.title == kVerdictTitle && result && result->verdict)
+      draw_verdict(*result->verdict, left, right, gap, s);
     if (group.title == "TIME") {
       draw_pairs(group, left, right, gap);
     } else {
@@ -103,10 +134,9 @@ void results_panel(const PanelInput& input, const Rectangle& place) {
     }
     first = false;
   }
-  if (input.inspection && input.inspection->initialization &&
-      !input.inspection->initialization->ok) {
+  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason)) {
     ImGui::PushTextWrapPos(right);
-    ImGui::TextUnformatted(input.inspection->initialization->reason.c_str());
+    ImGui::TextUnformatted(result->reason.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::PopStyleVar();

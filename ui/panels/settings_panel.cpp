@@ -9,18 +9,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-/// One visit a setting: label to the left, the widget that fits its type to the right. `changed`
-/// tells whether the user changed one.
+constexpr const char* kDrag = ". Drag, or double-click to type";
+
+/// What few people change; folded away.
+bool is_advanced(const SettingInfo& info) {
+  static const std::set<std::string> keys = {
+      "inliers", "seed", "solver", "error", "loss", "time_offset"};
+  return keys.contains(info.key);
+}
+
+/// One visit a setting: label to the left, the widget that fits its type to the right; dim, with
+/// the reason, where it changes nothing. `changed` tells whether the user changed one.
 struct SettingRows {
   const PanelInput& input;
   float label_width;
+  bool advanced = false;  ///< which of the settings are shown
   bool changed = false;
+  std::string idle = {};  ///< why the setting at hand does nothing
+
+  template <class Value>
+  void operator()(const SettingInfo& info, Value& value) {
+    if (is_advanced(info) != advanced) return;
+    idle = why_idle(input.state.settings, info.key);
+    ImGui::BeginDisabled(!idle.empty());
+    label(info.title, idle.empty() ? info.help : idle.c_str());
+    widget(info, value);
+    ImGui::EndDisabled();
+  }
+
+  /// Of the item drawn last.
+  void explain(const SettingInfo& info, const char* how = "") const {
+    tooltip(idle.empty() ? std::string(info.help) + how : idle);
+  }
+
+  bool begin_combo(const SettingInfo& info, const char* title) const {
+    if (ImGui::BeginCombo((std::string("##") + info.key).c_str(), title)) return true;
+    explain(info);
+    return false;
+  }
 
   void label(const char* title, const char* help) const {
     ImGui::AlignTextToFramePadding();
@@ -35,8 +68,7 @@ struct SettingRows {
     return frames > 0 ? std::min(static_cast<int>(info.most), frames) : static_cast<int>(info.most);
   }
 
-  void operator()(const SettingInfo& info, int& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, int& value) {
     changed |= ImGui::DragInt((std::string("##") + info.key).c_str(),
                               &value,
                               0.25F,
@@ -44,11 +76,10 @@ struct SettingRows {
                               most_of(info),
                               "%d",
                               ImGuiSliderFlags_AlwaysClamp);
-    tooltip(std::string(info.help) + ". Drag, or double-click to type");
+    explain(info, kDrag);
   }
 
-  void operator()(const SettingInfo& info, std::uint64_t& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, std::uint64_t& value) {
     const auto least = static_cast<std::uint64_t>(info.least);
     const auto most = static_cast<std::uint64_t>(info.most);
     changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
@@ -59,16 +90,10 @@ struct SettingRows {
                                  &most,
                                  "%llu",
                                  ImGuiSliderFlags_AlwaysClamp);
-    tooltip(std::string(info.help) + ". Drag, or double-click to type");
+    explain(info, kDrag);
   }
 
-  void operator()(const SettingInfo& info, double& value) {
-    label(info.title, info.help);
-    // A threshold of what is switched off does nothing.
-    const Settings& settings = input.state.settings;
-    const bool idle = info.key == std::string("ransac_threshold_px") && !uses_ransac(settings) &&
-                      find_method(settings.method).needs_plane;
-    ImGui::BeginDisabled(idle);
+  void widget(const SettingInfo& info, double& value) {
     const std::string format = fmt::format("%.1f {}", info.unit);
     changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
                                  ImGuiDataType_Double,
@@ -78,31 +103,24 @@ struct SettingRows {
                                  &info.most,
                                  format.c_str(),
                                  ImGuiSliderFlags_AlwaysClamp);
-    ImGui::EndDisabled();
-    tooltip(idle ? "Without RANSAC every track counts as an inlier"
-                 : std::string(info.help) + ". Drag, or double-click to type");
+    explain(info, kDrag);
   }
 
-  void operator()(const SettingInfo& info, std::optional<bool>& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, std::optional<bool>& value) {
     bool used = uses_ransac(input.state.settings);
     if (ImGui::Checkbox((std::string("##") + info.key).c_str(), &used)) {
       value = used;
       changed = true;
     }
-    tooltip(info.help);
+    explain(info);
   }
 
-  void operator()(const SettingInfo& info, std::string& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, std::string& value) {
     const auto table = methods();
     const auto chosen = std::find_if(
         table.begin(), table.end(), [&](const Method& method) { return method.key == value; });
     const std::string& title = chosen == table.end() ? value : chosen->title;
-    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), title.c_str())) {
-      tooltip(info.help);
-      return;
-    }
+    if (!begin_combo(info, title.c_str())) return;
     for (const Method& method : table) {
       ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(method.rgb));
       ImGui::Bullet();
@@ -121,12 +139,8 @@ struct SettingRows {
     return std::string(to_string(source)) + (gyro ? " (gyro)" : " (averaging)");
   }
 
-  void operator()(const SettingInfo& info, RotationSource& value) {
-    label(info.title, info.help);
-    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), source_title(value).c_str())) {
-      tooltip(info.help);
-      return;
-    }
+  void widget(const SettingInfo& info, RotationSource& value) {
+    if (!begin_combo(info, source_title(value).c_str())) return;
     for (std::size_t i = 0; i < rotation_source_keys().size(); ++i) {
       const auto source = static_cast<RotationSource>(i);
       const std::string why_not =
@@ -142,29 +156,23 @@ struct SettingRows {
   }
 
   template <Choice E>
-  void operator()(const SettingInfo& info, E& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, E& value) {
     choose(info, value, value);
   }
 
-  void operator()(const SettingInfo& info, std::optional<Inliers>& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, std::optional<Inliers>& value) {
     choose(info, value, inliers_used(input.state.settings));
   }
 
-  void operator()(const SettingInfo& info, bool& value) {
-    label(info.title, info.help);
+  void widget(const SettingInfo& info, bool& value) {
     changed |= ImGui::Checkbox((std::string("##") + info.key).c_str(), &value);
-    tooltip(info.help);
+    explain(info);
   }
 
   /// A combo box; `value` is a choice, or an optional one that comes to `used`.
   template <Choice E>
   void choose(const SettingInfo& info, auto& value, E used) {
-    if (!ImGui::BeginCombo((std::string("##") + info.key).c_str(), to_string(used))) {
-      tooltip(info.help);
-      return;
-    }
+    if (!begin_combo(info, to_string(used))) return;
     for (std::size_t i = 0; i < ChoiceKeys<E>::keys.size(); ++i) {
       const auto each = static_cast<E>(i);
       if (!ImGui::Selectable(to_string(each), each == used)) continue;
@@ -206,8 +214,13 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
   SettingRows rows{input, std::round(104 * s)};
   Settings settings = input.state.settings;
   visit_settings(settings, rows);
-  if (rows.changed) push(commands, ChangeSettings{settings});
   cube_row(rows, input, commands);
+  if (ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen)) {
+    rows.advanced = true;
+    visit_settings(settings, rows);
+  }
+  tooltip("Inliers, seed, and what the optimizations let one choose");
+  if (rows.changed) push(commands, ChangeSettings{settings});
   ImGui::PopStyleVar(2);
 }
 

@@ -3,6 +3,8 @@
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/time_axis.h"
+#include "ui/panels/timeline_bars.h"
+#include "ui/panels/uncertainty_facts.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/palette.h"
 #include "ui/workbench/actions.h"
@@ -17,8 +19,6 @@ namespace gpo {
 namespace {
 
 using palette::kAccent;
-using palette::kBad;
-using palette::kGood;
 using palette::kHovered;
 using palette::kRaised;
 using palette::kText;
@@ -78,23 +78,6 @@ void icon_button(Icon icon, const char* name, float side, const PanelInput& inpu
   ImGui::PopID();
 }
 
-/// Bars: how many tracks live in each frame of the window, inliers below, the rest above.
-void draw_tracks(
-    ImDrawList& list, const Window& window, const TimeAxis& axis, float top, float bottom) {
-  const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
-  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
-    const auto& points = window.points_px[i];
-    const auto seen = (points.row(0).array() == points.row(0).array()).count();
-    const float left = slot_begin(axis, window.start + i);
-    const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
-    const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
-    list.AddRectFilled({left, bottom - a_track * static_cast<float>(seen)},
-                       {right, inliers},
-                       imgui_color(kBad, 0.75));
-    list.AddRectFilled({left, inliers}, {right, bottom}, imgui_color(kGood, 0.75));
-  }
-}
-
 void draw_window_ends(ImDrawList& list,
                       const Settings& settings,
                       const TimeAxis& axis,
@@ -131,16 +114,24 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(kRaised));
   if (axis.frames < 1) return;
+  const Inspection* shown =
+      input.inspection && input.inspection->window ? input.inspection : nullptr;
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
   if (ImGui::IsItemActive()) {
     push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
-    tooltip(fmt::format("frame {}", frame_at(axis, ImGui::GetIO().MousePos.x)));
+    const float x = ImGui::GetIO().MousePos.x;
+    const int frame = frame_at(axis, x);
+    // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
+    const float share = x / ImGui::GetIO().DisplaySize.x;
+    ImGui::SetNextWindowPos({x, bar.y - 8 * input.scale}, 0, {share, 1});
+    tooltip(shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame));
   }
   draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
-  if (input.inspection && input.inspection->window) {
-    draw_tracks(list, *input.inspection->window, axis, bar.y + 3 * input.scale, bar.bottom());
+  if (shown) {
+    draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
+    draw_verdict_signs(list, *shown, axis, bar.bottom() - 9 * input.scale, input.scale);
   }
   draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);
 }
@@ -183,11 +174,14 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   }
   const float numbers = std::round(124 * s);
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
+  const bool legend = input.inspection && !input.inspection->growth.empty() &&
+                      place.height >= 70 * s && place.width >= 700 * s;
   const Rectangle bar{left,
                       place.y + std::round(12 * s),
                       place.right() - numbers - 24 * s - left,
-                      place.height - std::round(22 * s)};
+                      place.height - std::round(legend ? 34 * s : 22 * s)};
   draw_axis(input, bar, commands);
+  if (legend) draw_verdict_legend(*ImGui::GetWindowDrawList(), bar.x, bar.bottom() + 4 * s, s);
   draw_numbers(input,
                place.right() - numbers - 8 * s,
                place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s));

@@ -23,6 +23,7 @@ SceneViewOptions scene_options(const WorkbenchState& state) {
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
   options.truth = state.view.truth;
+  options.uncertainty = state.view.uncertainty;
   return options;
 }
 

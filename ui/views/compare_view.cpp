@@ -8,6 +8,7 @@
 #include "ui/views/numbers.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
+#include "ui/views/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +130,20 @@ std::string conditions(const Inspection& inspection) {
   return fmt::format("rotations: {} · {}", to_string(inspection.rotations_used), tracks);
 }
 
+/// Sign and word of the verdict, ending at the rectangle's right edge. Returns its width [px].
+double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
+  const auto& verdict = inspection.initialization->verdict;
+  if (!verdict) return 0;
+  const double s = overlay_scale();
+  const ReadinessLook look = look_of(verdict->readiness);
+  const std::string word = to_string(verdict->readiness);
+  const double width = 16 * s + width_of(Font::small, word);
+  const Vector2d at = rect.min + Vector2d(rect.size.x() - width, 12 * s);
+  draw_sign(list, look.sign, to_imgui(at + s * Vector2d(6, 8)), look.rgb);
+  write(list, Font::small, at + Vector2d(16 * s, 0), word, look.rgb);
+  return width + 10 * s;
+}
+
 void draw_heading(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
   const double s = overlay_scale();
   const Configuration configuration = configuration_of(inspection.settings);
@@ -138,7 +153,7 @@ void draw_heading(ImDrawList& list, const ScreenRect& rect, const Inspection& in
                      imgui_color(color_of(configuration)),
                      static_cast<float>(2 * s));
   const std::string title = title_of(configuration);
-  const double room = rect.size.x() - 16 * s;
+  const double room = rect.size.x() - 16 * s - draw_verdict(list, rect, inspection);
   const Font large = width_of(Font::heading, title) <= room ? Font::heading : Font::bold;
   write(list, large, bar + s * Vector2d(16, large == Font::heading ? 0 : 2), title);
   write(list, Font::small, bar + s * Vector2d(16, 24), conditions(inspection), palette::kTextDim);
@@ -158,6 +173,8 @@ std::string why_no_metrics(const Inspection& inspection) {
 /// What stands below the errors.
 std::string remarks(const Inspection& inspection, const Evaluation& e) {
   std::string text = fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
+  if (const auto& uncertainty = inspection.initialization->uncertainty)
+    text += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
   if (e.pne_bound_deg) text += fmt::format(" · PNE bound {}", angle_text(*e.pne_bound_deg));
   if (!e.pne_deg || !e.ate_m) text += " · " + why_no_metrics(inspection);
   return text;

@@ -26,4 +26,11 @@ std::string milliseconds_text(double milliseconds) {
   return number_text(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
 }
 
+std::string uncertain_text(double value, double sigma) {
+  constexpr int kMost = 6;
+  const int behind =
+      sigma > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost) : kMost;
+  return fmt::format("{:.{}f} \u00b1{:.{}f}", value, behind, sigma, behind);
+}
+
 }  // namespace gpo

@@ -15,4 +15,8 @@ std::string length_text(double meters);
 std::string angle_text(double degrees);
 std::string milliseconds_text(double milliseconds);
 
+/// "0.912 ±0.004": a value with as many digits as two of its standard deviation say, at most
+/// six behind the point.
+std::string uncertain_text(double value, double sigma);
+
 }  // namespace gpo

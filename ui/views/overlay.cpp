@@ -99,6 +99,15 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
     case Sign::frustum:
       draw_frustum_sign(list, c, s, color);
       break;
+    case Sign::disc:
+      list.AddCircleFilled(c, 4.6F * s, color, 20);
+      break;
+    case Sign::triangle:
+      list.AddTriangleFilled(ImVec2(c.x, c.y - 5 * s),
+                             ImVec2(c.x + 5.4F * s, c.y + 4.4F * s),
+                             ImVec2(c.x - 5.4F * s, c.y + 4.4F * s),
+                             color);
+      break;
     case Sign::none:
       break;
   }

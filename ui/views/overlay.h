@@ -14,7 +14,7 @@ struct ImVec2;
 namespace gpo {
 
 /// Signs that stand for data, in the views and in their legends alike.
-enum class Sign { none, circle, cross, dot, line, square, frustum };
+enum class Sign { none, circle, cross, dot, line, square, frustum, disc, triangle };
 
 struct LegendRow {
   Sign sign;

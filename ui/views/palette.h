@@ -21,6 +21,7 @@ constexpr std::uint32_t kCubeEdge = 0xE4F3EA;   ///< the other edges: lighter
 constexpr std::uint32_t kCubeFace = 0x9FE8C4;   ///< translucent
 constexpr std::uint32_t kReference = 0xF0F2F5;  ///< the reference camera's mark
 constexpr std::uint32_t kPlane = 0x56B4E9;      ///< sky blue
+constexpr std::uint32_t kUncertain = 0xFFF3D6;  ///< warm white
 constexpr std::uint32_t kPoint = 0xC9D2DC;      ///< map points
 constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
 

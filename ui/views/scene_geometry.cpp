@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene_geometry.h"
 
+#include "ui/views/uncertainty_geometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -179,6 +181,7 @@ std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_sid
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   for (const int i : {grid.low[0], grid.high[0]})
     for (const int j : {grid.low[1], grid.high[1]}) extent.push_back(grid.at(i, j));
+  if (inspection.initialization->uncertainty) extent.push_back(normal_arrow(inspection, grid).tip);
   if (const auto T_est_true = estimate_from_truth(inspection))
     if (const auto border = true_plane_border(inspection, *T_est_true, grid))
       extent.insert(extent.end(), border->begin(), border->end());

@@ -75,6 +75,13 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
                       fmt::format("{} map points", inspection.initialization->points.size())});
     if (options.cube && inspection.cube) rows.push_back({Sign::square, palette::kCubeBase, "cube"});
   }
+  if (shows_uncertainty(inspection, options)) {
+    const int times = options.uncertainty;
+    rows.push_back({Sign::circle,
+                    palette::kUncertain,
+                    "95 % of centers and normal" +
+                        (times > 1 ? fmt::format(", enlarged {}\u00d7", times) : "")});
+  }
   if (options.truth && estimate_from_truth(inspection))
     rows.push_back({Sign::frustum,
                     palette::kTruth,

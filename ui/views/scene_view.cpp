@@ -9,6 +9,7 @@
 #include "ui/views/palette.h"
 #include "ui/views/scene_actors.h"
 #include "ui/views/scene_geometry.h"
+#include "ui/views/uncertainty_geometry.h"
 #include "ui/views/vtk_camera.h"
 
 #include <algorithm>
@@ -186,6 +187,34 @@ void add_cube(const Stage& stage) {
   stage.add(base, 3);
 }
 
+/// Of the cameras that are drawn, and of the normal.
+void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
+  const Initialization& estimate = *stage.inspection.initialization;
+  const auto& uncertainty = *estimate.uncertainty;
+  const double enlarged = stage.options.uncertainty;
+  const int stride = frustum_stride(stage.inspection);
+  Shapes lines, arrow_line, face;
+  const auto count = std::min(estimate.cameras.size(), uncertainty.center_covariances.size());
+  for (int i = 1; i < static_cast<int>(count); ++i) {
+    if (i != stage.frame && i % stride != 0) continue;
+    const auto ellipsoid =
+        confidence_ellipsoid(estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged);
+    for (const auto& line : ellipsoid) lines.lines(line, true, palette::kUncertain);
+  }
+  const NormalArrow arrow = normal_arrow(stage.inspection, grid);
+  const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
+  arrow_line.line(arrow.base, arrow.tip, palette::kPlane);
+  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, palette::kPlane);
+  lines.lines(rim, true, palette::kUncertain);
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    const std::array<Vector3d, 3> side = {arrow.base, rim[k], rim[(k + 1) % rim.size()]};
+    face.face(side, palette::kUncertain, 0.1);
+  }
+  stage.add(face, 1);
+  stage.add(lines, 1.2);
+  stage.add(arrow_line, 2.4);
+}
+
 void build(const Stage& stage, const OrbitCamera& camera) {
   const Inspection& inspection = stage.inspection;
   stage.renderer.RemoveAllViewProps();
@@ -198,6 +227,7 @@ void build(const Stage& stage, const OrbitCamera& camera) {
   if (stage.options.points) add_points(stage, *grid);
   add_cameras(stage);
   if (stage.options.cube && inspection.cube) add_cube(stage);
+  if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
 bool same(const OrbitCamera& a, const OrbitCamera& b) {
@@ -207,6 +237,11 @@ bool same(const OrbitCamera& a, const OrbitCamera& b) {
 }
 
 }  // namespace
+
+bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options) {
+  return options.uncertainty > 0 && inspection.initialization->ok &&
+         inspection.initialization->uncertainty.has_value();
+}
 
 /// VTK's objects, and what they show now. The inspection's parts are held, so that a new one cannot
 /// lie at the address of an old one and be taken for it.

@@ -18,10 +18,15 @@ struct SceneViewOptions {
   double cube_side = 0;  ///< 0: `default_cube_side` [unit of the estimate]
   bool truth = true;     ///< true cameras and plane, where they are known
   bool points = true;    ///< the map
+  /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
+  int uncertainty = 1;
   bool legend = true;
 
   bool operator==(const SceneViewOptions&) const = default;
 };
+
+/// Whether it is asked for and known.
+bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options);
 
 /// The estimate in 3-D, by VTK. Needs the context in which it was made to be current.
 class SceneView {

@@ -47,6 +47,18 @@ void escape(State& state) {
   }
 }
 
+/// Off, as it is, enlarged 10 and 100 times, off.
+void enlarge_uncertainty(ViewToggles& view) {
+  view.uncertainty = view.uncertainty == 0     ? 1
+                     : view.uncertainty >= 100 ? 0
+                                               : 10 * view.uncertainty;
+}
+
+std::string uncertainty_text(const ViewToggles& view) {
+  if (view.uncertainty > 1) return "\u00d7" + std::to_string(view.uncertainty);
+  return view.uncertainty == 1 ? "on" : "off";
+}
+
 Action toggle(std::string name,
               std::string title,
               std::vector<Shortcut> shortcuts,
@@ -120,6 +132,17 @@ void add_view_actions(std::vector<Action>& table) {
                          {letter('G')},
                          "True cameras, plane and cube in gray, where they are known",
                          &ViewToggles::truth));
+  Action uncertainty{"uncertainty",
+                     "Uncertainty",
+                     "View",
+                     {letter('U')},
+                     "95 % of camera centers and normal in the scene; again: enlarged 10 and 100 "
+                     "times, then off",
+                     [](State& s) { enlarge_uncertainty(s.view); }};
+  uncertainty.checked = [](const State& s) { return s.view.uncertainty > 0; };
+  uncertainty.value = [](const State& s) { return uncertainty_text(s.view); };
+  uncertainty.needs_recording = false;
+  table.push_back(uncertainty);
   table.push_back({"fit",
                    "Fit view",
                    "View",

@@ -29,8 +29,9 @@ struct Action {
   std::vector<Shortcut> shortcuts;
   std::string tooltip;  ///< one sentence
   std::function<void(WorkbenchState&)> run = {};
-  std::function<std::string(const WorkbenchState&)> value = {};  ///< its state, for the help window
-  std::function<bool(const WorkbenchState&)> checked = {};       ///< null: not a switch
+  std::function<std::string(const WorkbenchState&)> value =
+      {};  ///< its state, for the help window; else on or off
+  std::function<bool(const WorkbenchState&)> checked = {};  ///< null: not a switch
   bool needs_recording = true;
   bool repeats = false;  ///< while its key is held
 };

@@ -23,6 +23,7 @@ struct ViewToggles {
   bool residuals = false;
   bool cube = true;
   bool truth = true;
+  int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
 };
 
 /// What an action asks of the world around the workbench: the window's loop reads and clears it.

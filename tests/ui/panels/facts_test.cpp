@@ -15,6 +15,7 @@ using testing::HasSubstr;
 
 std::vector<std::int64_t> times(int count, double rate_hz) {
   std::vector<std::int64_t> all;
+  all.reserve(count);
   for (int i = 0; i < count; ++i) all.push_back(static_cast<std::int64_t>(i * 1e9 / rate_hz));
   return all;
 }
@@ -106,6 +107,22 @@ TEST(Results, SayHowInliersWereTold) {
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
 }
 
+TEST(Settings, ThatDoNothingSayWhy) {
+  Settings settings;
+  for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"}) {
+    EXPECT_EQ(why_idle(settings, key), "") << key;
+  }
+  for (const char* key : {"error", "loss", "time_offset"}) {
+    EXPECT_THAT(why_idle(settings, key), HasSubstr("gpo_joint")) << key;
+  }
+  settings.ransac = false;
+  EXPECT_THAT(why_idle(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
+  EXPECT_THAT(why_idle(settings, "inliers"), HasSubstr("RANSAC"));
+  settings.method = "ba";  // takes all tracks, and still counts inliers
+  EXPECT_EQ(why_idle(settings, "ransac_threshold_px"), "");
+  EXPECT_THAT(why_idle(settings, "solver"), HasSubstr("gpo"));
+}
+
 TEST(Results, CarryUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection);
@@ -182,6 +199,13 @@ TEST(Numbers, KeepThreeDigitsThatMeanSomething) {
   EXPECT_EQ(angle_text(0.00123), "0.001\u00b0");
   EXPECT_EQ(angle_text(178.6), "179\u00b0");
   EXPECT_EQ(milliseconds_text(1234.5), "1234 ms");
+}
+
+TEST(Numbers, ErrorsTellHowManyDigitsMeanSomething) {
+  EXPECT_EQ(uncertain_text(0.91234, 0.0042), "0.9123 \u00b10.0042");
+  EXPECT_EQ(uncertain_text(12.34, 3.2), "12.3 \u00b13.2");
+  EXPECT_EQ(uncertain_text(123.4, 32), "123 \u00b132");
+  EXPECT_EQ(uncertain_text(0.5, 1e-9), "0.500000 \u00b10.000000");
 }
 
 }  // namespace

@@ -114,6 +114,20 @@ TEST_F(CompareView, MoreThanFourWrapIntoRows) {
             490 * 400);
 }
 
+/// As many as there will be methods, each with its verdict.
+TEST_F(CompareView, NineStandInThreeRows) {
+  Inspections nine;
+  for (int i = 0; i < 9; ++i)
+    nine.push_back(made({.ok = i != 8, .estimate_error = 0.4 * i, .normal_sigma_deg = 0.3}));
+  EXPECT_EQ(default_compare_size(nine).width, 3 * 492 + 12);
+  const cv::Mat picture = snapshot_compare(nine, kFrame);
+  keep("compare_nine", picture);
+  const cv::Mat first = picture(cv::Rect(12, 38, 480, 54));
+  const cv::Mat last = picture(cv::Rect(12 + 2 * 492, 38 + 2 * (picture.rows - 38) / 3, 480, 54));
+  EXPECT_GT(count(first, palette::kGood), 30);  // ready
+  EXPECT_GT(count(last, palette::kBad), 8);     // degenerate
+}
+
 TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {
   keep("compare_blind",
        snapshot_compare(Inspections{made({.pictures = false, .truth = false})}, kFrame));

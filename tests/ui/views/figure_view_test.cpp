@@ -52,7 +52,9 @@ Figure paper_figure() {
                                                                       {"BA", kVermilion},
                                                                       {"PnP + BA", 0xCC79A7},
                                                                       {"PBA", 0x8B5A2B},
-                                                                      {"FPBA", 0x999999}};
+                                                                      {"FPBA", 0x999999},
+                                                                      {"closed form", 0x56B4E9},
+                                                                      {"GPO joint", 0x0072B2}};
   const std::array<std::pair<const char*, const char*>, 3> metrics = {
       {{"ATE", "ATE [mm]"}, {"PNE", "PNE [°]"}, {"PDE", "PDE [mm]"}}};
   for (const auto& [title, label] : metrics) {
@@ -225,7 +227,7 @@ TEST(CurveStyles, DifferWithoutTheirColors) {
         << style.name;
     seen.emplace_back(style.dash, style.marker, style.hollow);
   }
-  EXPECT_EQ(seen.size(), 8U);
+  EXPECT_EQ(seen.size(), 10U);  // nine methods and the bound
 }
 
 }  // namespace

@@ -68,6 +68,10 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
   keep("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
   keep("image_tracks_only",
        snapshot_image(made_inspection({.pictures = false, .truth = false}), 20));
+  const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
+  for (const int times : {0, 1, 10, 100})
+    keep("scene_uncertain_" + std::to_string(times),
+         snapshot_scene(uncertain, 30, {960, 720}, {.uncertainty = times}));
   keep("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
   keep("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
   keep("scene_failed_blind", snapshot_scene(made_inspection({.ok = false, .truth = false}), 20));

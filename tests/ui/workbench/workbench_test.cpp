@@ -135,6 +135,19 @@ TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
   }
 }
 
+TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
+  WorkbenchState state;
+  const Action& action = *find_action("uncertainty");
+  EXPECT_EQ(action_of_character(U'u'), &action);
+  for (const auto& [times, text] :
+       {std::pair{1, "on"}, {10, "\u00d710"}, {100, "\u00d7100"}, {0, "off"}, {1, "on"}}) {
+    EXPECT_EQ(state.view.uncertainty, times);
+    EXPECT_EQ(action.value(state), text);
+    EXPECT_EQ(action.checked(state), times > 0);
+    run_action(state, "uncertainty");
+  }
+}
+
 TEST(Workbench, RansacIsSwitched) {
   WorkbenchState state = opened();
   run(state, "ransac");

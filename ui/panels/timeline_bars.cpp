@@ -1,0 +1,86 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/timeline_bars.h"
+
+#include "ui/context/gui.h"
+#include "ui/views/palette.h"
+#include "ui/views/verdict_look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using palette::kBad;
+using palette::kGood;
+using palette::kText;
+using palette::kTextDim;
+
+struct BarColors {
+  ImU32 inliers, others;
+};
+
+/// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
+/// taken for one, so what is no inlier is gray then. Without a verdict it is told by green and red.
+BarColors bar_colors(const Inspection& inspection, int frame) {
+  const auto& growth = inspection.growth;
+  if (growth.empty()) return {imgui_color(kGood, 0.75), imgui_color(kBad, 0.75)};
+  const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
+  const std::uint32_t rgb = judged ? look_of(growth[frame - 1].readiness).rgb : kTextDim;
+  return {imgui_color(rgb, 0.75), imgui_color(kTextDim, 0.4)};
+}
+
+}  // namespace
+
+void draw_tracks(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
+  const Window& window = *inspection.window;
+  const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
+  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
+    const auto& points = window.points_px[i];
+    const auto seen = (points.row(0).array() == points.row(0).array()).count();
+    const BarColors colors = bar_colors(inspection, i);
+    const float left = slot_begin(axis, window.start + i);
+    const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
+    const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
+    list.AddRectFilled(
+        {left, bottom - a_track * static_cast<float>(seen)}, {right, inliers}, colors.others);
+    list.AddRectFilled({left, inliers}, {right, bottom}, colors.inliers);
+  }
+}
+
+void draw_verdict_signs(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale) {
+  for (const VerdictRun& run : verdict_runs(inspection.growth)) {
+    const int start = inspection.window->start;
+    const float left = slot_begin(axis, start + run.first);
+    const float width = slot_begin(axis, start + run.last + 1) - left;
+    if (width < 16 * scale) continue;
+    const ImVec2 at(left + 9 * scale, y);
+    list.AddCircleFilled(at, 8 * scale, imgui_color(palette::kBackground, 0.8), 20);
+    const ReadinessLook look = look_of(run.readiness);
+    draw_sign(list, look.sign, at, look.rgb);
+  }
+}
+
+void draw_verdict_legend(ImDrawList& list, float left, float top, float scale) {
+  const ImFont* f = font(Font::small);
+  const auto write = [&](const char* text, std::uint32_t rgb) {
+    list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);
+    left += f->CalcTextSizeA(f->FontSize, 1e6F, 0, text).x;
+  };
+  write("window up to here:", kTextDim);
+  for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
+    const ReadinessLook look = look_of(readiness);
+    draw_sign(list, look.sign, {left + 14 * scale, top + f->FontSize / 2}, look.rgb);
+    left += 23 * scale;
+    write(to_string(readiness), kText);
+  }
+  left += 16 * scale;
+  write("height: tracks; gray: outliers", kTextDim);
+}
+
+}  // namespace gpo
