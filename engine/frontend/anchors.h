@@ -14,7 +14,7 @@ namespace gpo {
 
 struct AnchorOptions {
   int half_patch_px = 10;          ///< half the side of a look, in the reference picture [px]
-  double blur_px = 0.8;            ///< standard deviation, of both pictures before comparing [px]
+  double blur_px = 0.55;           ///< standard deviation, of both pictures before comparing [px]
   double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
   double least_correlation = 0.7;  ///< zero-mean normalized, below it a track is lost [-]
   RansacOptions ransac = {};       ///< tells the tracks on the plane; with a seed of its own
