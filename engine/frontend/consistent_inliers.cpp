@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 
 /// The median length of a two-dimensional Gaussian error of standard deviation 1 (Rayleigh's).
 const double kRayleighMedian = std::sqrt(2 * std::log(2));
-/// A Gaussian's standard deviation, in its median absolute deviations.
-constexpr double kMadToSigma = 1.4826;
+/// Where a Gaussian's upper quartile is.
+constexpr double kQuartileSigmas = 0.6745;
 
 std::vector<int> indices(const std::vector<bool>& flags) {
   std::vector<int> of_true;
@@ -86,16 +86,19 @@ std::optional<double> mean_square(const Errors& errors, Eigen::Index track, doub
   return enough ? std::optional(sum / seen) : std::nullopt;
 }
 
-/// Above it a mean square stands out among the others; never below that of pure noise.
+/// Above it a mean square stands out among the others; never below that of pure noise. Their spread
+/// is that of the upper half, as drift makes some tracks much worse than the median one, not
+/// better.
 double largest_mean_square(const std::vector<std::optional<double>>& mean_squares, double sigmas) {
   std::vector<double> values;
   for (const auto& value : mean_squares) {
     if (value) values.push_back(*value);
   }
   if (values.empty()) return 0;
-  const double middle = median(values);
-  for (double& value : values) value = std::abs(value - middle);
-  return std::max(middle + sigmas * kMadToSigma * median(std::move(values)), 2.0);
+  std::ranges::sort(values);
+  const double middle = values[values.size() / 2];
+  const double upper_quartile = values[3 * values.size() / 4];
+  return std::max(middle + sigmas * (upper_quartile - middle) / kQuartileSigmas, 2.0);
 }
 
 /// The inliers, one a frame and track; none in the reference frame.

@@ -20,10 +20,9 @@ struct ConsistencyOptions {
   double sigmas = 3.5;           ///< nor than so many standard deviations of its frame's tracks [-]
   double least_sigma_px = 0.03;  ///< which is never taken to be less, of one coordinate [px]
   double share = 0.9;            ///< of the frames that see a track, in which it must agree [-]
-  double sigmas_of_track =
-      3.5;                ///< by which its mean square error may exceed the median track's [-]
-  int least_inliers = 8;  ///< in each frame, else there is no answer
-  int most_rounds = 10;   ///< of homographies and choice [-]
+  double sigmas_of_track = 3.0;  ///< by which its mean square may exceed the median track's [-]
+  int least_inliers = 8;         ///< in each frame, else there is no answer
+  int most_rounds = 10;          ///< of homographies and choice [-]
 };
 
 /// Starting from what RANSAC found in each frame alone: keeps the tracks that agree with the
