@@ -1,0 +1,66 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/closed_form.h"
+
+#include "engine/initializers/gpo.h"
+#include "tests/engine/simulated_window.h"
+
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+constexpr Motion kMotions[] = {Motion::sideways,
+                               Motion::orbit,
+                               Motion::forward,
+                               Motion::approach,
+                               Motion::oblique,
+                               Motion::up_down,
+                               Motion::wander,
+                               Motion::arc};
+
+TEST(ClosedForm, IsExactWithoutNoise) {
+  for (const Motion motion : kMotions) {
+    for (const double travel : {0.04, 0.3, 1.4}) {
+      const Simulation truth =
+          simulate({.motion = motion, .noise_px = 0, .travel = travel, .tilt_deg = 20, .seed = 3});
+      const auto found = closed_form_motion(truth.window);
+      ASSERT_TRUE(found);
+      EXPECT_LT(angle_deg(found->normal, truth.plane.normal), 1e-4);
+      for (std::size_t i = 0; i < found->tau.size(); ++i)
+        EXPECT_LT((found->tau[i] + truth.cameras[i].p_wc).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(ClosedForm, DoesNotMindTheScaleAndSignOfHomographies) {
+  Simulation truth = simulate({.noise_px = 0});
+  for (std::size_t i = 0; i < truth.window.H_i1.size(); ++i)
+    truth.window.H_i1[i] *= i % 2 == 0 ? -3.0 : 0.2;
+  EXPECT_LT(angle_deg(closed_form_motion(truth.window)->normal, truth.plane.normal), 1e-4);
+}
+
+TEST(ClosedForm, IsAStartThatNeverFails) {
+  int starts = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    const Simulation truth = with_fitted_homographies(
+        simulate({.motion = kMotions[seed % std::size(kMotions)],
+                  .travel = seed % 3 == 0 ? 1.4 : (seed % 3 == 1 ? 0.04 : 0.6),
+                  .tilt_deg = 10.0 + static_cast<double>(seed % 50),
+                  .gyro_bias_rad_s = 0.002,
+                  .seed = seed}));
+    const Initialization result = initialize_gpo(truth.window, {}, {});
+    // Low parallax turns the normal by degrees, the wrong twin by tens of them.
+    if (result.ok && angle_deg(result.plane.normal, truth.plane.normal) < 15) ++starts;
+  }
+  EXPECT_EQ(starts, 400);
+}
+
+TEST(ClosedForm, OfAWindowWithoutHomographiesIsNone) {
+  Simulation truth = simulate({});
+  truth.window.H_i1[4].setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(closed_form_motion(truth.window));
+}
+
+}  // namespace
+}  // namespace gpo::test
