@@ -52,6 +52,23 @@ TEST(Inspector, KeepsTheTracksOfBothTrackings) {
   EXPECT_EQ(again->initialization->rms_px, drifting->initialization->rms_px);
 }
 
+TEST(Inspector, TellsInliersAsChosen) {
+  Inspector inspector(desk());
+  Settings settings{.frames = 12, .tracking = Tracking::anchored};
+  const auto per_frame = inspector.inspect(settings);
+  settings.inliers = Inliers::consistent;
+  const auto consistent = inspector.inspect(settings);
+  EXPECT_EQ(consistent->tracks, per_frame->tracks);
+  EXPECT_NE(consistent->window->inlier, per_frame->window->inlier);
+  EXPECT_EQ(to_json(*per_frame)["settings"]["inliers"], "per-frame");
+  EXPECT_EQ(to_json(*consistent)["settings"]["inliers"], "consistent");
+  EXPECT_THAT(to_text(*consistent), HasSubstr("tracks, consistent"));
+  settings.ransac = false;
+  const auto all = inspector.inspect(settings);
+  EXPECT_EQ(inliers_note(*all), "tracks");
+  EXPECT_EQ(to_json(*all)["settings"]["inliers"], "per-frame");
+}
+
 TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
   const auto recording = desk();
   Inspector used(recording);
