@@ -52,6 +52,7 @@ struct Initialization {
   double rms_px = 0;  ///< root mean square reprojection error over the observations used
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< of the gyroscope, where the method estimates it
   std::optional<double> time_offset_s;        ///< gyroscope clock = camera clock + offset, likewise
+  std::optional<double> row_delay_s;          ///< from one row of a picture to the next, likewise
   std::optional<Uncertainty> uncertainty;     ///< of a result that is ok, where it is determined
   std::optional<Verdict> verdict;             ///< also of a window that was refused
   /// Of methods that decompose homographies: all readings, also where the method failed.

@@ -34,11 +34,22 @@ struct ChoiceKeys<Loss> {
   static constexpr std::array keys{"squared", "huber"};
 };
 
-/// What a user may choose of the optimizations; `error`, `loss` and `time_offset` are gpo_joint's.
+/// Whether the rows of a picture were read one after another, as phones do, at a pace that is
+/// estimated; or all at once.
+enum class Shutter { estimated, global };
+
+template <>
+struct ChoiceKeys<Shutter> {
+  static constexpr const char* option = "--shutter";
+  static constexpr std::array keys{"estimated", "global"};
+};
+
+/// What a user may choose of the optimizations; all but `solver` are gpo_joint's.
 struct InitializerOptions {
   Solver solver = Solver::schur;
   ErrorModel error = ErrorModel::transfer;
   Loss loss = Loss::squared;
+  Shutter shutter = Shutter::estimated;
   bool time_offset = false;  ///< estimate the offset between the clocks of camera and gyroscope
 
   bool operator==(const InitializerOptions&) const = default;

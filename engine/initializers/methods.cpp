@@ -69,8 +69,8 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   result.verdict = judged(evidence_of(window),
                           judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
                           travel / result.plane.distance);
-  result.uncertainty = uncertainty_of(
-      window, result.plane, result.cameras, method.rotations.value_or(window.rotations));
+  if (method.rotations)
+    result.uncertainty = uncertainty_of(window, result.plane, result.cameras, *method.rotations);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   Initialization refused = failed(result.verdict->reason, result.solver);
   refused.candidates = std::move(result.candidates);

@@ -27,8 +27,8 @@ struct Method {
   MethodFamily family;
   bool needs_plane;  ///< takes every track that it is given to lie on the plane
   Inliers inliers;   ///< by default: as its authors do
-  /// Whether it takes the rotations as given, or moves them: all of them (free), or as far as the
-  /// window says that they are uncertain (nothing).
+  /// Whether it takes the rotations as given or moves them all (free), by which its uncertainty is
+  /// computed; nothing: it says so itself.
   std::optional<RotationModel> rotations;
   Initialization (*initialize)(const Window& window,
                                const InitializerOptions& options,

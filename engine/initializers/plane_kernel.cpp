@@ -51,7 +51,7 @@ template <bool kRotating>
     std::memcpy(&Y, &f.ray_y[k], sizeof(Vector));
     std::memcpy(&U, &f.u[k], sizeof(Vector));
     std::memcpy(&V, &f.v[k], sizeof(Vector));
-    std::memcpy(&w, &f.root_weight[k], sizeof(Vector));
+    std::memcpy(&w, &f.mask[k], sizeof(Vector));
     const Vector depth = A(2, 0) * X + A(2, 1) * Y + A(2, 2);
     least = depth < least ? depth : least;
     const Vector inverse = 1.0 / depth;

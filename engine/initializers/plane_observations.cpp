@@ -7,16 +7,16 @@
 namespace gpo {
 namespace {
 
-void push(FrameObservations& f, double x, double y, double u, double v, double root_weight) {
+void push(FrameObservations& f, double x, double y, double u, double v, double mask) {
   f.ray_x.push_back(x);
   f.ray_y.push_back(y);
   f.u.push_back(u);
   f.v.push_back(v);
-  f.root_weight.push_back(root_weight);
+  f.mask.push_back(mask);
 }
 
 void reserve(FrameObservations& f, std::size_t size) {
-  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v, &f.root_weight}) array->reserve(size);
+  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v, &f.mask}) array->reserve(size);
 }
 
 }  // namespace

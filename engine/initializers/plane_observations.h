@@ -11,14 +11,15 @@
 namespace gpo {
 
 /// The inliers of one frame, a structure of arrays for the vector units. Padded with copies of the
-/// first one, of weight zero, to whole vectors.
+/// first one, masked, to whole vectors.
 struct FrameObservations {
-  int count = 0;                    ///< inliers
-  std::vector<double> ray_x;        ///< K^-1 p_1 = (ray_x, ray_y, 1)
-  std::vector<double> ray_y;        ///< [-]
-  std::vector<double> u;            ///< seen in the frame, from the principal point on [px]
-  std::vector<double> v;            ///< [px]
-  std::vector<double> root_weight;  ///< of both coordinates [-]
+  int count = 0;                        ///< inliers
+  std::vector<double> ray_x;            ///< K^-1 p_1 = (ray_x, ray_y, 1)
+  std::vector<double> ray_y;            ///< [-]
+  std::vector<double> u;                ///< seen in the frame, from the principal point on [px]
+  std::vector<double> v;                ///< [px]
+  std::vector<double> mask;             ///< 1; of the padding 0
+  std::vector<Eigen::Matrix2d> weight;  ///< one an inlier; empty: every weight is one
 };
 
 /// What the optimizations over a plane see of a window.

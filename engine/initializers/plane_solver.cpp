@@ -3,6 +3,7 @@
 #include "engine/initializers/plane_solver.h"
 
 #include "engine/initializers/plane_kernel.h"
+#include "engine/initializers/plane_weights.h"
 
 #include <algorithm>
 #include <chrono>
@@ -104,8 +105,10 @@ class PlaneProblem {
     all.frames.resize(frame_count());
     all.cost = prior_cost(motion);
     for (int i = 1; i < frame_count(); ++i) {
+      const FrameObservations& f = observations_.frames[i];
+      const FrameState state = frame_state(observations_, motion, i);
       all.frames[i] =
-          frame_normals(observations_.frames[i], frame_state(observations_, motion, i), rotating);
+          f.weight.empty() ? frame_normals(f, state, rotating) : frame_normals_by_matrix(f, state);
       all.cost += all.frames[i].cost;
       all.in_front = all.in_front && all.frames[i].in_front;
     }

@@ -185,6 +185,9 @@ std::string uncertainty_text(const Initialization& result) {
   }
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
+  if (result.row_delay_s) {
+    text += row("shutter", fmt::format("rolling, {:.2f} us a row", 1e6 * *result.row_delay_s));
+  }
   return text;
 }
 
@@ -229,6 +232,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["points"] = points_json(inspection);
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
   if (result.uncertainty) json["uncertainty"] = uncertainty_json(result);
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);

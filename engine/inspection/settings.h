@@ -87,6 +87,12 @@ void visit_settings(S& settings, Visitor&& visit) {
         settings.initializer.error);
   visit(SettingInfo{"loss", "Loss", "", "Of gpo_joint: squared, or Huber's, linear for outliers"},
         settings.initializer.loss);
+  visit(
+      SettingInfo{"shutter",
+                  "Shutter",
+                  "",
+                  "Of gpo_joint: rows read one after another at an estimated pace, or all at once"},
+      settings.initializer.shutter);
   visit(SettingInfo{"time_offset",
                     "Time offset",
                     "",
