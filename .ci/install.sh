@@ -1,4 +1,5 @@
-# Debian's packages by name, and how to install those that are missing. Sourced by run.sh and test.sh.
+# Debian's packages by name, and how to install those that are missing. Sourced by run.sh,
+# test.sh and tests/benchmark/run.sh.
 
 build_packages=(
   g++ cmake ninja-build pkg-config
@@ -7,6 +8,7 @@ build_packages=(
   libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libfmt-dev
 )
 test_packages=(libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache)
+benchmark_packages=(libbenchmark-dev)
 
 # install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the
 # one line to type and exits 2.

@@ -1,0 +1,59 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/benchmark/results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo::bench {
+
+Results::Results() : ConsoleReporter(OO_Tabular) {
+  SetOutputStream(&std::cerr);
+  SetErrorStream(&std::cerr);
+}
+
+void Results::ReportRuns(const std::vector<Run>& runs) {
+  ConsoleReporter::ReportRuns(runs);
+  for (const Run& run : runs) {
+    if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
+    for (const auto& [name, counter] : run.counters) {
+      const auto [least, first] =
+          least_[run.run_name.function_name].try_emplace(name, counter.value);
+      if (!first) least->second = std::min<double>(least->second, counter.value);
+    }
+  }
+}
+
+std::optional<double> Results::least(const std::string& benchmark,
+                                     const std::string& counter) const {
+  const auto counters = least_.find(benchmark);
+  if (counters == least_.end()) return std::nullopt;
+  const auto value = counters->second.find(counter);
+  if (value == counters->second.end()) return std::nullopt;
+  return value->second;
+}
+
+std::string cell(const std::optional<double>& value) {
+  if (!value || !std::isfinite(*value)) return "-";
+  if (*value == 0) return "0";
+  const int before_point = static_cast<int>(std::floor(std::log10(std::abs(*value)))) + 1;
+  const double digit = std::pow(10, before_point - 3);
+  return fmt::format("{:.{}f}", std::round(*value / digit) * digit, std::max(0, 3 - before_point));
+}
+
+void print_row(const std::vector<std::string>& cells) {
+  fmt::print("| {} |\n", fmt::join(cells, " | "));
+}
+
+void print_head(const std::vector<std::string>& cells) {
+  print_row(cells);
+  std::vector<std::string> line(cells.size(), "---:");
+  line.front() = "---";
+  print_row(line);
+}
+
+}  // namespace gpo::bench

@@ -1,0 +1,35 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+namespace gpo::bench {
+
+/// Google Benchmark's own lines go to stderr; what the tables are made of is kept.
+class Results : public benchmark::ConsoleReporter {
+ public:
+  Results();
+  void ReportRuns(const std::vector<Run>& runs) override;
+
+  /// The least of a benchmark's counter over the repetitions; nothing where it did not run.
+  std::optional<double> least(const std::string& benchmark, const std::string& counter) const;
+
+ private:
+  std::map<std::string, std::map<std::string, double>> least_;
+};
+
+/// Three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; nothing: "-".
+std::string cell(const std::optional<double>& value);
+
+/// A line of a Markdown table.
+void print_row(const std::vector<std::string>& cells);
+/// Its two first lines: the first column to the left, the others to the right.
+void print_head(const std::vector<std::string>& cells);
+
+}  // namespace gpo::bench

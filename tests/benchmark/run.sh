@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, measures, and prints the README's tables; minutes, best on a
+# machine that does nothing else. tests/benchmark/run.sh ARGS... passes ARGS to Google Benchmark.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+source "$here/.ci/install.sh"
+install_packages "${build_packages[@]}" "${benchmark_packages[@]}"
+cd "$here"
+{ cmake --preset benchmark && cmake --build --preset benchmark --target benchmarks; } >&2
+# Frames a second are those of a machine without graphics hardware.
+export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
+exec build/benchmark/tests/benchmark/benchmarks "$@"

@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/benchmark/results.h"
+
+namespace gpo::bench {
+
+// Each file of benchmarks registers its own, and prints the README's tables of them.
+
+/// Methods, parts of GPO, growing windows: simulated windows, one thread.
+void register_method_benchmarks();
+void print_method_tables(const Results& results);
+
+/// Stages from picture to window, one thread.
+void register_frontend_benchmarks();
+void print_frontend_tables(const Results& results);
+
+/// Views off-screen at 1280x720.
+void register_view_benchmarks();
+void print_view_tables(const Results& results);
+
+/// Windows a second of `evaluate`.
+void register_evaluate_benchmarks();
+void print_evaluate_tables(const Results& results);
+
+}  // namespace gpo::bench

@@ -1,0 +1,189 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/inspection.h"
+#include "tests/benchmark/measure.h"
+#include "tests/benchmark/tables.h"
+#include "ui/context/gui.h"
+#include "ui/context/offscreen_context.h"
+#include "ui/context/vtk_window.h"
+#include "ui/views/compare_view.h"
+#include "ui/views/image_view.h"
+#include "ui/views/picture_texture.h"
+#include "ui/views/scene_geometry.h"
+#include "ui/workbench_window.h"
+
+#include <GL/glew.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace gpo::bench {
+namespace {
+
+const cv::Size kSize(1280, 720);
+constexpr int kRepetitions = 5;
+
+/// The same window of the bundled recording by four methods.
+using Inspections = std::vector<std::shared_ptr<const Inspection>>;
+
+Inspections inspect_desk() {
+  Inspector inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk"));
+  Inspections inspections;
+  for (const char* method : {"gpo", "pnp", "dbscan", "ba"}) {
+    Settings settings;
+    settings.method = method;
+    inspections.push_back(inspector.inspect(settings));
+  }
+  return inspections;
+}
+
+/// Draws one frame of the recording; owns what it needs in the graphics memory.
+class View {
+ public:
+  virtual ~View() = default;
+  virtual void draw(int frame) = 0;
+};
+
+ScreenRect whole() { return {{0, 0}, {kSize.width, kSize.height}}; }
+
+class ImageView : public View {
+ public:
+  explicit ImageView(const Inspections& inspections) : inspection_(*inspections.front()) {}
+  void draw(int frame) override {
+    if (frame != frame_) texture_.upload(inspection_.recording->pictures->bgr(frame));
+    frame_ = frame;
+    gui_.begin_frame(kSize.width, kSize.height);
+    draw_image_view(
+        *ImGui::GetBackgroundDrawList(), whole(), inspection_, frame, &texture_, {}, {});
+    gui_.end_frame();
+  }
+
+ private:
+  Gui gui_;
+  PictureTexture texture_;
+  int frame_ = -1;
+  const Inspection& inspection_;
+};
+
+class CompareView : public View {
+ public:
+  explicit CompareView(const Inspections& inspections) : inspections_(inspections) {}
+  void draw(int frame) override {
+    if (frame != frame_) texture_.upload(inspections_[0]->recording->pictures->bgr(frame));
+    frame_ = frame;
+    gui_.begin_frame(kSize.width, kSize.height);
+    draw_compare_view(*ImGui::GetBackgroundDrawList(), whole(), inspections_, frame, &texture_);
+    gui_.end_frame();
+  }
+
+ private:
+  Gui gui_;
+  PictureTexture texture_;
+  int frame_ = -1;
+  const Inspections& inspections_;
+};
+
+class OnlyScene : public View {
+ public:
+  explicit OnlyScene(const Inspections& inspections)
+      : inspection_(*inspections.front()),
+        camera_(default_scene_camera(inspection_,
+                                     cube_side(inspection_, 0),
+                                     kSize.width / static_cast<double>(kSize.height))) {}
+  void draw(int frame) override {
+    gui_.begin_frame(kSize.width, kSize.height);
+    draw_scene_view(
+        *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, {});
+    gui_.end_frame();
+  }
+
+ private:
+  Gui gui_;
+  SceneView view_;
+  const Inspection& inspection_;
+  OrbitCamera camera_;
+};
+
+class WholeWindow : public View {
+ public:
+  explicit WholeWindow(const Inspections& inspections) : inspection_(*inspections.front()) {
+    state_.settings = inspection_.settings;
+    adopt(state_, inspection_.recording);
+  }
+  void draw(int frame) override {
+    apply(state_, GoToFrame{frame});
+    draw_workbench({state_, &inspection_, idle_}, kSize, gui_, views_);
+  }
+
+ private:
+  Gui gui_;
+  Views views_;
+  WorkbenchState state_;
+  WorkerStatus idle_;
+  const Inspection& inspection_;
+};
+
+enum class Frames { unchanged, stepping };
+
+/// Until the picture is finished, not until it is ordered.
+template <class V>
+void run(benchmark::State& state, const Inspections& inspections, Frames frames) {
+  const VtkMessages vtk([&state](const std::string& text) { state.SkipWithError(text.c_str()); });
+  OffscreenContext context(kSize.width, kSize.height);
+  V view(inspections);
+  const int count = inspections.front()->settings.frames;
+  int frame = 0;
+  const auto draw = [&] {
+    context.bind();
+    view.draw(frame);
+    glFinish();
+    if (frames == Frames::stepping) frame = (frame + 1) % count;
+  };
+  for (int k = 0; k < 3; ++k) draw();  // sizes settle, shaders are compiled
+  measure(state, wall_ms, draw);
+}
+
+struct Row {
+  const char* name;
+  void (*run)(benchmark::State& state, const Inspections& inspections, Frames frames);
+};
+
+constexpr Row kRows[] = {{"image", run<ImageView>},
+                         {"scene", run<OnlyScene>},
+                         {"compare, 4 methods", run<CompareView>},
+                         {"window", run<WholeWindow>}};
+
+std::string name_of(const Row& row, Frames frames) {
+  return fmt::format("view/{}/{}", row.name, frames == Frames::stepping ? "stepping" : "unchanged");
+}
+
+}  // namespace
+
+void register_view_benchmarks() {
+  const auto inspections = std::make_shared<const Inspections>(inspect_desk());
+  for (const Row& row : kRows) {
+    for (const Frames frames : {Frames::unchanged, Frames::stepping}) {
+      benchmark::RegisterBenchmark(name_of(row, frames).c_str(),
+                                   [row, frames, inspections](benchmark::State& state) {
+                                     row.run(state, *inspections, frames);
+                                   })
+          ->UseRealTime()
+          ->MinTime(0.3)
+          ->Repetitions(kRepetitions);
+    }
+  }
+}
+
+void print_view_tables(const Results& results) {
+  fmt::print("\nViews off-screen at {}x{} [frames/s]:\n\n", kSize.width, kSize.height);
+  print_head({"view", "unchanged", "stepping through the window"});
+  for (const Row& row : kRows) {
+    std::vector<std::string> cells{row.name};
+    for (const Frames frames : {Frames::unchanged, Frames::stepping}) {
+      const auto ms = results.least(name_of(row, frames), "ms");
+      cells.push_back(cell(ms ? std::optional(1000 / *ms) : ms));
+    }
+    print_row(cells);
+  }
+}
+
+}  // namespace gpo::bench
