@@ -4,7 +4,6 @@
 
 #include "engine/geometry/homography.h"
 #include "engine/geometry/median.h"
-#include "engine/initializers/transfer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,29 +29,45 @@ constexpr double kLeastParallaxPx = 0.5;
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
 
-}  // namespace
+/// A frame's inliers in the reference picture and in its own [px].
+struct Pairs {
+  Matrix2Xd from, to;
+};
 
-FrameErrors frame_errors(const Window& window, int frame) {
+Pairs inlier_pairs(const Window& window, int frame) {
   std::vector<int> inliers;
   for (int j = 0; j < window.track_count(); ++j) {
     if (window.inlier[frame][j]) inliers.push_back(j);
   }
-  const Matrix2Xd from = window.points_px[0](Eigen::all, inliers);
-  const Matrix2Xd to = window.points_px[frame](Eigen::all, inliers);
+  return {window.points_px[0](Eigen::all, inliers), window.points_px[frame](Eigen::all, inliers)};
+}
+
+std::vector<double> transfer_errors_px(const Matrix3d& H, const Pairs& pairs) {
+  std::vector<double> errors;
+  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
+    errors.push_back((transfer(H, pairs.from.col(k)) - pairs.to.col(k)).norm());
+  return errors;
+}
+
+double sum_of_squares(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return sum;
+}
+
+}  // namespace
+
+FrameErrors frame_errors(const Window& window, int frame) {
+  const Pairs pairs = inlier_pairs(window, frame);
   const Matrix3d K_inverse = window.K.inverse();
-  const Matrix3Xd rays_1 = (K_inverse * from.colwise().homogeneous()).colwise().normalized();
-  const Matrix3Xd rays_i = (K_inverse * to.colwise().homogeneous()).colwise().normalized();
+  const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
+  const Matrix3Xd rays_i = (K_inverse * pairs.to.colwise().homogeneous()).colwise().normalized();
   const Matrix3d R_i1 = Eigen::umeyama(rays_1, rays_i, false).topLeftCorner<3, 3>();
-  const Matrix3d H_rotation = window.K * R_i1 * K_inverse;
-  FrameErrors errors{.inliers = static_cast<int>(inliers.size())};
-  std::vector<double> homography;
-  std::vector<double> rotation;
-  for (Eigen::Index k = 0; k < from.cols(); ++k) {
-    homography.push_back((transfer(window.H_i1[frame], from.col(k)) - to.col(k)).norm());
-    rotation.push_back((transfer(H_rotation, from.col(k)) - to.col(k)).norm());
-    errors.homography_squares += homography.back() * homography.back();
-    errors.rotation_squares += rotation.back() * rotation.back();
-  }
+  auto homography = transfer_errors_px(window.H_i1[frame], pairs);
+  auto rotation = transfer_errors_px(window.K * R_i1 * K_inverse, pairs);
+  FrameErrors errors{.inliers = static_cast<int>(homography.size())};
+  errors.homography_squares = sum_of_squares(homography);
+  errors.rotation_squares = sum_of_squares(rotation);
   errors.homography_px = median(std::move(homography));
   errors.rotation_px = median(std::move(rotation));
   return errors;
@@ -90,12 +105,13 @@ std::vector<double> reprojection_errors_px(const Window& window,
   std::vector<double> errors;
   for (int i = 1; i < window.frame_count(); ++i) {
     const Eigen::Vector3d tau = -cameras[i].p_wc / plane.distance;
+    const Matrix3d KR = window.K * cameras[i].R_wc.transpose();
     for (int j = 0; j < window.track_count(); ++j) {
       if (!window.inlier[i][j]) continue;
       const Eigen::Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
-      const Transfer t = transfer_on_plane(window.K, cameras[i].R_wc, ray_1, plane.normal, tau);
-      errors.push_back(t.in_front ? (t.pixel - window.points_px[i].col(j)).norm()
-                                  : std::numeric_limits<double>::infinity());
+      const Eigen::Vector3d seen = KR * (ray_1 - tau * plane.normal.dot(ray_1));
+      errors.push_back(seen.z() > 0 ? (seen.hnormalized() - window.points_px[i].col(j)).norm()
+                                    : std::numeric_limits<double>::infinity());
     }
   }
   return errors;
@@ -119,14 +135,13 @@ std::vector<double> reprojection_errors_px(const Window& window,
 double homography_error_px(const Window& window) {
   std::vector<double> errors;
   for (int i = 1; i < window.frame_count(); ++i)
-    errors.push_back(frame_errors(window, i).homography_px);
+    errors.push_back(median(transfer_errors_px(window.H_i1[i], inlier_pairs(window, i))));
   return median(std::move(errors));
 }
 
 double root_mean_square(std::span<const double> values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+  return values.empty() ? 0
+                        : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
 }
 
 std::optional<std::string> reason_to_distrust(const Window& window,
