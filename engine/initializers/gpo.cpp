@@ -16,11 +16,13 @@ PlaneSolution solve_gpo(const Window& window,
                         const std::stop_token& stop) {
   if (options.solver == Solver::ceres)
     return solve_plane_with_ceres(window, resting(window), {}, stop);
-  return solve_plane(window,
-                     plane_observations(window),
-                     closed_form_motion(window).value_or(resting(window)),
-                     {},
-                     stop);
+  const PlaneObservations observations = plane_observations(window);
+  const auto closed = closed_form_motion(window);
+  if (closed) {
+    PlaneSolution solution = solve_plane(window, observations, *closed, {}, stop);
+    if (solution.solver.termination != "failure") return solution;
+  }
+  return solve_plane(window, observations, resting(window), {}, stop);
 }
 
 Initialization initialize_gpo(const Window& window,

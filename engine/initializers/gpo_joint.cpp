@@ -62,7 +62,9 @@ PlaneSolution solve(const Task& task,
     next.solver.iterations += solution.solver.iterations;
     next.solver.milliseconds += solution.solver.milliseconds;
     next.solver.initial_cost = solution.solver.initial_cost;
+    const bool settled = next.solver.iterations <= solution.solver.iterations + 1;
     solution = std::move(next);
+    if (settled) break;
   }
   return solution;
 }

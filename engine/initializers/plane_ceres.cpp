@@ -18,6 +18,9 @@ using Eigen::Vector3d;
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
+/// Tight enough to compare minima to 1e-9.
+constexpr SolverTolerances kJudgeTolerances{1e-16, 1e-12};
+
 /// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
 /// rotation: nothing, the bias (3) or bias and time offset (4) that all frames share, or a rotation
 /// vector (3) of its own.
@@ -34,15 +37,6 @@ struct Rotation {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_parameters;
 };
 
-/// The left Jacobian's mirror: exp(v + dv) = exp(v) exp(J_r(v) dv).
-Matrix3d right_jacobian(const Vector3d& v) {
-  const double angle = v.norm();
-  if (angle < 1e-5) return Matrix3d::Identity() - 0.5 * skew(v);
-  const Matrix3d V = skew(v / angle);
-  return Matrix3d::Identity() - (1 - std::cos(angle)) / angle * V +
-         (1 - std::sin(angle) / angle) * V * V;
-}
-
 Rotation rotation_at(const Window& window,
                      const PlaneUnknowns& unknowns,
                      const Matrix3d& R_wc_start,
@@ -50,7 +44,7 @@ Rotation rotation_at(const Window& window,
                      const double* parameters) {
   if (unknowns.rotations == RotationModel::free) {
     const Eigen::Map<const Vector3d> phi(parameters);
-    return {R_wc_start * so3_exp(phi), right_jacobian(phi)};
+    return {R_wc_start * so3_exp(phi), so3_right_jacobian(phi)};
   }
   const GyroSensitivity& gyro = *window.gyro;
   const int size = unknowns.time_offset ? 4 : 3;
@@ -63,7 +57,7 @@ Rotation rotation_at(const Window& window,
   change.head<3>() -= gyro.bias_rad_s;
   const Vector3d phi = rotation.d_parameters * change.head(size);
   rotation.R_wc = window.R_wc[frame] * so3_exp(phi);
-  rotation.d_parameters = right_jacobian(phi) * rotation.d_parameters;
+  rotation.d_parameters = so3_right_jacobian(phi) * rotation.d_parameters;
   return rotation;
 }
 
@@ -182,7 +176,7 @@ PlaneMotion motion_of(const Window& window,
   for (int i = 1; i < window.frame_count(); ++i) {
     if (unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
     if (unknowns.rotations == RotationModel::bias)
-      motion.R_wc[i] = rotation_with(window, i, motion.bias_rad_s, motion.time_offset_s);
+      motion.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, motion));
   }
   return motion;
 }
@@ -220,7 +214,7 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     if (unknowns.rotations == RotationModel::free)
       ordering->AddElementToGroup(blocks.phi[i].data(), 1);
   }
-  const SolverReport solver = solve_by_schur(problem, std::move(ordering), {}, stop);
+  const SolverReport solver = solve_by_schur(problem, std::move(ordering), kJudgeTolerances, stop);
   return {motion_of(window, unknowns, start, blocks), solver};
 }
 

@@ -49,13 +49,10 @@ std::vector<Pose> cameras_of(const PlaneMotion& motion) {
   return cameras;
 }
 
-Eigen::Matrix3d rotation_with(const Window& window,
-                              int frame,
-                              const Eigen::Vector3d& bias_rad_s,
-                              double time_offset_s) {
+Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
   const GyroSensitivity& gyro = *window.gyro;
-  return window.R_wc[frame] * so3_exp(gyro.d_bias[frame] * (bias_rad_s - gyro.bias_rad_s) +
-                                      gyro.d_offset[frame] * time_offset_s);
+  return gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s) +
+         gyro.d_offset[frame] * motion.time_offset_s;
 }
 
 FrameState frame_state(const PlaneObservations& observations,

@@ -34,11 +34,9 @@ PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras);
 PlaneMotion facing(const Window& window, PlaneMotion motion);
 std::vector<Pose> cameras_of(const PlaneMotion& motion);
 
-/// R_wc of a frame as the gyroscope would give it with another bias and clock, to first order.
-Eigen::Matrix3d rotation_with(const Window& window,
-                              int frame,
-                              const Eigen::Vector3d& bias_rad_s,
-                              double time_offset_s);
+/// What a gyroscope's rotation R_wc of a frame turns into with the motion's bias and time offset is
+/// R_wc exp(this), to first order.
+Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion);
 
 /// Where a frame's errors are linearized.
 FrameState frame_state(const PlaneObservations& observations, const PlaneMotion& motion, int frame);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMostIterations = 300;
 constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
-constexpr double kStandsStill = 1e-15;  // expected relative decrease of the cost, rounding
+constexpr double kRounding = 1e-12;     // relative change of the cost that says nothing
 constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, where Gauss-Newton fails
 constexpr double kMostDamping = 1e12;
 
@@ -42,7 +42,10 @@ struct SplitNormals {
 };
 
 template <class S>
-SplitNormals<S> split(const FrameNormals& f, const Window& window, int frame) {
+SplitNormals<S> split(const FrameNormals& f,
+                      const Window& window,
+                      const PlaneMotion& motion,
+                      int frame) {
   if constexpr (S::kShared == 2) {
     return {f.JtJ.topLeftCorner<2, 2>(),
             f.JtJ.topRightCorner<2, S::kOwn>(),
@@ -52,9 +55,11 @@ SplitNormals<S> split(const FrameNormals& f, const Window& window, int frame) {
   } else {
     Eigen::Matrix<double, 5, S::kShared> M = Eigen::Matrix<double, 5, S::kShared>::Zero();
     M.template topLeftCorner<2, 2>().setIdentity();
-    M.template block<3, 3>(2, 2) = window.gyro->d_bias[frame];
+    const GyroSensitivity& gyro = *window.gyro;
+    const Eigen::Matrix3d turned = so3_right_jacobian(gyro_correction_rad(window, frame, motion));
+    M.template block<3, 3>(2, 2) = turned * gyro.d_bias[frame];
     if constexpr (S::kShared == 6)
-      M.template bottomRightCorner<3, 1>() = window.gyro->d_offset[frame];
+      M.template bottomRightCorner<3, 1>() = turned * gyro.d_offset[frame];
     return {M.transpose() * f.JtJ.topLeftCorner<5, 5>() * M,
             M.transpose() * f.JtJ.topRightCorner<5, 3>(),
             f.JtJ.bottomRightCorner<3, 3>(),
@@ -125,7 +130,7 @@ class PlaneProblem {
     SharedVector diagonal = reduced.diagonal();
     std::vector<Eliminated> frames(frame_count());
     for (int i = 1; i < frame_count(); ++i) {
-      SplitNormals<S> f = split<S>(at.frames[i], window_, i);
+      SplitNormals<S> f = split<S>(at.frames[i], window_, motion, i);
       f.oo.diagonal() *= 1 + damping;
       const Eigen::LLT<Eigen::Matrix<double, S::kOwn, S::kOwn>> factor(f.oo);
       frames[i] = {factor.solve(f.so.transpose()), factor.solve(f.o), f.o};
@@ -158,7 +163,7 @@ class PlaneProblem {
       if constexpr (S::kOwn == 6) {
         to.R_wc[i] = from.R_wc[i] * so3_exp(step.own[i].template head<3>());
       } else if constexpr (S::kShared > 2) {
-        to.R_wc[i] = rotation_with(window_, i, to.bias_rad_s, to.time_offset_s);
+        to.R_wc[i] = window_.R_wc[i] * so3_exp(gyro_correction_rad(window_, i, to));
       }
     }
     return to;
@@ -219,8 +224,10 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
     const auto step = problem.step(at, solution.motion, damping);
     const PlaneMotion moved = problem.moved(solution.motion, step);
     Linearized there = problem.linearize(moved);
-    const bool settled = step.length < kSettled || std::abs(step.decrease) < kStandsStill * at.cost;
-    const bool better = there.in_front && there.cost <= at.cost;
+    // What rounding leaves of the cost cannot tell whether the last steps are good; they are.
+    const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
+    const bool better = there.in_front && (there.cost <= at.cost || hidden);
+    const bool settled = step.length < kSettled;
     if (better) {
       solution.motion = moved;
       at = std::move(there);

@@ -66,12 +66,13 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   gyroscope.R_gyro_camera = so3_exp(Vector3d(1.2, -0.7, 2));
   const double last_s = kFramePeriod_s * (options.frames - 1);
   constexpr double kPeriod_s = 0.005;
-  for (double t = -kPeriod_s; t < last_s + 2 * kPeriod_s; t += kPeriod_s) {
+  constexpr double kMargin_s = 0.03;
+  for (double t = -kMargin_s; t < last_s + kMargin_s; t += kPeriod_s) {
     const auto at = [&](double seconds) { return rotation(wobble_rad, seconds / last_s); };
     const Vector3d rate_c =
         so3_log(at(t - kPeriod_s / 2).transpose() * at(t + kPeriod_s / 2)) / kPeriod_s;
     const Vector3d noise(normal_noise(random), normal_noise(random), normal_noise(random));
-    gyroscope.timestamps_ns.push_back(kFirst_ns + std::llround(1e9 * t));
+    gyroscope.timestamps_ns.push_back(kFirst_ns + std::llround(1e9 * (t + options.gyro_offset_s)));
     gyroscope.rates_rad_s.emplace_back(gyroscope.R_gyro_camera * rate_c + bias_rad_s +
                                        options.gyro_noise_rad_s * noise);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 2);
@@ -95,6 +96,31 @@ void give_gyroscope(const SimulationOptions& options,
   window.gyro = rotations.gyro;
 }
 
+/// The camera when so much of the way is done.
+Pose camera_at(const SimulationOptions& options,
+               const Vector3d& wobble_rad,
+               const Vector3d& normal,
+               double s) {
+  return {rotation(wobble_rad, s), position(options, normal, s)};
+}
+
+/// Where a point is seen in a frame, by the row that looks at it when it is there.
+Eigen::Vector2d seen_px(const SimulationOptions& options,
+                        const Simulation& simulation,
+                        const Vector3d& wobble_rad,
+                        const Vector3d& point,
+                        int frame) {
+  const Eigen::Matrix3d& K = simulation.window.K;
+  Eigen::Vector2d pixel = (K * to_camera(simulation.cameras[frame], point)).hnormalized();
+  const double way_s = kFramePeriod_s * std::max(1, options.frames - 1);
+  for (int round = 0; options.row_delay_s != 0 && round < 10; ++round) {
+    const double seconds = kFramePeriod_s * frame + options.row_delay_s * (pixel.y() - K(1, 2));
+    const Pose camera = camera_at(options, wobble_rad, simulation.plane.normal, seconds / way_s);
+    pixel = (K * to_camera(camera, point)).hnormalized();
+  }
+  return pixel;
+}
+
 }  // namespace
 
 Simulation simulate(const SimulationOptions& options) {
@@ -115,8 +141,7 @@ Simulation simulate(const SimulationOptions& options) {
       0.1 * Vector3d(normal_noise(random), normal_noise(random), normal_noise(random));
   for (int i = 0; i < options.frames; ++i) {
     const double s = static_cast<double>(i) / std::max(1, options.frames - 1);
-    simulation.cameras.push_back(
-        {rotation(wobble, s), position(options, simulation.plane.normal, s)});
+    simulation.cameras.push_back(camera_at(options, wobble, simulation.plane.normal, s));
   }
   window.points_px.assign(options.frames, Eigen::Matrix2Xd(2, options.points));
   for (int j = 0; j < options.points; ++j) {
@@ -129,9 +154,8 @@ Simulation simulate(const SimulationOptions& options) {
     if (!on_plane) *point *= 0.6 + 0.3 * uniform(random);  // something that stands on the plane
     simulation.on_plane.push_back(on_plane);
     for (int i = 0; i < options.frames; ++i) {
-      const Eigen::Vector2d exact =
-          (window.K * to_camera(simulation.cameras[i], *point)).hnormalized();
-      const double sigma = i == 0 ? 0 : options.noise_px;
+      const Eigen::Vector2d exact = seen_px(options, simulation, wobble, *point, i);
+      const double sigma = i == 0 ? options.reference_noise_px : options.noise_px;
       window.points_px[i].col(j) =
           exact + sigma * Eigen::Vector2d(normal_noise(random), normal_noise(random));
     }

@@ -99,8 +99,7 @@ INSTANTIATE_TEST_SUITE_P(,
 
 TEST(Uncertainty, OfKnownRotationsIsTheBound) {
   const Simulation truth = simulate({.motion = Motion::orbit});
-  const auto u =
-      uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
+  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
   ASSERT_TRUE(u);
   EXPECT_NEAR(*u->bound_known_rotations_deg,
               *normal_bound_deg(truth.window, truth.plane, truth.cameras, u->sigma_px),
