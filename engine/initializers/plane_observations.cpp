@@ -7,16 +7,17 @@
 namespace gpo {
 namespace {
 
-void push(FrameObservations& f, double x, double y, double u, double v, double mask) {
-  f.ray_x.push_back(x);
-  f.ray_y.push_back(y);
-  f.u.push_back(u);
-  f.v.push_back(v);
-  f.mask.push_back(mask);
+void resize(FrameObservations& f, std::size_t size) {
+  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v, &f.mask}) array->resize(size);
 }
 
-void reserve(FrameObservations& f, std::size_t size) {
-  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v, &f.mask}) array->reserve(size);
+/// Whole vectors: what is missing are copies of the first inlier, of weight zero.
+void pad(FrameObservations& f) {
+  const std::size_t size = (f.count + kKernelWidth - 1) / kKernelWidth * kKernelWidth;
+  resize(f, f.count);
+  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v})
+    array->resize(size, array->empty() ? 0 : array->front());
+  f.mask.resize(size, 0);
 }
 
 }  // namespace
@@ -35,19 +36,17 @@ FrameObservations frame_observations(const Window& window, int frame) {
   const Eigen::Matrix2Xd& to = window.points_px[frame];
   const double to_x = 1 / K(0, 0);
   const double to_y = 1 / K(1, 1);
-  reserve(f, window.track_count() + kKernelWidth);
+  resize(f, window.track_count() + kKernelWidth);
   for (int j = 0; j < window.track_count(); ++j) {
     if (!window.inlier[frame][j]) continue;
-    push(f,
-         to_x * (from(0, j) - K(0, 2)),
-         to_y * (from(1, j) - K(1, 2)),
-         to(0, j) - K(0, 2),
-         to(1, j) - K(1, 2),
-         1);
+    f.ray_x[f.count] = to_x * (from(0, j) - K(0, 2));
+    f.ray_y[f.count] = to_y * (from(1, j) - K(1, 2));
+    f.u[f.count] = to(0, j) - K(0, 2);
+    f.v[f.count] = to(1, j) - K(1, 2);
+    f.mask[f.count] = 1;
     ++f.count;
   }
-  while (f.count > 0 && f.u.size() % kKernelWidth != 0)
-    push(f, f.ray_x[0], f.ray_y[0], f.u[0], f.v[0], 0);
+  pad(f);
   return f;
 }
 

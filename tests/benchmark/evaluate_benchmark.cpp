@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 
 constexpr int kJobs[] = {1, 2};
-constexpr int kRepetitions = 3;
 
 Experiment experiment_on(const Recordings& recordings) {
   ExperimentRequest request{
@@ -56,7 +55,7 @@ void register_evaluate_benchmarks() {
 
 void print_evaluate_tables(const Results& results) {
   fmt::print("\n`evaluate` on `sequences/desk`, {} windows of 10 and 30 frames by {} methods:\n\n",
-             cell(results.least(name_of(1), "windows")),
+             whole_number(results.least(name_of(1), "windows")),
              methods().size());
   print_head({"`--jobs`", "windows/s"});
   for (const int jobs : kJobs) {

@@ -14,7 +14,6 @@ namespace gpo::bench {
 namespace {
 
 constexpr int kFrames = 30;
-constexpr int kRepetitions = 5;
 
 /// A stage by itself on the bundled recording, 640x480.
 struct Stage {
@@ -46,7 +45,7 @@ void track(benchmark::State& state, const Recording& recording, Tracking trackin
   TrackerOptions options;
   options.tracking = tracking;
   std::vector<double> ms;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     double begin = 0;
     const auto step = [&](int done, int /*of*/) {
       const double now = thread_ms();
@@ -111,7 +110,8 @@ void register_frontend_benchmarks() {
 }
 
 void print_frontend_tables(const Results& results) {
-  fmt::print("\nFront end, 640x480, {} tracks:\n\n", cell(results.least("detection", "tracks")));
+  fmt::print("\nFront end, 640x480, {} tracks:\n\n",
+             whole_number(results.least("detection", "tracks")));
   print_head({"stage", "time [ms]"});
   for (const Stage& stage : kStages) print_row({stage.name, cell(results.least(stage.name, "ms"))});
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/tables.h"
 
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -18,13 +20,16 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   cv::setNumThreads(1);
-  register_method_benchmarks();
+  const auto windows = std::make_shared<Windows>();
+  register_method_benchmarks(windows);
+  register_part_benchmarks(windows);
   register_frontend_benchmarks();
   register_view_benchmarks();
   register_evaluate_benchmarks();
   Results results;
   benchmark::RunSpecifiedBenchmarks(&results);
   print_method_tables(results);
+  print_part_tables(results);
   print_frontend_tables(results);
   print_view_tables(results);
   print_evaluate_tables(results);

@@ -30,7 +30,7 @@ inline double wall_ms() {
 template <class Work>
 void measure(benchmark::State& state, double (*clock_ms)(), const Work& work) {
   std::vector<double> ms;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const double begin = clock_ms();
     work();
     ms.push_back(clock_ms() - begin);

@@ -37,12 +37,36 @@ std::optional<double> Results::least(const std::string& benchmark,
   return value->second;
 }
 
+std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
+  if (!a || !b) return std::nullopt;
+  return *a / *b;
+}
+
+void Exponent::add(double size, const std::optional<double>& value) {
+  if (!value || !(*value > 0)) return;
+  const double x = std::log(size);
+  const double y = std::log(*value);
+  n_ += 1;
+  x_ += x;
+  y_ += y;
+  xx_ += x * x;
+  xy_ += x * y;
+}
+
+std::optional<double> Exponent::value() const {
+  if (n_ < 2) return std::nullopt;
+  return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
+}
+
 std::string cell(const std::optional<double>& value) {
-  if (!value || !std::isfinite(*value)) return "-";
-  if (*value == 0) return "0";
+  if (!value || !std::isfinite(*value) || *value == 0) return "-";
   const int before_point = static_cast<int>(std::floor(std::log10(std::abs(*value)))) + 1;
   const double digit = std::pow(10, before_point - 3);
   return fmt::format("{:.{}f}", std::round(*value / digit) * digit, std::max(0, 3 - before_point));
+}
+
+std::string whole_number(const std::optional<double>& value) {
+  return value ? fmt::format("{:.0f}", *value) : "-";
 }
 
 void print_row(const std::vector<std::string>& cells) {

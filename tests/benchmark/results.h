@@ -24,8 +24,23 @@ class Results : public benchmark::ConsoleReporter {
   std::map<std::string, std::map<std::string, double>> least_;
 };
 
-/// Three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; nothing: "-".
+/// Nothing where one of them is.
+std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b);
+
+/// k of value ~ size^k by least squares; nothing of less than two.
+class Exponent {
+ public:
+  void add(double size, const std::optional<double>& value);
+  std::optional<double> value() const;
+
+ private:
+  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
+};
+
+/// Three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; nothing or zero: "-".
 std::string cell(const std::optional<double>& value);
+/// Without digits after the point.
+std::string whole_number(const std::optional<double>& value);
 
 /// A line of a Markdown table.
 void print_row(const std::vector<std::string>& cells);

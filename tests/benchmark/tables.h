@@ -3,14 +3,19 @@
 #pragma once
 
 #include "tests/benchmark/results.h"
+#include "tests/benchmark/windows.h"
 
 namespace gpo::bench {
 
 // Each file of benchmarks registers its own, and prints the README's tables of them.
 
-/// Methods, parts of GPO, growing windows: simulated windows, one thread.
-void register_method_benchmarks();
+/// Every method on simulated windows, one thread.
+void register_method_benchmarks(const SharedWindows& windows);
 void print_method_tables(const Results& results);
+
+/// What GPO consists of, and growing windows: simulated windows, one thread.
+void register_part_benchmarks(const SharedWindows& windows);
+void print_part_tables(const Results& results);
 
 /// Stages from picture to window, one thread.
 void register_frontend_benchmarks();

@@ -20,7 +20,6 @@ namespace gpo::bench {
 namespace {
 
 const cv::Size kSize(1280, 720);
-constexpr int kRepetitions = 5;
 
 /// The same window of the bundled recording by four methods.
 using Inspections = std::vector<std::shared_ptr<const Inspection>>;
