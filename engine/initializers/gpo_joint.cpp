@@ -107,6 +107,7 @@ Fit with_estimated_shutter(const Task& task, const Fit& global) {
     }
     if (!(bend > 0) || !(next.cost() < best.cost())) break;
     best = next;
+    if (!is_significant(global, best, 1)) break;
     step_s /= 4;
   }
   Fit chosen = is_significant(global, best, 1) ? best : global;

@@ -69,8 +69,9 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
     const bool same_cost = std::abs(ours.solver.final_cost - ceres.solver.final_cost) <
                            1e-9 * ceres.solver.final_cost + 1e-12;
-    if (same_cost && GetParam().rotations == RotationModel::known)
+    if (same_cost && GetParam().rotations == RotationModel::known) {
       EXPECT_LT(difference(ours.motion, ceres.motion), 1e-8) << seed;
+    }
     same += same_cost ? 1 : 0;
     equal += difference(ours.motion, ceres.motion) < 1e-9 ? 1 : 0;
   }
