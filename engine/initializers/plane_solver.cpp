@@ -17,6 +17,7 @@ namespace {
 constexpr int kMostIterations = 300;
 constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
 constexpr double kRounding = 1e-12;     // relative change of the cost that says nothing
+constexpr int kMostHiddenSteps = 5;     // along a valley so flat that rounding fills it
 constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, where Gauss-Newton fails
 constexpr double kMostDamping = 1e12;
 
@@ -218,6 +219,7 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
   report.initial_cost = at.cost;
   if (!at.in_front || !std::isfinite(at.cost)) report.termination = "failure";
   double damping = 0;
+  int hidden_steps = 0;
   while (report.termination == "no_convergence" && report.iterations < kMostIterations &&
          !stop.stop_requested()) {
     ++report.iterations;
@@ -227,7 +229,8 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
     // What rounding leaves of the cost cannot tell whether the last steps are good; they are.
     const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
     const bool better = there.in_front && (there.cost <= at.cost || hidden);
-    const bool settled = step.length < kSettled;
+    hidden_steps += hidden ? 1 : 0;
+    const bool settled = step.length < kSettled || hidden_steps == kMostHiddenSteps;
     if (better) {
       solution.motion = moved;
       at = std::move(there);

@@ -13,7 +13,7 @@ namespace {
 // Simulated windows (0.5 px of noise): rotations only leave 1.9 to 12 deg, low parallax (4 % of d)
 // 0.17 to 0.41, others less than 0.06.
 constexpr double kWeakSigma_deg = 0.12;
-constexpr double kDegenerateSigma_deg = 3;
+constexpr double kDegenerateSigma_deg = 10;
 // The best rotations leave the noise where there is no parallax, twice to six times as much at low
 // parallax.
 constexpr double kDegenerateRotationToNoise = 1.3;

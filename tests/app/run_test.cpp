@@ -192,7 +192,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"--start -1", "--start"},
         BadInput{"--start abc", "--start"},
         BadInput{"--rotations gyr", "unknown source 'gyr'"},
-        BadInput{"--tracking anchor", "unknown tracking 'anchor'"},
+        BadInput{"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
+        BadInput{"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
+        BadInput{"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
+        BadInput{"--error two", "--error: unknown value 'two', expected one of transfer"},
+        BadInput{"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
+        BadInput{"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
         BadInput{"--bogus", "--bogus"},
         BadInput{"--tracks no-such-file.csv", "no-such-file.csv"}));
 

@@ -176,7 +176,8 @@ std::string why_idle(const Settings& settings, const std::string& key) {
     return "Without RANSAC every track counts as an inlier";
   if (key == "solver" && method != "gpo" && method != "gpo_joint")
     return "Only gpo and gpo_joint let one choose who minimizes";
-  if ((key == "error" || key == "loss" || key == "time_offset") && method != "gpo_joint")
+  if ((key == "error" || key == "loss" || key == "shutter" || key == "time_offset") &&
+      method != "gpo_joint")
     return "Only gpo_joint lets one choose this";
   return "";
 }

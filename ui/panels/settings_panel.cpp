@@ -21,7 +21,7 @@ constexpr const char* kDrag = ". Drag, or double-click to type";
 /// What few people change; folded away.
 bool is_advanced(const SettingInfo& info) {
   static const std::set<std::string> keys = {
-      "inliers", "seed", "solver", "error", "loss", "time_offset"};
+      "inliers", "seed", "solver", "error", "loss", "shutter", "time_offset"};
   return keys.contains(info.key);
 }
 

@@ -112,7 +112,7 @@ TEST(Settings, ThatDoNothingSayWhy) {
   for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"}) {
     EXPECT_EQ(why_idle(settings, key), "") << key;
   }
-  for (const char* key : {"error", "loss", "time_offset"}) {
+  for (const char* key : {"error", "loss", "shutter", "time_offset"}) {
     EXPECT_THAT(why_idle(settings, key), HasSubstr("gpo_joint")) << key;
   }
   settings.ransac = false;
