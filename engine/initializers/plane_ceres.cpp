@@ -18,9 +18,6 @@ using Eigen::Vector3d;
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
-/// Tight enough to compare minima to 1e-9.
-constexpr SolverTolerances kJudgeTolerances{1e-16, 1e-12};
-
 /// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
 /// rotation: nothing, the bias (3) or bias and time offset (4) that all frames share, or a rotation
 /// vector (3) of its own.
@@ -186,7 +183,8 @@ PlaneMotion motion_of(const Window& window,
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneMotion& start,
                                      const PlaneUnknowns& unknowns,
-                                     const std::stop_token& stop) {
+                                     const std::stop_token& stop,
+                                     double cost_tolerance) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
   Blocks blocks = blocks_of(start);
   ceres::Problem problem;
@@ -214,7 +212,8 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     if (unknowns.rotations == RotationModel::free)
       ordering->AddElementToGroup(blocks.phi[i].data(), 1);
   }
-  const SolverReport solver = solve_by_schur(problem, std::move(ordering), kJudgeTolerances, stop);
+  const SolverReport solver =
+      solve_by_schur(problem, std::move(ordering), {.cost = cost_tolerance}, stop);
   return {motion_of(window, unknowns, start, blocks), solver};
 }
 

@@ -39,10 +39,11 @@ PlaneSolution solve_plane(const Window& window,
                           const std::stop_token& stop);
 
 /// The same minimum by Ceres, as the paper does it (dogleg, dense Schur, one analytic block a
-/// frame); every weight one.
+/// frame); every weight one. It ends where the cost changes relatively less than the tolerance.
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneMotion& start,
                                      const PlaneUnknowns& unknowns,
-                                     const std::stop_token& stop);
+                                     const std::stop_token& stop,
+                                     double cost_tolerance = 1e-12);
 
 }  // namespace gpo

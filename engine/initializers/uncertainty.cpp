@@ -94,6 +94,33 @@ SharedInformation information_of(const Window& window,
   return sum;
 }
 
+/// Of what the frames share.
+std::optional<Eigen::MatrixXd> covariance_of(const Window& window,
+                                             const Linearization& linearized,
+                                             RotationModel model) {
+  auto inverse = inverse_of(information_of(window, linearized, model));
+  if (inverse) *inverse *= linearized.sigma_px * linearized.sigma_px;
+  return inverse;
+}
+
+/// Of normal and bias where the bias is held at its prior's mean: an error db of it moves the
+/// normal by -A_uu^-1 A_ub db, besides the noise.
+std::optional<Eigen::MatrixXd> covariance_of_held_bias(const Window& window,
+                                                       const Linearization& linearized) {
+  const SharedInformation A = information_of(window, linearized, RotationModel::bias);
+  const auto noise = inverse_of(A.topLeftCorner<2, 2>());
+  if (!noise) return std::nullopt;
+  const double sigma_bias = window.gyro->prior_sigma_rad_s;
+  const Eigen::Matrix<double, 2, 3> moves = -*noise * A.topRightCorner<2, 3>();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(5, 5);
+  covariance.bottomRightCorner<3, 3>().diagonal().setConstant(sigma_bias * sigma_bias);
+  covariance.topRightCorner<2, 3>() = sigma_bias * sigma_bias * moves;
+  covariance.bottomLeftCorner<3, 2>() = covariance.topRightCorner<2, 3>().transpose();
+  covariance.topLeftCorner<2, 2>() = linearized.sigma_px * linearized.sigma_px * *noise +
+                                     sigma_bias * sigma_bias * moves * moves.transpose();
+  return covariance;
+}
+
 /// Covariances of a frame's camera center and of its distance ratio 1 - n.tau.
 void add_frame(const PlaneMotion& motion,
                int frame,
@@ -150,19 +177,22 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   const PlaneMotion motion = motion_of(plane, cameras);
   const auto linearized = linearize(window, motion, model);
   if (!linearized) return std::nullopt;
-  const auto inverse = inverse_of(information_of(window, *linearized, model));
-  if (!inverse) return std::nullopt;
+  const bool holds_gyro = model == RotationModel::known && window.gyro;
+  const auto shared = holds_gyro ? covariance_of_held_bias(window, *linearized)
+                                 : covariance_of(window, *linearized, model);
+  if (!shared) return std::nullopt;
+  const Eigen::MatrixXd& covariance = *shared;
+  const RotationModel moving = holds_gyro ? RotationModel::bias : model;
   Uncertainty result;
   result.sigma_px = linearized->sigma_px;
   result.rotations = model;
-  const Eigen::MatrixXd covariance = result.sigma_px * result.sigma_px * *inverse;
   const auto tangents = normal_tangents(motion.normal);
   result.normal_covariance = tangents * covariance.topLeftCorner<2, 2>() * tangents.transpose();
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < window.frame_count(); ++i) {
-    add_frame(motion, i, split(window, i, linearized->frames[i], model), covariance, result);
+    add_frame(motion, i, split(window, i, linearized->frames[i], moving), covariance, result);
   }
   if (model == RotationModel::bias) result.bias_covariance = covariance.bottomRightCorner<3, 3>();
   const auto bound_deg = [&](RotationModel of) {

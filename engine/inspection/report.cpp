@@ -177,7 +177,9 @@ std::string uncertainty_text(const Initialization& result) {
     text += row("certain to",
                 fmt::format("{:.3f} deg (one standard deviation, rotations {})",
                             result.uncertainty->normal_sigma_deg,
-                            to_string(result.uncertainty->rotations)));
+                            result.uncertainty->rotations == RotationModel::known
+                                ? "held"
+                                : to_string(result.uncertainty->rotations)));
   }
   if (result.bias_rad_s) {
     const Eigen::Vector3d& b = *result.bias_rad_s;

@@ -201,8 +201,8 @@ TEST(GpoJoint, CeresEndsInTheSamePlace) {
     theirs.solver = Solver::ceres;
     const Initialization a = initialize_gpo_joint(truth.window, ours, {});
     const Initialization b = initialize_gpo_joint(truth.window, theirs, {});
-    EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 1e-6);
-    EXPECT_LT((*a.bias_rad_s - *b.bias_rad_s).norm(), 1e-8);
+    EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 1e-5);
+    EXPECT_LT((*a.bias_rad_s - *b.bias_rad_s).norm(), 1e-7);
   }
 }
 

@@ -97,6 +97,28 @@ INSTANTIATE_TEST_SUITE_P(,
                                          RotationModel::free),
                          [](const auto& each) { return std::string(to_string(each.param)); });
 
+TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
+  const Method& method = find_method("gpo");
+  ChiSquare normal{2}, center{3};
+  for (std::uint64_t seed = 1; seed <= 240; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    const Simulation truth = window_of(motion, RotationModel::bias, seed);
+    const Initialization result =
+        assessed(method, truth.window, method.initialize(truth.window, {}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    const Uncertainty& u = *result.uncertainty;
+    EXPECT_EQ(u.rotations, RotationModel::known);
+    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
+               kQuantile2);
+    const std::size_t last = truth.cameras.size() - 1;
+    center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
+                                 u.center_covariances[last]),
+               kQuantile3);
+  }
+  normal.expect();
+  center.expect();
+}
+
 TEST(Uncertainty, OfKnownRotationsIsTheBound) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
@@ -114,7 +136,9 @@ TEST(Uncertainty, GrowsWithWhatIsUnknown) {
   const auto sigma = [&](RotationModel model) {
     return uncertainty_of(truth.window, truth.plane, truth.cameras, model)->normal_sigma_deg;
   };
-  EXPECT_LT(sigma(RotationModel::known), sigma(RotationModel::bias));
+  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::bias);
+  EXPECT_LT(*u->bound_known_rotations_deg, sigma(RotationModel::bias));
+  EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::known));  // held, and wrong
   EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::free));
 }
 
