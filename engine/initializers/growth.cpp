@@ -36,6 +36,7 @@ struct LinearizedFrame {
   FrameNormals normals = {};
   Matrix3d hessian = Matrix3d::Zero();   ///< [px^2]
   Vector3d gradient = Vector3d::Zero();  ///< [px^2]
+  SharedInformation information = {};
 };
 
 struct Growing {
@@ -47,10 +48,12 @@ struct Growing {
 };
 
 /// False where no translation brings all points before the camera.
-bool linearize(const Growing& growing,
-               const Matrix3d& R_wc,
+bool linearize(const Window& window,
+               int frame,
+               const Growing& growing,
                const Vector3d& normal,
                LinearizedFrame& f) {
+  const Matrix3d& R_wc = window.R_wc[frame];
   PlaneMotion motion{
       .normal = normal, .tau = {f.translation_times_normal * normal}, .R_wc = {R_wc}};
   for (int round = 0; round < kMostRounds; ++round) {
@@ -71,6 +74,7 @@ bool linearize(const Growing& growing,
   f.tau = motion.tau[0];
   f.hessian = N * reduced * N.transpose();
   f.gradient = N * f.normals.Jtr.head<2>();
+  f.information = frame_information(window, frame, f.normals, window.rotations);
   return true;
 }
 
@@ -103,7 +107,8 @@ std::optional<int> settle(const Window& window, Growing& growing) {
     for (std::size_t k = 0; k < growing.frames.size(); ++k) {
       LinearizedFrame& f = growing.frames[k];
       if ((f.normal - growing.normal).norm() < kStale_rad) continue;
-      if (!linearize(growing, window.R_wc[k + 1], growing.normal, f)) return std::nullopt;
+      const int frame = static_cast<int>(k) + 1;
+      if (!linearize(window, frame, growing, growing.normal, f)) return std::nullopt;
       ++linearized;
     }
     const Eigen::Vector2d step = normal_step(growing);
@@ -124,10 +129,7 @@ Verdict judged(const Window& window, const Growing& growing) {
   const int unknowns = 3 * static_cast<int>(growing.frames.size()) + 2;
   const double sigma_px = std::sqrt(2 * cost / std::max(1, 2 * growing.observations - unknowns));
   SharedInformation information = prior_information(window, window.rotations, sigma_px);
-  for (std::size_t k = 0; k < growing.frames.size(); ++k) {
-    information += frame_information(
-        window, static_cast<int>(k) + 1, growing.frames[k].normals, window.rotations);
-  }
+  for (const LinearizedFrame& f : growing.frames) information += f.information;
   return judged(growing.evidence, normal_sigma_deg(information, sigma_px), travel);
 }
 

@@ -83,6 +83,7 @@ void check_same_minimum(const Window& window) {
 void print_usual(const Results& results) {
   fmt::print("{} frames, {} points, 0.5 px noise:\n\n", kUsual.frames, kUsual.points);
   print_head({"method",
+              "iterations",
               "optimization [ms]",
               "times `gpo`'s",
               "whole initialization [ms]",
@@ -91,7 +92,8 @@ void print_usual(const Results& results) {
   const auto gpo = name_of(all.front().name, kUsual);
   for (const Subject& subject : all) {
     const auto name = name_of(subject.name, kUsual);
-    std::vector<std::string> cells{"`" + subject.name + "`"};
+    std::vector<std::string> cells{"`" + subject.name + "`",
+                                   whole_number(results.least(name, "iterations"))};
     for (const char* counter : {"optimization", "initialization"}) {
       const auto ms = results.least(name, counter);
       cells.push_back(cell(ms));

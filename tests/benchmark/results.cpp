@@ -66,7 +66,7 @@ std::string cell(const std::optional<double>& value) {
 }
 
 std::string whole_number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.0f}", *value) : "-";
+  return value && *value != 0 ? fmt::format("{:.0f}", *value) : "-";
 }
 
 void print_row(const std::vector<std::string>& cells) {

@@ -39,7 +39,7 @@ class Exponent {
 
 /// Three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; nothing or zero: "-".
 std::string cell(const std::optional<double>& value);
-/// Without digits after the point.
+/// The same without digits after the point.
 std::string whole_number(const std::optional<double>& value);
 
 /// A line of a Markdown table.
