@@ -37,7 +37,7 @@ struct Sums {
 /// With y = A x_1, A = R_cw - tau_c n^T, (x, y) = y / y_z and h = n.x_1:
 ///   dy = -tau_c (x_1.N u) + y x phi - h t,  dp = (f / y_z) (dy_xy - (x, y) dy_z).
 /// The signs of u and t are turned here and back in `unpacked`.
-template <bool kRotating>
+template <bool kRotating>  // NOLINTNEXTLINE(readability-function-size): see `Vector`
 [[gnu::always_inline]] inline void accumulate(const FrameObservations& f,
                                               const FrameState& s,
                                               Sums& sums) {

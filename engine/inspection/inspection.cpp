@@ -140,6 +140,7 @@ void check_window(const Recording& recording, const Settings& settings) {
 
 std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
   std::vector<Verdict> verdicts;
+  verdicts.reserve(steps.size());
   for (const GrowthStep& step : steps) verdicts.push_back(step.verdict);
   return verdicts;
 }
