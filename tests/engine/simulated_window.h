@@ -28,6 +28,16 @@ enum class Motion {
   rotation_only
 };
 
+/// All that move the camera.
+inline constexpr Motion kMotions[] = {Motion::sideways,
+                                      Motion::orbit,
+                                      Motion::forward,
+                                      Motion::approach,
+                                      Motion::oblique,
+                                      Motion::up_down,
+                                      Motion::wander,
+                                      Motion::arc};
+
 struct SimulationOptions {
   Motion motion = Motion::sideways;
   int frames = 30;

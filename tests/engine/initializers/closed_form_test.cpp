@@ -16,15 +16,6 @@ double longest_travel(Motion motion) {
   return along || motion == Motion::wander ? 1.2 : 0.6;
 }
 
-constexpr Motion kMotions[] = {Motion::sideways,
-                               Motion::orbit,
-                               Motion::forward,
-                               Motion::approach,
-                               Motion::oblique,
-                               Motion::up_down,
-                               Motion::wander,
-                               Motion::arc};
-
 TEST(ClosedForm, IsExactWithoutNoise) {
   for (const Motion motion : kMotions) {
     for (const double travel : {0.04, 0.3, longest_travel(motion)}) {

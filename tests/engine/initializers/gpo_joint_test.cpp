@@ -90,14 +90,6 @@ TEST(GpoJoint, MotionAlongTheNormalIsNoBetterThanItsPriorAndSaysSo) {
 }
 
 TEST(GpoJoint, NeverEndsInAWrongMinimumWithoutSayingSo) {
-  constexpr Motion kMotions[] = {Motion::sideways,
-                                 Motion::orbit,
-                                 Motion::forward,
-                                 Motion::approach,
-                                 Motion::oblique,
-                                 Motion::up_down,
-                                 Motion::wander,
-                                 Motion::arc};
   int solved = 0;
   for (std::uint64_t seed = 1; seed <= 504; ++seed) {
     const Simulation truth = biased(kMotions[seed % std::size(kMotions)], seed);

@@ -14,15 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Motion kMotions[] = {Motion::sideways,
-                               Motion::orbit,
-                               Motion::forward,
-                               Motion::approach,
-                               Motion::oblique,
-                               Motion::up_down,
-                               Motion::wander,
-                               Motion::arc};
-
 /// Easy and hard: few and many points and frames, short and long ways, flat and steep planes.
 Simulation random_window(std::uint64_t seed) {
   std::mt19937_64 random(seed);
