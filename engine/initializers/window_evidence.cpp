@@ -59,22 +59,23 @@ Verdict judged(const WindowEvidence& evidence,
   } else if (!normal_sigma_deg) {
     verdict.reason = "the window does not determine the plane's normal";
   } else if (*normal_sigma_deg > kDegenerateSigma_deg) {
-    verdict.reason =
-        fmt::format("the plane's normal is uncertain by {:.1f} deg; move the camera farther",
-                    *normal_sigma_deg);
+    verdict.reason = fmt::format(
+        "the window tells the plane's normal to {:.1f} deg only; move the camera farther",
+        *normal_sigma_deg);
   } else if (largest_translation < kDegenerateTranslation) {
     verdict.reason = fmt::format("the camera moved by {:.1f} % of its distance from the plane only",
                                  100 * largest_translation);
   } else if (*normal_sigma_deg > kWeakSigma_deg || largest_translation < kWeakTranslation) {
     verdict.readiness = Readiness::weak;
     verdict.reason = fmt::format(
-        "little parallax: the normal is uncertain by {:.2f} deg, the camera moved by {:.1f} % of "
+        "little parallax: the window tells the normal to {:.2f} deg, the camera moved by {:.1f} % "
+        "of "
         "its distance from the plane",
         *normal_sigma_deg,
         100 * largest_translation);
   } else {
     verdict.readiness = Readiness::ready;
-    verdict.reason = fmt::format("the normal is certain to {:.2f} deg", *normal_sigma_deg);
+    verdict.reason = fmt::format("the window tells the normal to {:.2f} deg", *normal_sigma_deg);
   }
   return verdict;
 }

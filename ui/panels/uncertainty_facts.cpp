@@ -19,7 +19,7 @@ std::string why_not_certain(const Inspection& inspection) {
 }
 
 const char* rotations_note(RotationModel model) {
-  if (model == RotationModel::known) return "rotations known";
+  if (model == RotationModel::known) return "rotations held";
   if (model == RotationModel::bias) return "gyro bias unknown";
   return "rotations unknown";
 }
