@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include <opencv2/core/types.hpp>
+
 namespace gpo {
 
 /// Exit codes of the contract.
@@ -40,8 +42,9 @@ struct RunArguments {
 
 struct SnapshotArguments {
   InspectArguments inspect;
-  std::string view;                 ///< image | scene | compare | curves | window
-  std::filesystem::path output;     ///< .png
+  std::optional<std::filesystem::path> script;  ///< commands of the window, instead of one view
+  std::string view;                             ///< image | scene | compare | curves | window
+  std::filesystem::path output;                 ///< .png
   std::optional<int> frame;         ///< counts in the recording; default: the window's last
   std::optional<std::string> size;  ///< "WxH" [px]
   std::optional<std::filesystem::path> baseline;
@@ -62,11 +65,26 @@ struct EvaluateArguments {
   std::filesystem::path output;              ///< folder
 };
 
+struct ViewArguments {
+  std::optional<std::filesystem::path> recording;
+  Settings settings;
+  std::optional<std::filesystem::path> session;
+  std::optional<std::filesystem::path> script;
+};
+
+/// The recording that comes with the program: beside the sources it was built from, else beside the
+/// executable or where it is run.
+std::filesystem::path example_recording();
+
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const std::filesystem::path& recording, bool json);
 int run_command(const RunArguments& arguments);
 int snapshot_command(const SnapshotArguments& arguments);
+/// Runs the window's commands off-screen; `size`: of the window.
+int script_command(const std::filesystem::path& script,
+                   const InspectArguments& arguments,
+                   cv::Size size);
 int synthesize_command(const std::filesystem::path& recipe, const std::filesystem::path& output);
-int view_command(const std::optional<std::filesystem::path>& recording, const Settings& settings);
+int view_command(const ViewArguments& arguments);
 
 }  // namespace gpo

@@ -98,7 +98,8 @@ void write_results(const fs::path& folder, const Experiment& experiment) {
     write_figure(folder / "figures", figure);
   }
   fmt::print(
-      "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, running_time.md, "
+      "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, "
+      "running_time.md, "
       "figures\n",
       folder.string(),
       rows.size() / experiment.configurations.size(),

@@ -88,12 +88,16 @@ void add_run(CLI::App& app, RunArguments& arguments) {
 }
 
 void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
-  CLI::App* command = app.add_subcommand("snapshot", "One picture, without a display");
+  CLI::App* command = app.add_subcommand(
+      "snapshot", "One picture, or all that a script asks for, without a display");
   add_inspection(*command, arguments.inspect);
+  command->get_option("recording")->required(false);
+  CLI::Option* script = command->add_option(
+      "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->required()
-      ->check(CLI::IsMember({"image", "scene", "compare", "curves", "window"}));
-  command->add_option("--output", arguments.output, "PNG file to write")->required();
+      ->check(CLI::IsMember({"image", "scene", "compare", "curves", "window"}))
+      ->excludes(script);
+  command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(
       "--frame", arguments.frame, "Frame of the recording to draw; default: the window's last");
   command->add_option(
@@ -170,16 +174,17 @@ struct Arguments {
   SnapshotArguments snapshot;
   std::filesystem::path recipe;
   std::filesystem::path synthesize_output;
-  std::optional<std::filesystem::path> view_recording;
-  Settings view_settings;
+  ViewArguments view;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(0, 1);
   CLI::App* view = app.add_subcommand("view", "The window; the default");
   view->add_option(
-      "recording", arguments.view_recording, "Folder or file of a recording, or a recipe");
-  add_settings(*view, arguments.view_settings);
+      "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
+  add_settings(*view, arguments.view.settings);
+  view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
+  view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");
   CLI::App* info = app.add_subcommand("info", "What is found in a recording");
   info->add_option(
           "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
@@ -203,7 +208,7 @@ int dispatch(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);
-  return view_command(arguments.view_recording, arguments.view_settings);
+  return view_command(arguments.view);
 }
 
 /// Messages of libraries may span lines; the contract promises one.

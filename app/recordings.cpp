@@ -87,4 +87,8 @@ std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOpti
   return std::make_shared<const Recording>(std::move(recording));
 }
 
+Worker::Opened open_for_window(const fs::path& path) {
+  return Worker::with_inspector(open_given(path));
+}
+
 }  // namespace gpo

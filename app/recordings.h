@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inspection/worker.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>
@@ -20,5 +21,8 @@ std::vector<std::filesystem::path> resolve_recordings(
 /// Opens a recording, or that of a recipe; its path stays what the user gave.
 std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
                                             const OpenOptions& options = {});
+
+/// The same for the window's worker.
+Worker::Opened open_for_window(const std::filesystem::path& path);
 
 }  // namespace gpo

@@ -127,10 +127,20 @@ int compare(const cv::Mat& picture, const cv::Mat& baseline, const SnapshotArgum
   return kFailed;
 }
 
+/// Without a script: one view of one recording.
+void check_required(const SnapshotArguments& arguments) {
+  if (arguments.inspect.recording.empty()) throw InputError("recording is required");
+  if (arguments.view.empty()) throw InputError("--view is required");
+  if (arguments.output.empty()) throw InputError("--output is required");
+}
+
 }  // namespace
 
 int snapshot_command(const SnapshotArguments& arguments) {
   const auto size = parse_size(arguments.size);
+  if (arguments.script)
+    return script_command(*arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)));
+  check_required(arguments);
   if (arguments.output.extension() != ".png") {
     throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",
                                  arguments.output.string()));

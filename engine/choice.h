@@ -28,6 +28,13 @@ constexpr const char* to_string(E value) {
   return ChoiceKeys<E>::keys[static_cast<std::size_t>(value)];
 }
 
+template <Choice E>
+bool is_choice(const std::string& key) {
+  for (const char* known : ChoiceKeys<E>::keys)
+    if (key == known) return true;
+  return false;
+}
+
 /// The value called `key`. Throws InputError that names the known ones.
 template <Choice E>
 E choice(const std::string& key) {

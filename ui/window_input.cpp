@@ -41,10 +41,14 @@ void WindowInput::on_key(GLFWwindow* window, int key, int, int action, int modif
   input.repeating_ = action == GLFW_REPEAT;
   const auto held = [modifiers](int modifier) { return (modifiers & modifier) != 0; };
   input.shortcut_ = held(GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
-  if (action == GLFW_RELEASE || held(GLFW_MOD_ALT | GLFW_MOD_SUPER) || typing()) return;
+  if (held(GLFW_MOD_ALT | GLFW_MOD_SUPER) || (typing() && key != GLFW_KEY_ESCAPE)) return;
   const Action* found = action_of_key(key, held(GLFW_MOD_SHIFT), held(GLFW_MOD_CONTROL));
   if (found == nullptr || (input.repeating_ && !found->repeats)) return;
-  push(input.commands_, RunAction{found->name});
+  if (found->held) {
+    push(input.commands_, RunAction{found->name + (action == GLFW_RELEASE ? " off" : " on")});
+  } else if (action != GLFW_RELEASE) {
+    push(input.commands_, RunAction{found->name});
+  }
 }
 
 void WindowInput::on_character(GLFWwindow* window, unsigned codepoint) {
@@ -56,7 +60,7 @@ void WindowInput::on_character(GLFWwindow* window, unsigned codepoint) {
 }
 
 void WindowInput::on_drop(GLFWwindow* window, int count, const char** paths) {
-  if (count > 0) push(input_of(window).commands_, OpenRecording{paths[0]});
+  if (count > 0) push(input_of(window).commands_, OpenPath{paths[0]});
 }
 
 }  // namespace gpo

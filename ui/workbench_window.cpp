@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench_window.h"
 
+#include "engine/error.h"
 #include "ui/context/framebuffer.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/panels/view_options.h"
@@ -9,6 +10,7 @@
 #include "ui/workbench/layout.h"
 
 #include <GL/glew.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 namespace gpo {
@@ -26,28 +28,98 @@ void clear(std::uint32_t rgb) {
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
+void draw_views(const PanelInput& input,
+                const WindowLayout& layout,
+                Views& views,
+                Commands& commands) {
+  if (!input.state.recording) return empty_panel(input, layout.views, commands);
+  if (input.state.panes.compare) {
+    compare_panel(input, layout.views, views, commands);
+  } else {
+    image_panel(input, layout.picture, views, commands);
+    side_tabs(input, layout.side_tabs, commands);
+    side_pane(input, layout.side, views, commands);
+  }
+}
+
+/// Nothing is lit up any more when the mouse leaves the views.
+void forget_hover(const PanelInput& input, const Rectangle& views, Commands& commands) {
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  const bool outside =
+      at.x < views.x || at.x >= views.right() || at.y < views.y || at.y >= views.bottom();
+  if (outside && input.state.hover != Hover{}) push(commands, HoverOver{});
+}
+
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
-  const WindowLayout layout =
-      window_layout(static_cast<float>(size.width), static_cast<float>(size.height), input.scale);
+  const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
+  const bool drawer_open = input.state.panes.drawer.has_value();
+  const WindowLayout layout = window_layout(window.width, window.height, input.scale, drawer_open);
   menu_bar(input, commands);
   settings_panel(input, layout.settings, commands);
   results_panel(input, layout.results);
+  draw_views(input, layout, views, commands);
+  drawer_tabs(input, layout.drawer_tabs, commands);
+  if (drawer_open) drawer(input, layout.drawer, views, commands);
   timeline_panel(input, layout.timeline, commands);
   status_line(input, layout.status);
-  if (input.state.recording) {
-    image_panel(input, layout.picture, views, commands);
-    scene_panel(input, layout.scene, views, commands);
-  } else {
-    const Rectangle& picture = layout.picture;
-    const Rectangle& scene = layout.scene;
-    empty_panel(input,
-                {picture.x, picture.y, scene.right() - picture.x, scene.bottom() - picture.y},
-                commands);
+  forget_hover(input, layout.views, commands);
+  if (input.state.show_help) help_overlay(input, window, commands);
+  if (input.state.show_palette)
+    palette_overlay(input, window, views, commands);
+  else
+    views.palette = {};
+}
+
+void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
+  const Inspection* inspection = input.inspection();
+  const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
+  update_picture(input.state, views);
+  draw_image_view(*ImGui::GetBackgroundDrawList(),
+                  {{0, 0}, {size.width, size.height}},
+                  inspection ? *inspection : waiting,
+                  input.state.frame,
+                  input.state.recording->pictures ? &views.picture : nullptr,
+                  {},
+                  image_options(input.state, inspection));
+}
+
+/// One view that fills the framebuffer; between `begin_frame` and `end_frame`.
+void draw_alone(const std::string& view, const PanelInput& input, cv::Size size, Views& views) {
+  const Rectangle place{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
+  Commands ignored;
+  if (view == "picture") return draw_picture(input, size, views);
+  if (view == "compare") return compare_panel(input, place, views, ignored);
+  WorkbenchState state = input.state;
+  const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
+  if (is_choice<SidePane>(view)) {
+    state.panes.side = choice<SidePane>(view);
+    return side_pane(shown, place, views, ignored);
   }
-  if (input.state.show_help) {
-    help_overlay(
-        input, {0, 0, static_cast<float>(size.width), static_cast<float>(size.height)}, commands);
-  }
+  state.panes.drawer = choice<Drawer>(view);
+  drawer(shown, place, views, ignored);
+}
+
+/// As large as the view is in a window of that size; the picture as it was recorded.
+cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size window) {
+  if (view == "window") return window;
+  if (!input.state.recording) throw InputError("no recording is open");
+  const Camera& camera = input.state.recording->camera;
+  if (view == "picture") return {camera.width, camera.height};
+  const WindowLayout layout = window_layout(static_cast<float>(window.width),
+                                            static_cast<float>(window.height),
+                                            input.scale,
+                                            is_choice<Drawer>(view));
+  const Rectangle& place = view == "compare"           ? layout.views
+                           : is_choice<SidePane>(view) ? layout.side
+                                                       : layout.drawer;
+  if (!is_choice<SidePane>(view) && !is_choice<Drawer>(view) && view != "compare")
+    throw InputError(
+        fmt::format("screenshot: no view is called '{}', expected window, picture, "
+                    "compare, {} or {}",
+                    view,
+                    fmt::join(ChoiceKeys<SidePane>::keys, ", "),
+                    fmt::join(ChoiceKeys<Drawer>::keys, ", ")));
+  return {static_cast<int>(place.width), static_cast<int>(place.height)};
 }
 
 }  // namespace
@@ -62,22 +134,26 @@ Commands draw_workbench(
   return commands;
 }
 
-cv::Mat draw_picture(const PanelInput& input, Gui& gui, Views& views) {
-  const Camera& camera = input.state.recording->camera;
-  const Inspection waiting = nothing_inspected(input.state.recording);
-  const Framebuffer framebuffer(camera.width, camera.height);
+cv::Mat draw_view(const std::string& view,
+                  std::optional<cv::Size> wanted,
+                  const PanelInput& input,
+                  cv::Size window_size,
+                  Gui& gui,
+                  Views& views) {
+  const cv::Size size = wanted.value_or(own_size(view, input, window_size));
+  const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
-  clear(palette::kBackground);
-  gui.begin_frame(camera.width, camera.height);
-  draw_image_view(*ImGui::GetBackgroundDrawList(),
-                  {{0, 0}, {camera.width, camera.height}},
-                  input.inspection ? *input.inspection : waiting,
-                  input.state.frame,
-                  input.state.recording->pictures ? &views.picture : nullptr,
-                  {},
-                  image_options(input.state, input.inspection));
-  gui.end_frame();
-  return read_bound_framebuffer(camera.width, camera.height);
+  for (int i = 0; i < kFramesToSettle; ++i) {
+    if (view == "window") {
+      draw_workbench(input, size, gui, views);
+    } else {
+      clear(palette::kBackground);
+      gui.begin_frame(size.width, size.height);
+      draw_alone(view, input, size, views);
+      gui.end_frame();
+    }
+  }
+  return read_bound_framebuffer(size.width, size.height);
 }
 
 cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
@@ -86,15 +162,17 @@ cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
   WorkbenchState state;
   state.settings = inspection->settings;
   adopt(state, inspection->recording);
+  state.inspection = inspection;
   state.message.clear();
   apply(state, GoToFrame{frame});
   OffscreenContext context(size.width, size.height);
   Gui gui;
   Views views;
   const WorkerStatus idle;
+  const SurveyStatus no_survey;
   context.bind();
   for (int i = 0; i < kFramesToSettle; ++i) {
-    draw_workbench({state, inspection.get(), idle, false, gui.scale()}, size, gui, views);
+    draw_workbench({state, idle, no_survey, false, gui.scale()}, size, gui, views);
   }
   return context.read_bgr();
 }

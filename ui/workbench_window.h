@@ -6,6 +6,8 @@
 #include "ui/panels/panels.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <opencv2/core.hpp>
 
@@ -19,9 +21,16 @@ Commands draw_workbench(const PanelInput& input,
                         Views& views,
                         double delta_seconds = Gui::kFixedFrame_s);
 
-/// The picture of the current frame with its overlays as the state shows them, as large as the
-/// recording's pictures: CV_8UC3, BGR. In the current OpenGL context, unzoomed.
-cv::Mat draw_picture(const PanelInput& input, Gui& gui, Views& views);
+/// One part of it alone, with what the state shows, as large as wanted: CV_8UC3, BGR. `view`:
+/// window, picture (unzoomed, by default as large as the recording's), compare, or the key of a
+/// side pane or a drawer; by default as large as in a window of `window_size`. In the current
+/// OpenGL context. Throws InputError for an unknown view, and where there is nothing to draw yet.
+cv::Mat draw_view(const std::string& view,
+                  std::optional<cv::Size> wanted,
+                  const PanelInput& input,
+                  cv::Size window_size,
+                  Gui& gui,
+                  Views& views);
 
 /// The user interface with this inspection open, without a display: CV_8UC3, BGR. On the same
 /// machine the same bytes every time: milliseconds are left out. Throws InputError where there is

@@ -92,4 +92,16 @@ void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& boa
   }
 }
 
+void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c) {
+  const auto move = [&](CubeAnchor& cube, const Plane& plane, const Pose& camera) {
+    const auto middle = intersect(plane, camera, ray_c);
+    if (!middle) return;
+    const double half = cube.on_board ? default_cube_side(cube, plane.distance) / 2 : 0;
+    cube.origin = *middle - cube.axes * Eigen::Vector3d(half, half, 0);
+  };
+  if (inspection.cube) move(*inspection.cube, inspection.initialization->plane, Pose{});
+  if (inspection.true_cube)
+    move(*inspection.true_cube, *inspection.truth->plane, *inspection.truth->cameras.front());
+}
+
 }  // namespace gpo

@@ -51,4 +51,8 @@ struct Inspection;
 /// reference picture), or where there is no board that of the inliers' centroid.
 void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners_raw_px);
 
+/// Moves the middle of both cubes' bases to where a ray of the reference camera meets their planes;
+/// they keep their axes. One that the ray misses stays.
+void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
+
 }  // namespace gpo

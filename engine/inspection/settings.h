@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -25,7 +26,8 @@ struct Settings {
   double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
   /// Which tracks count as inliers; nothing: as the method does (`inliers_used`).
   std::optional<Inliers> inliers = std::nullopt;
-  std::uint64_t seed = 1;  ///< of every random choice
+  std::vector<std::int64_t> exclude = {};  ///< ids of tracks left out by hand, ascending
+  std::uint64_t seed = 1;                  ///< of every random choice
   InitializerOptions initializer = {};
 
   bool operator==(const Settings&) const = default;

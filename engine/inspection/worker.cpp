@@ -27,10 +27,13 @@ std::string error_of(Work&& work) {
 }  // namespace
 
 Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path) {
-  const auto recording = open_recording(path);
+  return with_inspector(open_recording(path));
+}
+
+Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);
   return {
-      recording,
+      std::move(recording),
       [inspector](const Settings& settings, const std::stop_token& stop, const Progress& progress) {
         return inspector->inspect(settings, stop, progress);
       }};

@@ -66,6 +66,7 @@ class Worker {
 
   /// `open_recording` and an Inspector for it.
   static Opened open_with_inspector(const std::filesystem::path& path);
+  static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
   void run(const std::stop_token& stop);

@@ -38,13 +38,14 @@ class WorkbenchWindow : public DrawingTest {
   Commands draw() {
     context_.bind();
     return draw_workbench(
-        {state_, inspection_.get(), idle_, true, gui_.scale()}, {kWidth, kHeight}, gui_, *views_);
+        {state_, idle_, no_survey_, true, gui_.scale()}, {kWidth, kHeight}, gui_, *views_);
   }
 
   void open(std::shared_ptr<const Inspection> inspection = made()) {
     inspection_ = std::move(inspection);
     state_.settings = inspection_->settings;
     adopt(state_, inspection_->recording);
+    state_.inspection = inspection_;
     draw();
   }
 
@@ -78,8 +79,9 @@ class WorkbenchWindow : public DrawingTest {
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
   WorkerStatus idle_;
+  SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1);
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
 };
 
 TEST_F(WorkbenchWindow, DoesNothingByItself) {
@@ -99,7 +101,7 @@ TEST_F(WorkbenchWindow, ButtonsOfTheTimeLineRunTheirActions) {
     const Commands commands = click(x, y);
     const auto* action = find<RunAction>(commands);
     ASSERT_NE(action, nullptr) << name;
-    EXPECT_EQ(action->name, name);
+    EXPECT_EQ(action->line, name);
     x += 34;
   }
 }
@@ -138,7 +140,7 @@ TEST_F(WorkbenchWindow, WheelZoomsThePictureAndDragMovesIt) {
 
 TEST_F(WorkbenchWindow, WheelAndDragMoveTheCameraOfTheScene) {
   open();
-  const float x = layout_.scene.x + 200, y = layout_.scene.y + 300;
+  const float x = layout_.side.x + 200, y = layout_.side.y + 300;
   point_at(x, y);
   ImGui::GetIO().MouseWheel = 1;
   const Commands nearer = draw();
@@ -162,11 +164,11 @@ TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
 
 TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {
   draw();
-  const float x = (layout_.picture.x + layout_.scene.right()) / 2;
+  const float x = (layout_.picture.x + layout_.side.right()) / 2;
   bool offered = false;
   for (float y = 250; y < 450 && !offered; y += 10) {
     const Commands commands = click(x, y);
-    offered = find<RunAction>(commands) && find<RunAction>(commands)->name == "open-example";
+    offered = find<RunAction>(commands) && find<RunAction>(commands)->line == "open-example";
   }
   EXPECT_TRUE(offered);
 }
@@ -177,7 +179,7 @@ TEST_F(WorkbenchWindow, ClickBesideTheKeysClosesThem) {
   draw();
   const Commands commands = click(20, 400);
   ASSERT_NE(find<RunAction>(commands), nullptr);
-  EXPECT_EQ(find<RunAction>(commands)->name, "escape");
+  EXPECT_EQ(find<RunAction>(commands)->line, "escape");
 }
 
 TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
@@ -189,7 +191,7 @@ TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
       draw();
     }
   }
-  inspection_.reset();  // opened, but nothing is computed yet
+  state_.inspection.reset();  // opened, but nothing is computed yet
   idle_ = {true, "tracking", 12, 30, ""};
   draw();
   idle_ = {false, "", 0, 0, std::string(300, 'x')};
@@ -198,11 +200,14 @@ TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
 
 TEST_F(WorkbenchWindow, PictureToDiskIsAsLargeAsTheRecordings) {
   open();
-  const cv::Mat picture = draw_picture({state_, inspection_.get(), idle_}, gui_, *views_);
+  const auto draw_picture = [&] {
+    return draw_view("picture", {}, {state_, idle_, no_survey_}, {}, gui_, *views_);
+  };
+  const cv::Mat picture = draw_picture();
   EXPECT_EQ(picture.cols, inspection_->recording->camera.width);
   EXPECT_EQ(picture.rows, inspection_->recording->camera.height);
   state_.view = {false, false, false, false, false};
-  const cv::Mat plain = draw_picture({state_, inspection_.get(), idle_}, gui_, *views_);
+  const cv::Mat plain = draw_picture();
   EXPECT_FALSE(compare_pictures(picture, plain).equal);
 }
 
@@ -246,13 +251,15 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     WorkbenchState state;
     state.settings = inspection->settings;
     adopt(state, inspection->recording);
+    state.inspection = inspection;
     state.message.clear();
     const WorkerStatus idle;
+    const SurveyStatus no_survey;
     for (int i = 0; i < 3; ++i) {
       window.poll();
       ImGui::GetIO().MousePos = {-1, -1};
       window.bind();
-      draw_workbench({state, inspection.get(), idle, false, gui.scale()}, size, gui, views);
+      draw_workbench({state, idle, no_survey, false, gui.scale()}, size, gui, views);
       if (i == 2) on_screen = window.read_bgr();
       window.swap();
     }

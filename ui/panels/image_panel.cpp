@@ -3,18 +3,95 @@
 #include "engine/error.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/track_tooltip.h"
 #include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image_view.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
+#include "ui/views/track_highlight.h"
+#include "ui/workbench/tracks_in_view.h"
 
 #include <cmath>
 
 namespace gpo {
 namespace {
 
-/// Brings the picture of the current frame into the texture, where it is not there yet.
+using Eigen::Vector2d;
+
+/// The picture on the screen, and where the mouse is.
+struct Pointer {
+  const WorkbenchState& state;
+  ScreenRect rect;
+  PictureMapping mapping;
+  float scale;
+  Vector2d at = {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+  Vector2d pressed_at = {ImGui::GetIO().MouseClickedPos[0].x, ImGui::GetIO().MouseClickedPos[0].y};
+
+  /// Nothing while the mouse is elsewhere or nothing is shown there.
+  std::optional<std::int64_t> track() const {
+    if (!state.inspection || !ImGui::IsItemHovered() || !state.view.tracks) return std::nullopt;
+    const Inspection& inspection = *state.inspection;
+    const auto column =
+        track_at(inspection, state.frame - inspection.window->start, mapping, at, 10 * scale);
+    return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
+  }
+};
+
+void zoom_and_pan(const Pointer& pointer, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const PictureZoom& zoom = pointer.state.picture_zoom;
+  const Camera& camera = pointer.state.recording->camera;
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+    const double by = std::pow(1.25, io.MouseWheel);
+    push(commands, ZoomPicture{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
+  }
+  const Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
+  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
+    push(commands, ZoomPicture{});
+  } else if (ImGui::IsItemActive() && !io.KeyShift && !by.isZero()) {
+    push(commands, ZoomPicture{pan(zoom, camera, pointer.rect, by)});
+  }
+}
+
+/// Click: picks the track; with Ctrl beside the others. Shift and drag: those in a rectangle. Right
+/// click: the cube comes here, where this is the reference frame.
+void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Selection& selection = pointer.state.selection;
+  if (!ImGui::IsItemDeactivated()) return;
+  const bool clicked = (pointer.at - pointer.pressed_at).norm() < 4 * pointer.scale;
+  if (clicked && track) {
+    push(commands, SelectTracks{io.KeyCtrl ? toggled(selection, *track) : selected({&*track, 1})});
+  } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
+    push(commands, SelectTracks{});
+  } else if (!clicked && io.KeyShift) {
+    const Vector2d a = to_picture(pointer.mapping, pointer.pressed_at);
+    const Vector2d b = to_picture(pointer.mapping, pointer.at);
+    const std::vector<std::int64_t> within = tracks_within(pointer.state, a, b);
+    push(commands, SelectTracks{io.KeyCtrl ? extended(selection, within) : selected(within)});
+  }
+}
+
+void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
+  if (!ImGui::IsItemActive() || !ImGui::GetIO().KeyShift) return;
+  const ImVec2 a = to_imgui(pointer.pressed_at), b = to_imgui(pointer.at);
+  list.AddRectFilled(a, b, imgui_color(palette::kAccent, 0.15));
+  list.AddRect(a, b, imgui_color(palette::kAccent), 0, 0, 1.5F * pointer.scale);
+}
+
+/// The ray of the reference camera through the mouse.
+void move_cube(const Pointer& pointer, Commands& commands) {
+  const WorkbenchState& state = pointer.state;
+  const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (!clicked || !state.inspection || !state.inspection->initialization->ok) return;
+  const auto ray =
+      reference_ray(*state.inspection, state.frame, to_picture(pointer.mapping, pointer.at));
+  if (ray) push(commands, MoveCube{ray});
+}
+
+}  // namespace
+
 void update_picture(const WorkbenchState& state, Views& views) {
   if (views.recording == state.recording && views.frame == state.frame) return;
   views.recording = state.recording;
@@ -28,24 +105,6 @@ void update_picture(const WorkbenchState& state, Views& views) {
   }
 }
 
-void handle_mouse(const WorkbenchState& state, const ScreenRect& rect, Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const Camera& camera = state.recording->camera;
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
-    const Eigen::Vector2d pointer(io.MousePos.x, io.MousePos.y);
-    const double by = std::pow(1.25, io.MouseWheel);
-    push(commands, ZoomPicture{zoom_about(state.picture_zoom, camera, rect, pointer, by)});
-  }
-  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-    push(commands, ZoomPicture{});
-  } else if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-    const Eigen::Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
-    push(commands, ZoomPicture{pan(state.picture_zoom, camera, rect, by)});
-  }
-}
-
-}  // namespace
-
 void image_panel(const PanelInput& input,
                  const Rectangle& place,
                  Views& views,
@@ -55,21 +114,39 @@ void image_panel(const PanelInput& input,
   update_picture(state, views);
   ImGui::InvisibleButton("view",
                          {place.width, place.height},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                             ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  handle_mouse(state, rect, commands);
+  const Pointer pointer{
+      state, rect, map_picture(state.recording->camera, rect, state.picture_zoom), input.scale};
+  zoom_and_pan(pointer, commands);
+  const auto track = pointer.track();
+  if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
+  select(pointer, track, commands);
+  move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool shown = state.recording->pictures && views.picture_error.empty();
-  const Inspection waiting = input.inspection ? Inspection{} : nothing_inspected(state.recording);
-  ImageViewOptions options = image_options(state, input.inspection);
+  const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
+  ImageViewOptions options = image_options(state, input.inspection());
   options.legend = options.legend && room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
-                  input.inspection ? *input.inspection : waiting,
+                  input.inspection() ? *input.inspection() : waiting,
                   state.frame,
                   shown ? &views.picture : nullptr,
                   state.picture_zoom,
                   options);
+  if (input.inspection()) {
+    const Inspection& inspection = *input.inspection();
+    draw_highlight_in_picture(list,
+                              rect,
+                              inspection,
+                              state.frame - inspection.window->start,
+                              pointer.mapping,
+                              highlight_of(state));
+  }
+  draw_rectangle(pointer, list);
+  if (track) track_tooltip(input, *track);
   if (!views.picture_error.empty()) {
     draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
   }

@@ -9,38 +9,68 @@
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
 
+#include <array>
 #include <memory>
 #include <string>
 
 namespace gpo {
 
-/// What a panel may look at, besides the state.
+/// What a panel may look at.
 struct PanelInput {
   const WorkbenchState& state;
-  const Inspection* inspection;  ///< the last one that was finished; null: none
   const WorkerStatus& worker;
+  const SurveyStatus& survey;
   bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
   float scale = 1;      ///< of the text: sizes for 96 dpi times this
+
+  /// The last one that was finished; null: none.
+  const Inspection* inspection() const { return state.inspection.get(); }
 };
 
-/// What the views keep in the graphics memory from frame to frame. Needs its context.
+/// What was typed into the list of all commands.
+struct PaletteEntry {
+  std::array<char, 256> text{};
+  int chosen = 0;          ///< of the actions that it finds
+  bool typed_out = false;  ///< by us: the cursor is to go to its end
+};
+
+/// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
   std::shared_ptr<const Recording> recording;  ///< of the picture that is in `picture`
   int frame = -1;
   std::string picture_error;  ///< why there is none
   SceneView scene;
+  PaletteEntry palette;
 };
+
+/// Brings the picture of the current frame into `views`, where it is not there yet.
+void update_picture(const WorkbenchState& state, Views& views);
 
 // Each draws one part of the window through Dear ImGui and changes nothing but `Views`.
 void menu_bar(const PanelInput& input, Commands& commands);
 void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
 void results_panel(const PanelInput& input, const Rectangle& place);
 void image_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
-void scene_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
+/// Picture and side pane in one: a column a compared configuration.
+void compare_panel(const PanelInput& input,
+                   const Rectangle& place,
+                   Views& views,
+                   Commands& commands);
 void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
 void status_line(const PanelInput& input, const Rectangle& place);
 void help_overlay(const PanelInput& input, const Rectangle& window, Commands& commands);
+void palette_overlay(const PanelInput& input,
+                     const Rectangle& window,
+                     Views& views,
+                     Commands& commands);
 void empty_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
+
+/// Names of the side panes, and of the drawers, to choose one by a click.
+void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
+void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
+/// The side pane, or the drawer, that is open.
+void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
+void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
 
 }  // namespace gpo

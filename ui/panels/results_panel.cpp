@@ -99,7 +99,7 @@ void draw_verdict(const Verdict& verdict, float left, float right, float gap, fl
 }
 
 void draw_state(const PanelInput& input, float right) {
-  const bool stale = input.inspection && !(input.inspection->settings == input.state.settings);
+  const bool stale = input.inspection() && !(input.inspection()->settings == input.state.settings);
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
   ImGui::PushFont(font(Font::small));
   continue_line_at(right - ImGui::CalcTextSize(text).x);
@@ -119,9 +119,9 @@ void results_panel(const PanelInput& input, const Rectangle& place) {
   const float right = left + ImGui::GetContentRegionAvail().x;
   const float gap = std::round(8 * s);
   const Initialization* result =
-      input.inspection ? input.inspection->initialization.get() : nullptr;
+      input.inspection() ? input.inspection()->initialization.get() : nullptr;
   bool first = true;
-  for (const ResultGroup& group : result_groups(input.inspection, input.timings)) {
+  for (const ResultGroup& group : result_groups(input.inspection(), input.timings)) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(input, right);

@@ -220,7 +220,7 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
     visit_settings(settings, rows);
   }
   tooltip("Inliers, seed, and what the optimizations let one choose");
-  if (rows.changed) push(commands, ChangeSettings{settings});
+  if (rows.changed) push(commands, ChangeSettings{settings, ImGui::IsMouseDown(0)});
   ImGui::PopStyleVar(2);
 }
 

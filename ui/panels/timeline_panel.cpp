@@ -115,7 +115,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(kRaised));
   if (axis.frames < 1) return;
   const Inspection* shown =
-      input.inspection && input.inspection->window ? input.inspection : nullptr;
+      input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
   if (ImGui::IsItemActive()) {
@@ -174,7 +174,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   }
   const float numbers = std::round(124 * s);
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
-  const bool legend = input.inspection && !input.inspection->growth.empty() &&
+  const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;
   const Rectangle bar{left,
                       place.y + std::round(12 * s),

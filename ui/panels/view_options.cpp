@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/view_options.h"
 
+#include "ui/workbench/tracks_in_view.h"
+
 #include <utility>
 
 namespace gpo {
@@ -25,6 +27,18 @@ SceneViewOptions scene_options(const WorkbenchState& state) {
   options.truth = state.view.truth;
   options.uncertainty = state.view.uncertainty;
   return options;
+}
+
+Highlight highlight_of(const WorkbenchState& state) {
+  Highlight highlight;
+  if (!state.inspection) return highlight;
+  const Tracks& tracks = *state.inspection->tracks;
+  for (const std::int64_t id : state.selection.tracks)
+    if (const auto column = column_of(tracks, id)) highlight.picked.push_back(*column);
+  if (state.selection.focus) highlight.focus = column_of(tracks, *state.selection.focus);
+  if (state.hover.track) highlight.hovered = column_of(tracks, *state.hover.track);
+  if (state.hover.camera) highlight.camera = *state.hover.camera - tracks.start;
+  return highlight;
 }
 
 bool room_for_legend(const Rectangle& place, float scale) {

@@ -5,6 +5,8 @@
 #include "ui/context/gui.h"
 #include "ui/views/palette.h"
 
+#include <cmath>
+
 namespace gpo {
 
 PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, bool scrolls) {
@@ -27,6 +29,23 @@ PanelScope::~PanelScope() {
   ImGui::PopStyleVar(3);
 }
 
+void draw_empty(const Rectangle& place, const std::string& text) {
+  const float wrap = place.width * 0.8F;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(
+      {place.x, place.y}, {place.right(), place.bottom()}, imgui_color(palette::kSceneBottom));
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  const ImVec2 at(std::round(place.x + (place.width - size.x) / 2),
+                  std::round(place.y + (place.height - size.y) / 2));
+  list.AddText(ImGui::GetFont(),
+               ImGui::GetFontSize(),
+               at,
+               imgui_color(palette::kTextDim),
+               text.c_str(),
+               nullptr,
+               wrap);
+}
+
 void heading(const char* text) {
   ImGui::PushFont(font(Font::small));
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
@@ -36,7 +55,11 @@ void heading(const char* text) {
 }
 
 void tooltip(const std::string& text) {
-  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  if (!text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    show_tooltip(text);
+}
+
+void show_tooltip(const std::string& text) {
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0F);  // of a disabled item, too
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);

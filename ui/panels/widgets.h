@@ -21,11 +21,17 @@ class PanelScope {
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
+/// What a part of the window says while it has nothing to show, in its middle: why, and what to do.
+void draw_empty(const Rectangle& place, const std::string& text);
+
 /// A small heading in dim capitals.
 void heading(const char* text);
 
 /// Shows `text` while the mouse rests on the item drawn last.
 void tooltip(const std::string& text);
+
+/// Shows `text` beside the mouse, now.
+void show_tooltip(const std::string& text);
 
 /// Text of one line; where it is wider than `width` it ends with "..." and its tooltip is all of
 /// it.

@@ -97,4 +97,11 @@ struct ResidualVector {
 /// where the initialization failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window);
 
+/// The ray of the reference camera (its frame) to where a pixel of a frame (counts in the
+/// recording) shows the estimated plane. Nothing where the frame is not in the window, or the pixel
+/// shows no plane.
+std::optional<Eigen::Vector3d> reference_ray(const Inspection& inspection,
+                                             int frame,
+                                             const Eigen::Vector2d& raw_px);
+
 }  // namespace gpo

@@ -109,6 +109,13 @@ std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
   return view_size_px / 2 + focal_px * p.head<2>() / p.z();
 }
 
+Eigen::Vector3d view_ray(const OrbitCamera& camera,
+                         const Eigen::Vector2d& pixel,
+                         const Eigen::Vector2d& view_size_px) {
+  const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
+  return view_axes(camera) * ((pixel - view_size_px / 2) / focal_px).homogeneous();
+}
+
 double pixels_a_unit(const OrbitCamera& camera, double height_px) {
   return height_px / 2 / half_tangent(camera) / camera.distance;
 }

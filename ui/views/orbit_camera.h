@@ -47,6 +47,11 @@ std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
                                           const Eigen::Vector3d& point,
                                           const Eigen::Vector2d& view_size_px);
 
+/// Through such a pixel, in the world, forward by one.
+Eigen::Vector3d view_ray(const OrbitCamera& camera,
+                         const Eigen::Vector2d& pixel,
+                         const Eigen::Vector2d& view_size_px);
+
 /// Pixels that a unit of length at the target's depth is long.
 double pixels_a_unit(const OrbitCamera& camera, double height_px);
 

@@ -23,6 +23,8 @@ constexpr std::uint32_t kReference = 0xF0F2F5;  ///< the reference camera's mark
 constexpr std::uint32_t kPlane = 0x56B4E9;      ///< sky blue
 constexpr std::uint32_t kUncertain = 0xFFF3D6;  ///< warm white
 constexpr std::uint32_t kPoint = 0xC9D2DC;      ///< map points
+constexpr std::uint32_t kSelected = 0xFFFFFF;   ///< rings around what is picked out
+constexpr std::uint32_t kPointedAt = 0x56B4E9;  ///< ... and around what the mouse rests on
 constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
 
 // Surfaces and text, dark to light.

@@ -21,19 +21,29 @@ struct Shortcut {
   std::string label = {};  ///< for people
 };
 
-/// A named action on the workbench. Keys, menus, the help window and the tests read the table.
+/// What follows an action's name, word by word.
+using Arguments = std::vector<std::string>;
+
+/// A named action on the workbench. Keys, menus, palette, help window, scripts and tests read the
+/// table.
 struct Action {
-  std::string name;  ///< in commands and scripts
-  std::string title;
-  std::string menu;  ///< File, View, Time, Method, Help
+  std::string name;   ///< one or more words: "frame", "select track"
+  std::string title;  ///< for people
+  std::string menu;   ///< File, Edit, View, Time, Method, Help
   std::vector<Shortcut> shortcuts;
   std::string tooltip;  ///< one sentence
-  std::function<void(WorkbenchState&)> run = {};
+  /// Throws InputError for arguments that it cannot use.
+  std::function<void(WorkbenchState&, const Arguments&)> run = {};
+  std::string arguments = {};  ///< "N", "FILE"; in brackets where they may be left out
   std::function<std::string(const WorkbenchState&)> value =
       {};  ///< its state, for the help window; else on or off
   std::function<bool(const WorkbenchState&)> checked = {};  ///< null: not a switch
   bool needs_recording = true;
   bool repeats = false;  ///< while its key is held
+  bool held = false;     ///< run with "on" when its key goes down, with "off" when it comes up
+
+  /// Can be run by its name alone.
+  bool complete() const { return arguments.empty() || arguments.front() == '['; }
 };
 
 std::span<const Action> actions();
@@ -45,9 +55,25 @@ const Action* find_action(const std::string& name);
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
 const Action* action_of_character(char32_t character);
 
-/// Runs the action named so; where it needs a recording and none is open, a message says that.
-void run_action(WorkbenchState& state, const std::string& name);
-
 bool enabled(const Action& action, const WorkbenchState& state);
+
+/// The actions whose name or title has all words of a text, those that begin with it first.
+std::vector<const Action*> find_actions(const std::string& text);
+
+/// A line taken apart.
+struct ActionCall {
+  const Action* action;
+  Arguments arguments;
+};
+/// Of the names that fit the longest counts; nothing where none does.
+std::optional<ActionCall> match_line(const std::string& line);
+
+/// Runs one line of a script: an action's name, then its arguments; those with spaces in double
+/// quotes. Of the names that fit the longest counts. Throws InputError that says what was found and
+/// what is expected.
+void run_line(WorkbenchState& state, const std::string& line);
+
+/// The same for people at the window: what is wrong is said in the message line.
+void run_action(WorkbenchState& state, const std::string& line);
 
 }  // namespace gpo

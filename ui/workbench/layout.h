@@ -18,14 +18,18 @@ struct WindowLayout {
   Rectangle menu;      ///< the whole width
   Rectangle settings;  ///< left column, above
   Rectangle results;   ///< left column, below
+  Rectangle views;     ///< picture, side tabs and side pane together: what compare mode takes
   Rectangle picture;
-  Rectangle scene;
-  Rectangle timeline;  ///< the whole width
-  Rectangle status;    ///< the whole width
+  Rectangle side_tabs;    ///< which side pane is open
+  Rectangle side;         ///< the side pane
+  Rectangle drawer_tabs;  ///< which drawer is open
+  Rectangle drawer;       ///< empty where it is shut
+  Rectangle timeline;     ///< the whole width
+  Rectangle status;       ///< the whole width
 };
 
 /// Divides a window of width x height pixels whose text is `scale` times as large as usual. Picture
-/// and scene stand side by side where the space is wide, else one above the other.
-WindowLayout window_layout(float width, float height, float scale);
+/// and side pane stand side by side where the space is wide, else one above the other.
+WindowLayout window_layout(float width, float height, float scale, bool drawer_open);
 
 }  // namespace gpo

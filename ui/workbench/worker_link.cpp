@@ -2,37 +2,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/worker_link.h"
 
+#include "engine/error.h"
+#include "ui/workbench/session_file.h"
+
 #include <utility>
 
 namespace gpo {
+namespace {
+
+/// The inspection with its cube where the ray points; itself where nobody moved it.
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c) {
+  if (!inspection || !ray_c) return inspection;
+  Inspection moved = *inspection;
+  move_cubes(moved, *ray_c);
+  return std::make_shared<const Inspection>(std::move(moved));
+}
+
+/// Takes over what was published. Whether that is another recording.
+bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
+  // The status first: one that says "idle" then never comes with a result that is not there yet.
+  link.worker = worker.status();
+  link.survey = survey.status();
+  const Published published = worker.latest();
+  const bool opened = published.recording && published.recording != state.recording;
+  if (opened) {
+    adopt(state, published.recording);
+    survey.open(published.recording);
+  }
+  if (published.inspection && published.inspection != link.published)
+    survey.add(published.inspection);
+  if (published.inspection != link.published || state.cube_ray != link.cube_ray)
+    state.inspection = with_cube(published.inspection, state.cube_ray);
+  link.published = published.inspection;
+  link.cube_ray = state.cube_ray;
+  state.surveyed = survey.results();
+  if (link.worker.error != link.error) {
+    link.error = link.worker.error;
+    if (!link.error.empty()) say(state, link.error, Severity::error);
+  }
+  return opened;
+}
+
+/// A session's recording is opened first; one that has moved is asked for. Whether the worker has
+/// something to do.
+bool open_path(WorkbenchState& state, Worker& worker, const std::filesystem::path& path) {
+  auto& waiting = state.waiting_session;
+  if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
+  std::filesystem::path recording = path;
+  try {
+    if (is_session(path)) {
+      state.waiting_session = read_session(path);
+      recording = state.waiting_session->recording;
+    }
+  } catch (const InputError& error) {
+    say(state, error.what(), Severity::error);
+    return false;
+  }
+  std::error_code none;
+  if (is_session(path) && !std::filesystem::exists(recording, none)) {
+    say(state,
+        recording.string() + " has moved: open it where it is now, and the session goes on",
+        Severity::warning);
+    return false;
+  }
+  worker.open(recording);
+  return true;
+}
+
+}  // namespace
+
 void synchronize(WorkbenchState& state,
                  WorkerLink& link,
                  Worker& worker,
+                 Survey& survey,
                  const std::filesystem::path& example) {
-  // The status first: one that says "idle" then never comes with a result that is not there yet.
-  link.status = worker.status();
-  const Published published = worker.latest();
-  const bool opened = published.recording && published.recording != state.recording;
-  if (opened) adopt(state, published.recording);
-  link.inspection = published.inspection;
-
-  const Wishes wishes = std::exchange(state.wishes, {});
-  state.wishes.quit = wishes.quit;
-  state.wishes.save_picture = wishes.save_picture;
-  if (wishes.cancel && link.status.busy) {
+  const bool opened = receive(state, link, worker, survey);
+  const bool open_example = std::exchange(state.wishes.open_example, false);
+  const auto open = std::exchange(state.wishes.open, {});
+  const bool again = std::exchange(state.wishes.compute, false);
+  if (std::exchange(state.wishes.cancel, false) && link.busy()) {
     worker.cancel();
-    state.message = "canceled; F5 computes again";
+    link.survey_canceled = true;
+    say(state, "canceled; F5 computes again");
   }
-  const bool compute =
-      state.recording && (opened || wishes.compute || state.settings != link.requested);
-  if (wishes.open_example) worker.open(example);
-  if (wishes.open) worker.open(*wishes.open);
+  const bool compute = state.recording && (opened || again || state.settings != link.requested);
+  if (open_example) worker.open(example);
+  const bool opening = open && open_path(state, worker, *open);
+  if (opening && link.remembers_files) remember_file(*open);
   if (compute) {
     worker.request(state.settings);
     link.requested = state.settings;
   }
+  if (compute) link.survey_canceled = false;
+  survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
+  link.survey = survey.status();
   // Busy until the next call has seen what became of it.
-  if (wishes.open_example || wishes.open || compute) link.status = {true, "", 0, 0, ""};
+  if (open_example || opening || compute) link.worker = {true, "", 0, 0, ""};
 }
 
 }  // namespace gpo

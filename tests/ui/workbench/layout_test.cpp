@@ -28,7 +28,15 @@ std::vector<Size> sizes() {
 }
 
 std::vector<Rectangle> parts(const WindowLayout& l) {
-  return {l.menu, l.settings, l.results, l.picture, l.scene, l.timeline, l.status};
+  return {l.menu,
+          l.settings,
+          l.results,
+          l.picture,
+          l.side_tabs,
+          l.side,
+          l.drawer_tabs,
+          l.timeline,
+          l.status};
 }
 
 bool overlap(const Rectangle& a, const Rectangle& b) {
@@ -43,7 +51,7 @@ std::string name(const Size& s) {
 TEST(WindowLayout, PartsLieInsideAndDoNotOverlap) {
   for (const Size& size : sizes()) {
     SCOPED_TRACE(name(size));
-    const auto all = parts(window_layout(size.width, size.height, size.scale));
+    const auto all = parts(window_layout(size.width, size.height, size.scale, false));
     for (std::size_t i = 0; i < all.size(); ++i) {
       ASSERT_GE(all[i].x, 0);
       ASSERT_GE(all[i].y, 0);
@@ -59,15 +67,15 @@ TEST(WindowLayout, PartsLieInsideAndDoNotOverlap) {
 TEST(WindowLayout, PictureAndSceneAreTheLargest) {
   for (const Size& size : sizes()) {
     SCOPED_TRACE(name(size));
-    const WindowLayout layout = window_layout(size.width, size.height, size.scale);
+    const WindowLayout layout = window_layout(size.width, size.height, size.scale, false);
     const auto area = [](const Rectangle& r) { return r.width * r.height; };
-    const float views = area(layout.picture) + area(layout.scene);
+    const float views = area(layout.picture) + area(layout.side);
     const float others = size.width * size.height - views;
     if (size.width >= 1280 * size.scale && size.height >= 720 * size.scale) {
       ASSERT_GT(views, others);
     }
-    ASSERT_GE(area(layout.picture) / area(layout.scene), 0.98);
-    ASSERT_LE(area(layout.picture) / area(layout.scene), 1.4);
+    ASSERT_GE(area(layout.picture) / area(layout.side), 0.98);
+    ASSERT_LE(area(layout.picture) / area(layout.side), 1.4);
     if (size.width < 800 * size.scale) continue;
     for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
       ASSERT_GT(area(layout.picture), area(part));
@@ -76,19 +84,19 @@ TEST(WindowLayout, PictureAndSceneAreTheLargest) {
 }
 
 TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
-  const WindowLayout layout = window_layout(1280, 720, 1);
+  const WindowLayout layout = window_layout(1280, 720, 1, false);
   for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
     EXPECT_EQ(part.x, 0);
     EXPECT_EQ(part.width, 1280);
   }
   EXPECT_EQ(layout.status.bottom(), 720);
-  EXPECT_EQ(layout.picture.y, layout.scene.y);  // side by side
-  EXPECT_LE(layout.picture.right(), layout.scene.x);
+  EXPECT_EQ(layout.picture.y, layout.side.y);  // side by side
+  EXPECT_LE(layout.picture.right(), layout.side.x);
 }
 
 TEST(WindowLayout, DoublesWithTheContentScale) {
-  const auto one = parts(window_layout(1280, 720, 1));
-  const auto two = parts(window_layout(2560, 1440, 2));
+  const auto one = parts(window_layout(1280, 720, 1, false));
+  const auto two = parts(window_layout(2560, 1440, 2, false));
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_NEAR(two[i].x, 2 * one[i].x, 2);
     EXPECT_NEAR(two[i].width, 2 * one[i].width, 2);

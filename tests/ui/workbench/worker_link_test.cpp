@@ -38,11 +38,11 @@ class WorkerLinkTest : public testing::Test {
               return inspection;
             }};
   }
-  void synchronize() { gpo::synchronize(state_, link_, worker_, "example"); }
+  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, "example"); }
   void settle() {
     do {
       synchronize();
-    } while (link_.status.busy);
+    } while (link_.worker.busy);
     synchronize();
   }
   std::vector<int> starts() {
@@ -55,17 +55,18 @@ class WorkerLinkTest : public testing::Test {
   std::vector<int> starts_;
   WorkbenchState state_;
   WorkerLink link_;
+  Survey survey_;
   Worker worker_{[this](const std::filesystem::path& path) { return open(path); }};
 };
 
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
-  apply(state_, OpenRecording{"desk"});
+  apply(state_, OpenPath{"desk"});
   settle();
   ASSERT_NE(state_.recording, nullptr);
   EXPECT_EQ(state_.recording->name, "desk");
   EXPECT_EQ(state_.frame, 29);
-  ASSERT_NE(link_.inspection, nullptr);
-  EXPECT_EQ(link_.inspection->settings, state_.settings);
+  ASSERT_NE(state_.inspection, nullptr);
+  EXPECT_EQ(state_.inspection->settings, state_.settings);
   settle();
   EXPECT_THAT(starts(), ElementsAre(0));
 }
@@ -77,7 +78,7 @@ TEST_F(WorkerLinkTest, OpensTheExample) {
 }
 
 TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
-  apply(state_, OpenRecording{"desk"});
+  apply(state_, OpenPath{"desk"});
   settle();
   apply(state_, GoToFrame{7});
   settle();
@@ -91,28 +92,28 @@ TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
 }
 
 TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
-  apply(state_, OpenRecording{"desk"});
+  apply(state_, OpenPath{"desk"});
   settle();
   hold_ = true;
   apply(state_, GoToFrame{7});
   apply(state_, RunAction{"window-start"});
   synchronize();
-  EXPECT_TRUE(link_.status.busy);
+  EXPECT_TRUE(link_.worker.busy);
   apply(state_, RunAction{"escape"});
   settle();
-  EXPECT_EQ(link_.inspection->settings.start, 0);
+  EXPECT_EQ(state_.inspection->settings.start, 0);
   EXPECT_EQ(state_.settings.start, 7);
   EXPECT_EQ(state_.message, "canceled; F5 computes again");
 }
 
 TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
-  apply(state_, OpenRecording{"desk"});
+  apply(state_, OpenPath{"desk"});
   settle();
-  apply(state_, OpenRecording{"bad"});
+  apply(state_, OpenPath{"bad"});
   settle();
   EXPECT_EQ(state_.recording->name, "desk");
-  EXPECT_EQ(link_.status.error, "bad: no such folder");
-  ASSERT_NE(link_.inspection, nullptr);
+  EXPECT_EQ(link_.worker.error, "bad: no such folder");
+  ASSERT_NE(state_.inspection, nullptr);
 }
 
 TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {

@@ -1,0 +1,138 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/survey.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// Results kept beside those that are wanted: some tens of methods at some tens of lengths, each
+/// well below a megabyte.
+constexpr std::size_t kMostResults = 1000;
+
+Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop) {
+  try {
+    return {settings, inspector.inspect(settings, stop), ""};
+  } catch (const InputError& error) {
+    return {settings, nullptr, error.what()};
+  } catch (const std::exception& error) {
+    return {settings, nullptr, fmt::format("internal error: {}", error.what())};
+  }
+}
+
+}  // namespace
+
+const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
+  if (results == nullptr) return nullptr;
+  const auto found = std::ranges::find(*results, settings, &Surveyed::settings);
+  return found == results->end() ? nullptr : &*found;
+}
+
+Survey::Survey(std::function<void()> changed)
+    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Survey::~Survey() {
+  want({});
+  thread_.request_stop();
+  thread_.join();
+}
+
+void Survey::open(std::shared_ptr<const Recording> recording) {
+  const std::lock_guard lock(mutex_);
+  if (recording == recording_) return;
+  running_.request_stop();
+  recording_ = std::move(recording);
+  wanted_.clear();
+  results_ = std::make_shared<const SurveyResults>();
+  wake_.notify_one();
+}
+
+void Survey::want(std::vector<Settings> settings) {
+  const std::lock_guard lock(mutex_);
+  if (settings == wanted_) return;
+  wanted_ = std::move(settings);
+  if (active_ && std::ranges::find(wanted_, running_settings_) == wanted_.end())
+    running_.request_stop();
+  wake_.notify_one();
+}
+
+void Survey::add(std::shared_ptr<const Inspection> inspection) {
+  const std::lock_guard lock(mutex_);
+  if (inspection->recording != recording_) return;
+  if (find_surveyed(results_.get(), inspection->settings) != nullptr) return;
+  store({inspection->settings, inspection, ""});
+}
+
+void Survey::store(Surveyed result) {
+  SurveyResults results = *results_;
+  results.push_back(std::move(result));
+  const auto dispensable = [&](const Surveyed& one) {
+    return std::ranges::find(wanted_, one.settings) == wanted_.end();
+  };
+  if (results.size() > kMostResults) {
+    const auto oldest = std::ranges::find_if(results, dispensable);
+    if (oldest != results.end()) results.erase(oldest);
+  }
+  results_ = std::make_shared<const SurveyResults>(std::move(results));
+}
+
+const Settings* Survey::next() const {
+  if (!recording_) return nullptr;
+  const auto found = std::ranges::find_if(wanted_, [&](const Settings& settings) {
+    return find_surveyed(results_.get(), settings) == nullptr;
+  });
+  return found == wanted_.end() ? nullptr : &*found;
+}
+
+SurveyStatus Survey::status() const {
+  const std::lock_guard lock(mutex_);
+  SurveyStatus status;
+  status.of = static_cast<int>(wanted_.size());
+  status.done = static_cast<int>(std::ranges::count_if(wanted_, [&](const Settings& settings) {
+    return find_surveyed(results_.get(), settings) != nullptr;
+  }));
+  if (const Settings* settings = next())
+    status.stage = fmt::format("{}, {} frames", settings->method, settings->frames);
+  return status;
+}
+
+std::shared_ptr<const SurveyResults> Survey::results() const {
+  const std::lock_guard lock(mutex_);
+  return results_;
+}
+
+void Survey::run(const std::stop_token& stop) {
+  std::shared_ptr<const Recording> inspected;
+  std::unique_ptr<Inspector> inspector;  // keeps the tracks from one setting to the next
+  while (true) {
+    std::stop_token request;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [this] { return next() != nullptr; })) return;
+      running_settings_ = *next();
+      running_ = std::stop_source();
+      request = running_.get_token();
+      active_ = true;
+      if (inspected != recording_) {
+        inspected = recording_;
+        inspector = std::make_unique<Inspector>(inspected);
+      }
+    }
+    Surveyed result = inspect(*inspector, running_settings_, request);
+    {
+      const std::lock_guard lock(mutex_);
+      active_ = false;
+      if (!request.stop_requested()) store(std::move(result));
+    }
+    if (changed_) changed_();
+  }
+}
+
+}  // namespace gpo

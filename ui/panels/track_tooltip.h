@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/panels/panels.h"
+
+#include <cstdint>
+
+namespace gpo {
+
+/// What is known of a track in the current frame, beside the mouse.
+void track_tooltip(const PanelInput& input, std::int64_t track);
+
+/// The camera of a frame (counts in the recording).
+void camera_tooltip(const PanelInput& input, int frame);
+
+}  // namespace gpo

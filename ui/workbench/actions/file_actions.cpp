@@ -1,0 +1,156 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/error.h"
+#include "engine/inspection/report.h"
+#include "engine/output_file.h"
+#include "ui/workbench/actions/tables.h"
+#include "ui/workbench/session_file.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using State = WorkbenchState;
+
+cv::Size size_in(const std::string& text) {
+  cv::Size size;
+  char rest = 0;
+  constexpr int kLeast = 16, kMost = 8192;
+  const int read = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest);
+  if (read != 2 || std::min(size.width, size.height) < kLeast ||
+      std::max(size.width, size.height) > kMost) {
+    throw InputError(fmt::format(
+        "screenshot: '{}', expected WIDTHxHEIGHT of {} to {} pixels", text, kLeast, kMost));
+  }
+  return size;
+}
+
+/// FILE [VIEW] [WxH]
+void take_screenshot(State& state, const Arguments& arguments) {
+  expect_count("screenshot", arguments, 1, 3);
+  Screenshot shot{arguments[0]};
+  if (shot.file.extension() != ".png")
+    throw InputError(fmt::format("screenshot: '{}', expected a file name that ends in .png",
+                                 shot.file.string()));
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const bool size = std::isdigit(static_cast<unsigned char>(arguments[i].front())) != 0;
+    if (size)
+      shot.size = size_in(arguments[i]);
+    else
+      shot.view = arguments[i];
+  }
+  state.wishes.screenshots.push_back(shot);
+}
+
+/// A file of the current inspection.
+Action export_of(std::string what, std::string title, std::string (*text)(const Inspection&)) {
+  Action action{"export " + what, std::move(title), "File", {}, ""};
+  action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
+  action.arguments = "FILE";
+  action.run = [what, text](State& state, const Arguments& arguments) {
+    expect_count(("export " + what).c_str(), arguments, 1, 1);
+    if (!state.inspection) throw InputError("nothing is computed yet that could be written");
+    check_writable(arguments[0]);
+    write_file(arguments[0], text(*state.inspection));
+    say(state, "saved " + arguments[0]);
+  };
+  return action;
+}
+
+std::string json_text(const Inspection& inspection) { return to_json(inspection).dump(2) + "\n"; }
+
+void add_open(std::vector<Action>& table) {
+  Action open{"open", "Open", "File", {}, "Opens a recording (a folder or a file), or a session"};
+  open.arguments = "PATH";
+  open.needs_recording = false;
+  open.run = [](State& state, const Arguments& arguments) {
+    expect_count("open", arguments, 1, 1);
+    state.wishes.open = arguments[0];
+  };
+  table.push_back(open);
+  Action example = plain("open-example",
+                         "Open the example",
+                         "File",
+                         {},
+                         "Opens the recording that comes with the program",
+                         [](State& s) { s.wishes.open_example = true; });
+  example.needs_recording = false;
+  table.push_back(example);
+}
+
+void save_session(State& state, const Arguments& arguments) {
+  expect_count("save-session", arguments, 0, 1);
+  std::filesystem::path file =
+      state.recording->name + std::string(arguments.empty() ? ".session.json" : "");
+  if (!arguments.empty()) file = arguments[0];
+  if (file.extension() != ".json")
+    throw InputError(
+        fmt::format("save-session: '{}', expected a file name that ends in .json", file.string()));
+  check_writable(file);
+  write_file(file, session_text(state));
+  say(state, "saved " + file.string());
+}
+
+void add_sessions(std::vector<Action>& table) {
+  Action save{"save-session",
+              "Save the session",
+              "File",
+              {control('S')},
+              "Writes what is open, chosen and selected into a file that `open` reads; without a "
+              "name into the current folder"};
+  save.arguments = "[FILE]";
+  save.run = save_session;
+  table.push_back(save);
+  Action last = plain("continue",
+                      "Continue the last session",
+                      "File",
+                      {},
+                      "Opens what was open when the program was closed",
+                      [](State& s) {
+                        if (!std::filesystem::exists(last_session_file()))
+                          throw InputError("no session was closed yet");
+                        s.wishes.open = last_session_file();
+                      });
+  last.needs_recording = false;
+  table.push_back(last);
+}
+
+}  // namespace
+
+void add_file_actions(std::vector<Action>& table) {
+  add_open(table);
+  add_sessions(table);
+  table.push_back(
+      plain("save-picture",
+            "Save the picture",
+            "File",
+            {letter('S')},
+            "Writes the current frame with its overlays as a PNG into the current folder",
+            [](State& s) {
+              s.wishes.screenshots.push_back({"", "picture"});
+            }));
+  Action screenshot{
+      "screenshot",
+      "Save a view as a picture",
+      "File",
+      {},
+      "Writes the window, or one view alone, as a PNG of any size: picture, scene, normals, "
+      "solver, candidates, compare, curves"};
+  screenshot.arguments = "FILE [VIEW] [WxH]";
+  screenshot.needs_recording = false;
+  screenshot.run = take_screenshot;
+  table.push_back(screenshot);
+  table.push_back(export_of("trajectory", "Export camera poses (TUM)", to_tum));
+  table.push_back(export_of("points", "Export map points (PLY)", to_ply));
+  table.push_back(export_of("result", "Export the whole result (JSON)", json_text));
+  Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
+    s.wishes.quit = true;
+  });
+  quit.needs_recording = false;
+  table.push_back(quit);
+}
+
+}  // namespace gpo

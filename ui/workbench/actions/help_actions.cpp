@@ -1,0 +1,53 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/actions/tables.h"
+
+#include <GLFW/glfw3.h>
+
+namespace gpo {
+namespace {
+
+using State = WorkbenchState;
+
+void escape(State& state) {
+  if (state.show_palette) {
+    state.show_palette = false;
+  } else if (state.show_help) {
+    state.show_help = false;
+  } else {
+    state.wishes.cancel = true;
+  }
+}
+
+}  // namespace
+
+void add_help_actions(std::vector<Action>& table) {
+  Action palette = plain("palette",
+                         "All commands",
+                         "Help",
+                         {control('P')},
+                         "Finds a command by a part of its name and runs it",
+                         [](State& s) { s.show_palette = !s.show_palette; });
+  palette.checked = [](const State& s) { return s.show_palette; };
+  palette.needs_recording = false;
+  table.push_back(palette);
+  Action help = plain("help",
+                      "Keys",
+                      "Help",
+                      {key(GLFW_KEY_F1, "F1"), letter('?')},
+                      "Lists every key and its state",
+                      [](State& s) { s.show_help = !s.show_help; });
+  help.checked = [](const State& s) { return s.show_help; };
+  help.needs_recording = false;
+  table.push_back(help);
+  Action esc = plain("escape",
+                     "Cancel, or close what is open",
+                     "Help",
+                     {key(GLFW_KEY_ESCAPE, "Esc")},
+                     "Closes the list of keys, else stops the computation",
+                     escape);
+  esc.needs_recording = false;
+  table.push_back(esc);
+}
+
+}  // namespace gpo

@@ -1,0 +1,38 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/workbench.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// What was open, chosen and selected, as a file keeps it: readable JSON, apart from the data.
+std::string session_text(const WorkbenchState& state);
+
+/// Reads what `session_text` wrote. What a session does not name stays at its default. The
+/// recording is named by `session.path` alone; what depends on it waits for `continue_session`.
+/// Throws InputError that names the file and the key. `file` is for messages and for recordings
+/// that have moved together with it.
+SavedSession read_session(const std::filesystem::path& file);
+
+/// Takes over a session whose recording the state has just adopted.
+void continue_session(WorkbenchState& state, const SavedSession& session);
+
+/// Whether a file is a session, by its first lines.
+bool is_session(const std::filesystem::path& file);
+
+// What is kept from one start of the program to the next, in the user's folder for states
+// (XDG_STATE_HOME). Failures to write are silent: they must not keep anybody from working.
+
+std::filesystem::path last_session_file();
+/// Where a recording is open.
+void save_last_session(const WorkbenchState& state);
+/// Recordings and sessions that were opened, the last one first; those that are gone are left out.
+std::vector<std::filesystem::path> recent_files();
+void remember_file(const std::filesystem::path& path);
+
+}  // namespace gpo

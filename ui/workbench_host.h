@@ -1,0 +1,54 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/context/gui.h"
+#include "ui/panels/panels.h"
+#include "ui/workbench/worker_link.h"
+
+#include <filesystem>
+#include <functional>
+
+#include <opencv2/core/types.hpp>
+
+namespace gpo {
+
+/// A workbench at work, with those who compute for it and what it is drawn with; in a window and
+/// off-screen alike. Needs the OpenGL context in which it was made to be current.
+class WorkbenchHost {
+ public:
+  /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
+  /// called on other threads when there is something new to show.
+  WorkbenchHost(Gui& gui,
+                Worker::Open open,
+                std::filesystem::path example,
+                std::function<void()> changed = {});
+
+  WorkbenchState state;
+  WorkerLink link;
+  bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
+  cv::Size size = cv::Size(1280, 720);  ///< of the window [px]
+
+  /// Exchanges with worker and survey, and fulfills the wishes of the state but `quit`. Returns at
+  /// once.
+  void synchronize();
+  /// Until nothing is computed any more.
+  void settle();
+  /// One frame of the window into the framebuffer that is bound. Returns what the user did.
+  Commands draw(double delta_seconds = Gui::kFixedFrame_s);
+  /// The window, or one view of it alone, at any size: CV_8UC3, BGR. Throws InputError for an
+  /// unknown view.
+  cv::Mat picture(const std::string& view, std::optional<cv::Size> wanted = {});
+
+ private:
+  PanelInput input() const { return {state, link.worker, link.survey, timings, gui_.scale()}; }
+  void save(const Screenshot& screenshot);
+
+  Gui& gui_;
+  std::filesystem::path example_;
+  Views views_;
+  Survey survey_;
+  Worker worker_;
+};
+
+}  // namespace gpo
