@@ -97,8 +97,13 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
 
 std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& whole, int frames) {
   if (whole->frame_count() == frames) return whole;
-  const auto begin = whole->raw_px.begin();
-  return std::make_shared<const Tracks>(Tracks{whole->start, whole->ids, {begin, begin + frames}});
+  Tracks tracks = *whole;
+  tracks.raw_px.resize(frames);
+  if (!tracks.forward_backward_px.empty()) tracks.forward_backward_px.resize(frames);
+  for (std::optional<TrackEnd>& end : tracks.ends) {
+    if (end && end->frame >= frames) end.reset();
+  }
+  return std::make_shared<const Tracks>(std::move(tracks));
 }
 
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
