@@ -106,4 +106,7 @@ Window make_window(const Tracks& tracks,
                    const RansacOptions& ransac,
                    Inliers inliers = Inliers::per_frame);
 
+/// As if the tracks with these ids had never been seen: NaN in every frame. Columns stay.
+Tracks without(Tracks tracks, std::span<const std::int64_t> ids);
+
 }  // namespace gpo

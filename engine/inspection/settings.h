@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -26,6 +27,8 @@ struct Settings {
   /// Which tracks count as inliers; nothing: as the method does (`inliers_used`).
   std::optional<Inliers> inliers = std::nullopt;
   std::uint64_t seed = 1;  ///< of every random choice
+  /// Ids of tracks that are left out as if they had never been seen, ascending.
+  std::vector<std::int64_t> exclude = {};
   InitializerOptions initializer = {};
 
   bool operator==(const Settings&) const = default;
@@ -81,6 +84,8 @@ void visit_settings(S& settings, Visitor&& visit) {
                     "default: as the method does"},
         settings.inliers);
   visit(SettingInfo{"seed", "Seed", "", "Seed of every random choice", 0, 1e9}, settings.seed);
+  visit(SettingInfo{"exclude", "Excluded", "", "Tracks left out by hand, by their ids"},
+        settings.exclude);
   visit(SettingInfo{"solver", "Solver", "", "Who minimizes: our own Schur solver, or Ceres"},
         settings.initializer.solver);
   visit(SettingInfo{"error", "Error", "", "Of gpo_joint: one-sided transfer error, or Sampson's"},

@@ -183,5 +183,15 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
   for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
 }
 
+TEST(Without, LeavesTheTracksOutAndTheColumnsWhereTheyAre) {
+  const Tracks tracks{0, {3, 5, 8}, {Eigen::Matrix2Xd::Ones(2, 3), Eigen::Matrix2Xd::Ones(2, 3)}};
+  const Tracks left = without(tracks, std::vector<std::int64_t>{5});
+  EXPECT_EQ(left.ids, tracks.ids);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(left.seen(i, 1));
+    EXPECT_EQ(left.raw_px[i].col(2), tracks.raw_px[i].col(2));
+  }
+}
+
 }  // namespace
 }  // namespace gpo
