@@ -55,6 +55,7 @@ struct HomographyCandidate {
   HomographyMotion motion;
   double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
   std::string rejected;  ///< why it was not taken, with numbers; empty: it was
+  int behind = 0;        ///< inliers that it puts behind a camera
   int of = 0;            ///< inliers
 };
 
