@@ -4,6 +4,7 @@
 
 #include "tests/engine/simulated_window.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -26,8 +27,7 @@ TEST(HomographyCandidates, CountTheInliersBehindTheCamera) {
     }
     if (candidate.rejected.starts_with("points behind")) {
       ++rejected;
-      EXPECT_THAT(candidate.rejected,
-                  HasSubstr("(" + std::to_string(candidate.behind) + " of 120)"));
+      EXPECT_THAT(candidate.rejected, HasSubstr(fmt::format("({} of 120)", candidate.behind)));
     }
   }
   // Of a and -a, one has all points behind.
