@@ -38,9 +38,11 @@ struct SolverReport {
   std::string termination = "none";  ///< convergence | no_convergence | failure | none
   double milliseconds = 0;
   /// The start, then one an iteration; empty of methods that do not optimize. An iteration whose
-  /// step was refused repeats the state before it, with step 0. Rounds with other weights, a robust
-  /// loss or fewer observations follow one another, their own starts left out; what was tried and
-  /// not taken is counted in `iterations` only. Normals have the sign of the result's plane.
+  /// step was refused repeats the state before it, with step 0. Ceres counts the start in
+  /// `iterations` and leaves out a last step that changes no more than its tolerance. Rounds with
+  /// other weights, a robust loss or fewer observations follow one another, their own starts left
+  /// out; what was tried and not taken is counted in `iterations` only. Normals have the sign of
+  /// the result's plane.
   std::vector<SolverStep> trace;
 };
 
