@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <thread>
 #include <type_traits>
 
@@ -56,6 +57,16 @@ void add_settings(CLI::App& command, Settings& settings) {
       add_choice<Value>(command, option_name(info), help, value);
     } else if constexpr (std::is_same_v<Value, std::optional<Inliers>>) {
       add_choice<Inliers>(command, option_name(info), help, value);
+    } else if constexpr (std::is_same_v<Value, std::vector<std::int64_t>>) {
+      command
+          .add_option_function<std::vector<std::int64_t>>(
+              option_name(info),
+              [&value](const std::vector<std::int64_t>& ids) {
+                const std::set<std::int64_t> ascending(ids.begin(), ids.end());
+                value.assign(ascending.begin(), ascending.end());
+              },
+              help)
+          ->delimiter(',');
     } else if constexpr (std::is_same_v<Value, bool>) {
       command.add_flag(option_name(info), value, help);
     } else if constexpr (std::is_same_v<Value, std::string>) {

@@ -39,8 +39,12 @@ template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
   visit("configuration", row.configuration);
-  visit_settings(row.settings,
-                 [&](const SettingInfo& info, auto& value) { visit(info.key, value); });
+  visit_settings(row.settings, [&](const SettingInfo& info, auto& value) {
+    // Tracks are excluded by hand, in one window: experiments do not.
+    constexpr bool kExclude =
+        std::is_same_v<std::decay_t<decltype(value)>, std::vector<std::int64_t>>;
+    if constexpr (!kExclude) visit(info.key, value);
+  });
   visit("status", row.status);
   visit("reason", row.reason);
   visit("tracks", row.tracks);

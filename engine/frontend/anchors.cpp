@@ -92,12 +92,17 @@ Vector2d carried(const Camera& camera, const Matrix3d& H, const Vector2d& undist
   return distort(camera, transfer(H, undistorted_px));
 }
 
-/// By how much the look is off its prediction by H; nothing where it is not found.
-std::optional<Vector2d> search(const cv::Mat& picture,
-                               const Look& look,
-                               const Camera& camera,
-                               const Matrix3d& H,
-                               const AnchorOptions& options) {
+/// By how much a look is off its prediction by H, or why it is not found.
+struct Search {
+  Vector2d shift_px = Vector2d::Zero();
+  std::optional<TrackEnd> end = std::nullopt;
+};
+
+Search search(const cv::Mat& picture,
+              const Look& look,
+              const Camera& camera,
+              const Matrix3d& H,
+              const AnchorOptions& options) {
   Nodes nodes;
   for (int k = 0; k < 9; ++k) nodes.col(k) = carried(camera, H, look.undistorted_px.col(k));
   const Matrix2Xf places = places_between(nodes, look.width, look.height);
@@ -107,14 +112,17 @@ std::optional<Vector2d> search(const cv::Mat& picture,
   Vector2d shift = Vector2d::Zero();
   for (int step = 0; step < kMostSteps; ++step) {
     const auto compared = compare(picture, look, places, shift.cast<float>());
-    if (!compared) return std::nullopt;
+    if (!compared) return {.end = TrackEnd{.reason = LossReason::look_not_found}};
     const Vector2d step_px = J * compared->step_px;
     shift += step_px;
-    if (!(shift.norm() <= options.farthest_px)) return std::nullopt;
+    if (!(shift.norm() <= options.farthest_px))
+      return {.end = TrackEnd{0, LossReason::look_far, shift.norm(), options.farthest_px}};
     if (step_px.norm() > kConverged_px) continue;
-    return compared->correlation >= options.least_correlation ? std::optional(shift) : std::nullopt;
+    if (compared->correlation >= options.least_correlation) return {shift};
+    return {.end = TrackEnd{
+                0, LossReason::look_unlike, compared->correlation, options.least_correlation}};
   }
-  return std::nullopt;
+  return {.end = TrackEnd{.reason = LossReason::look_not_found}};
 }
 
 /// The homography from the reference frame and which tracks agree with it; none where lost.
@@ -209,21 +217,24 @@ Anchors make_anchors(const cv::Mat& gray,
   return anchors;
 }
 
-Matrix2Xd hold(const Anchors& anchors,
-               const cv::Mat& gray,
-               const Matrix2Xd& followed_px,
-               const AnchorOptions& options) {
+Held hold(const Anchors& anchors,
+          const cv::Mat& gray,
+          const Matrix2Xd& followed_px,
+          const AnchorOptions& options) {
   const cv::Mat picture = smooth(gray, options);
-  Matrix2Xd held = followed_px;
+  Held held{followed_px, std::vector<std::optional<TrackEnd>>(followed_px.cols())};
   // One round is enough: where a look is found hardly depends on how well it was predicted. Others,
   // each with the homography of what was found before, changed the median error by 0.0001 px.
   const auto plane = plane_homography(anchors, followed_px, options.ransac);
-  for (Eigen::Index j = 0; plane && j < held.cols(); ++j) {
+  for (Eigen::Index j = 0; plane && j < followed_px.cols(); ++j) {
     if (!plane->inlier[j]) continue;
-    const auto shift = search(picture, anchors.looks[j], anchors.camera, plane->H, options);
-    held.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (!shift) continue;
-    held.col(j) = carried(anchors.camera, plane->H, anchors.undistorted_px.col(j)) + *shift;
+    const auto [shift_px, end] =
+        search(picture, anchors.looks[j], anchors.camera, plane->H, options);
+    held.ends[j] = end;
+    held.raw_px.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (end) continue;
+    held.raw_px.col(j) =
+        carried(anchors.camera, plane->H, anchors.undistorted_px.col(j)) + shift_px;
   }
   return held;
 }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/window.h"
 #include "engine/geometry/camera.h"
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,14 +53,19 @@ Anchors make_anchors(const cv::Mat& gray,
                      const Camera& camera,
                      const AnchorOptions& options = {});
 
+struct Held {
+  Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
+  std::vector<std::optional<TrackEnd>> ends;  ///< of those whose look is not found; frame 0
+};
+
 /// Takes the drift from tracks on the plane. `followed_px` is 2 x tracks, raw pixels of the picture
 /// `gray` to which frame-to-frame tracking came, NaN: lost. A track that agrees with the homography
 /// from the reference frame is searched for with its own look, carried over by that homography and
 /// the lens, whatever gain and offset the exposure has; it is lost where its look is not found. The
 /// others stay as they are.
-Eigen::Matrix2Xd hold(const Anchors& anchors,
-                      const cv::Mat& gray,
-                      const Eigen::Matrix2Xd& followed_px,
-                      const AnchorOptions& options = {});
+Held hold(const Anchors& anchors,
+          const cv::Mat& gray,
+          const Eigen::Matrix2Xd& followed_px,
+          const AnchorOptions& options = {});
 
 }  // namespace gpo

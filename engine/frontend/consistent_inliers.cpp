@@ -69,30 +69,29 @@ Errors errors_of(const PlaneTracks& tracks,
   return errors;
 }
 
-/// Mean square over the frames that see the track, each error at most its gate; nothing where it
-/// agrees in too few of them.
-std::optional<double> mean_square(const Errors& errors, Eigen::Index track, double share) {
-  int seen = 0;
-  int agreeing = 0;
+/// The mean square is over the frames that see the track, each error at most its gate.
+TrackConsistency consistency_of(const Errors& errors, Eigen::Index track, double share) {
+  TrackConsistency result;
   double sum = 0;
   for (Eigen::Index i = 1; i < errors.gate.size(); ++i) {
     const double error = errors.normalized(i, track);
     if (std::isnan(error)) continue;
-    ++seen;
-    agreeing += error <= errors.gate[i] ? 1 : 0;
+    ++result.seen;
+    result.agreeing += error <= errors.gate[i] ? 1 : 0;
     sum += std::pow(std::min(error, errors.gate[i]), 2);
   }
-  const bool enough = agreeing > 0 && agreeing >= share * seen;
-  return enough ? std::optional(sum / seen) : std::nullopt;
+  if (result.agreeing > 0 && result.agreeing >= share * result.seen)
+    result.mean_square = sum / result.seen;
+  return result;
 }
 
 /// Above it a mean square stands out among the others; never below that of pure noise. Their spread
 /// is that of the upper half, as drift makes some tracks much worse than the median one, not
 /// better.
-double largest_mean_square(const std::vector<std::optional<double>>& mean_squares, double sigmas) {
+double largest_mean_square(const std::vector<TrackConsistency>& tracks, double sigmas) {
   std::vector<double> values;
-  for (const auto& value : mean_squares) {
-    if (value) values.push_back(*value);
+  for (const TrackConsistency& track : tracks) {
+    if (track.mean_square) values.push_back(*track.mean_square);
   }
   if (values.empty()) return 0;
   std::ranges::sort(values);
@@ -101,16 +100,23 @@ double largest_mean_square(const std::vector<std::optional<double>>& mean_square
   return std::max(middle + sigmas * (upper_quartile - middle) / kQuartileSigmas, 2.0);
 }
 
+std::vector<TrackConsistency> consistency(const Errors& errors, const ConsistencyOptions& options) {
+  std::vector<TrackConsistency> tracks;
+  for (Eigen::Index j = 0; j < errors.normalized.cols(); ++j)
+    tracks.push_back(consistency_of(errors, j, options.share));
+  const double largest = largest_mean_square(tracks, options.sigmas_of_track);
+  for (TrackConsistency& track : tracks) track.largest_mean_square = largest;
+  return tracks;
+}
+
 /// The inliers, one a frame and track; none in the reference frame.
 std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOptions& options) {
   const Eigen::Index tracks = errors.normalized.cols();
-  std::vector<std::optional<double>> mean_squares;
-  for (Eigen::Index j = 0; j < tracks; ++j)
-    mean_squares.push_back(mean_square(errors, j, options.share));
-  const double largest = largest_mean_square(mean_squares, options.sigmas_of_track);
+  const std::vector<TrackConsistency> of_tracks = consistency(errors, options);
   std::vector<std::vector<bool>> inlier(errors.gate.size(), std::vector<bool>(tracks, false));
   for (Eigen::Index j = 0; j < tracks; ++j) {
-    if (!mean_squares[j] || *mean_squares[j] > largest) continue;
+    const auto& [seen, agreeing, mean_square, largest] = of_tracks[j];
+    if (!mean_square || *mean_square > largest) continue;
     for (Eigen::Index i = 1; i < errors.gate.size(); ++i)
       inlier[i][j] = errors.normalized(i, j) <= errors.gate[i];
   }
@@ -128,6 +134,12 @@ std::optional<PlaneTracks> consistent_inliers(const std::vector<Matrix2Xd>& poin
     if (inlier == found.inlier || round == options.most_rounds) return found;
     found.inlier = std::move(inlier);
   }
+}
+
+std::vector<TrackConsistency> consistency(const std::vector<Matrix2Xd>& points_px,
+                                          const PlaneTracks& found,
+                                          const ConsistencyOptions& options) {
+  return consistency(errors_of(found, points_px, options), options);
 }
 
 }  // namespace gpo

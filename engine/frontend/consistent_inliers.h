@@ -36,4 +36,18 @@ std::optional<PlaneTracks> consistent_inliers(const std::vector<Eigen::Matrix2Xd
                                               PlaneTracks found,
                                               const ConsistencyOptions& options);
 
+/// How a track fares in that choice.
+struct TrackConsistency {
+  int seen = 0;      ///< in so many frames, the reference frame aside
+  int agreeing = 0;  ///< with the plane, in so many of them
+  /// Of its errors, in variances of their frames; nothing where it agrees in too few frames.
+  std::optional<double> mean_square;
+  double largest_mean_square = 0;  ///< of those that are kept
+};
+
+/// By the homographies and the inliers that `consistent_inliers` came to; one a track.
+std::vector<TrackConsistency> consistency(const std::vector<Eigen::Matrix2Xd>& points_px,
+                                          const PlaneTracks& found,
+                                          const ConsistencyOptions& options);
+
 }  // namespace gpo

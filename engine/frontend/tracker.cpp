@@ -53,12 +53,18 @@ Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
   return pyramid;
 }
 
-/// Where the points of one picture are in the other; NaN where KLT gives up or leaves the picture.
-std::vector<cv::Point2f> flow(const Pyramid& from,
-                              const Pyramid& to,
-                              const std::vector<cv::Point2f>& points,
-                              const TrackerOptions& options) {
-  std::vector<cv::Point2f> found;
+/// Where points of one picture are in another one.
+struct Flow {
+  std::vector<cv::Point2f> points;  ///< NaN where KLT gives up or leaves the picture
+  std::vector<bool> left;           ///< the picture
+};
+
+Flow flow(const Pyramid& from,
+          const Pyramid& to,
+          const std::vector<cv::Point2f>& points,
+          const TrackerOptions& options) {
+  Flow result;
+  std::vector<cv::Point2f>& found = result.points;
   std::vector<unsigned char> status;
   const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
   cv::calcOpticalFlowPyrLK(from,
@@ -76,16 +82,38 @@ std::vector<cv::Point2f> flow(const Pyramid& from,
     const bool inside = found[j].x >= 0 && found[j].y >= 0 &&
                         found[j].x <= static_cast<float>(size.width - 1) &&
                         found[j].y <= static_cast<float>(size.height - 1);
+    result.left.push_back(!inside);
     if (status[j] == 0 || !inside) found[j] = cv::Point2f(std::nanf(""), std::nanf(""));
   }
-  return found;
+  return result;
 }
 
-/// Follows the living tracks into the next picture; returns 2 x tracks with NaN for the dead.
-Eigen::Matrix2Xd follow(const Pyramid& from,
-                        const Pyramid& to,
-                        const Eigen::Matrix2Xd& before,
-                        const TrackerOptions& options) {
+/// The tracks in the next picture.
+struct Followed {
+  Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
+  Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
+  std::vector<std::optional<TrackEnd>> ends;  ///< of those that are lost on the way to it
+};
+
+/// Why one is lost that was found there (NaN: nowhere), so far from its beginning on the way back.
+std::optional<TrackEnd> end_of(const cv::Point2f& there,
+                               bool left,
+                               double distance_px,
+                               const TrackerOptions& options) {
+  if (std::isnan(there.x))
+    return TrackEnd{.reason = left ? LossReason::left_picture : LossReason::no_flow};
+  if (std::isnan(distance_px)) return TrackEnd{.reason = LossReason::no_flow};
+  if (distance_px <= options.forward_backward_px) return std::nullopt;
+  return TrackEnd{.reason = LossReason::forward_backward,
+                  .value = distance_px,
+                  .limit = options.forward_backward_px};
+}
+
+/// Follows the living tracks into the next picture.
+Followed follow(const Pyramid& from,
+                const Pyramid& to,
+                const Eigen::Matrix2Xd& before,
+                const TrackerOptions& options) {
   std::vector<int> living;
   std::vector<cv::Point2f> points;
   for (int j = 0; j < before.cols(); ++j) {
@@ -93,17 +121,22 @@ Eigen::Matrix2Xd follow(const Pyramid& from,
     living.push_back(j);
     points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
   }
-  Eigen::Matrix2Xd after = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN),
+                 Eigen::VectorXd::Constant(before.cols(), kNaN),
+                 std::vector<std::optional<TrackEnd>>(before.cols())};
   if (living.empty()) return after;
-  const std::vector<cv::Point2f> forward = flow(from, to, points, options);
-  std::vector<cv::Point2f> safe = forward;  // KLT does not expect NaN
+  const Flow forward = flow(from, to, points, options);
+  std::vector<cv::Point2f> safe = forward.points;  // KLT does not expect NaN
   std::ranges::replace_if(
       safe, [](const cv::Point2f& p) { return std::isnan(p.x); }, cv::Point2f(0, 0));
-  const std::vector<cv::Point2f> back = flow(to, from, safe, options);
+  const Flow back = flow(to, from, safe, options);
   for (std::size_t k = 0; k < living.size(); ++k) {
-    const double distance = cv::norm(back[k] - points[k]);
-    if (std::isnan(forward[k].x) || !(distance <= options.forward_backward_px)) continue;
-    after.col(living[k]) << forward[k].x, forward[k].y;
+    const int j = living[k];
+    const cv::Point2f& there = forward.points[k];
+    const double distance_px = cv::norm(back.points[k] - points[k]);
+    if (!std::isnan(there.x)) after.forward_backward_px[j] = distance_px;
+    after.ends[j] = end_of(there, forward.left[k], distance_px, options);
+    if (!after.ends[j]) after.raw_px.col(j) << there.x, there.y;
   }
   return after;
 }
@@ -124,16 +157,38 @@ cv::Mat as_bright_as(const cv::Mat& other, const cv::Mat& gray) {
 }
 
 /// `follow` for a picture whose exposure may have jumped: KLT compares brightness as it is.
-Eigen::Matrix2Xd follow_exposed(const Pyramid& from,
-                                const Pyramid& to,
-                                const Eigen::Matrix2Xd& before,
-                                const TrackerOptions& options) {
-  Eigen::Matrix2Xd after = follow(from, to, before, options);
+Followed follow_exposed(const Pyramid& from,
+                        const Pyramid& to,
+                        const Eigen::Matrix2Xd& before,
+                        const TrackerOptions& options) {
+  Followed after = follow(from, to, before, options);
   const auto enough = options.least_followed * static_cast<double>(count_living(before));
-  if (static_cast<double>(count_living(after)) >= enough) return after;
+  if (static_cast<double>(count_living(after.raw_px)) >= enough) return after;
   const Pyramid alike = build_pyramid(as_bright_as(from.front(), to.front()), options);
-  Eigen::Matrix2Xd again = follow(from, alike, before, options);
-  return count_living(again) > count_living(after) ? again : after;
+  Followed again = follow(from, alike, before, options);
+  return count_living(again.raw_px) > count_living(after.raw_px) ? again : after;
+}
+
+/// Takes the drift from the tracks that were followed.
+void hold(const Anchors& anchors,
+          const cv::Mat& gray,
+          const AnchorOptions& options,
+          Followed& followed) {
+  Held held = hold(anchors, gray, followed.raw_px, options);
+  followed.raw_px = std::move(held.raw_px);
+  for (std::size_t j = 0; j < held.ends.size(); ++j) {
+    if (held.ends[j]) followed.ends[j] = held.ends[j];
+  }
+}
+
+void append(Followed followed, Tracks& tracks) {
+  for (std::size_t j = 0; j < followed.ends.size(); ++j) {
+    if (!followed.ends[j]) continue;
+    tracks.ends[j] = followed.ends[j];
+    tracks.ends[j]->frame = tracks.frame_count();
+  }
+  tracks.raw_px.push_back(std::move(followed.raw_px));
+  tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
 }
 
 }  // namespace
@@ -191,12 +246,16 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
     if (i == 0) {
       tracks.raw_px.push_back(detect_corners(gray, options.detector));
       for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
+      tracks.forward_backward_px.emplace_back(
+          Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
+      tracks.ends.resize(tracks.track_count());
       if (anchored) anchors = make_anchors(gray, tracks.raw_px[0], camera, options.anchor);
     } else {
       const Eigen::Matrix2Xd& last = tracks.raw_px.back();
-      tracks.raw_px.push_back(
-          anchored ? hold(anchors, gray, follow_exposed(before, now, last, options), options.anchor)
-                   : follow(before, now, last, options));
+      Followed followed = anchored ? follow_exposed(before, now, last, options)
+                                   : follow(before, now, last, options);
+      if (anchored) hold(anchors, gray, options.anchor, followed);
+      append(std::move(followed), tracks);
     }
     before = std::move(now);
     if (progress) progress(i + 1, frames);

@@ -79,4 +79,13 @@ Window make_window(const Tracks& tracks,
   return window;
 }
 
+Tracks without(Tracks tracks, std::span<const std::int64_t> ids) {
+  for (int j = 0; j < tracks.track_count(); ++j) {
+    if (std::ranges::find(ids, tracks.ids[j]) == ids.end()) continue;
+    for (Eigen::Matrix2Xd& raw_px : tracks.raw_px)
+      raw_px.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return tracks;
+}
+
 }  // namespace gpo

@@ -181,7 +181,9 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   result.solver = std::move(final_round.solver);
   result.solver.iterations += robust.solver.iterations;
   result.solver.milliseconds += robust.solver.milliseconds;
+  continue_trace(robust.solver, result.solver);
   result.solver.initial_cost = half_summed_squares(reprojection_errors_px(K, start, usable));
+  if (!result.solver.trace.empty()) result.solver.trace[0].cost = result.solver.initial_cost;
   return result;
 }
 

@@ -12,18 +12,32 @@ namespace {
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
-class StopCallback : public ceres::IterationCallback {
+/// Follows the iterations and ends them where asked to.
+class Follower : public ceres::IterationCallback {
  public:
-  explicit StopCallback(std::stop_token stop) : stop_(std::move(stop)) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*unused*/) override {
+  Follower(std::stop_token stop, const ReadNormal& normal)
+      : stop_(std::move(stop)), normal_(normal) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    // Of a refused step, Ceres tells the cost where it would have led.
+    const bool moved = iteration.step_is_successful || trace_.empty();
+    SolverStep step =
+        moved ? SolverStep{iteration.cost, iteration.gradient_max_norm, 0, {}} : trace_.back();
+    step.step = moved && !trace_.empty() ? iteration.step_norm : 0;
+    if (normal_) step.normal = normal_();
+    trace_.push_back(step);
     return stop_.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
   }
 
+  std::vector<SolverStep> trace() && { return std::move(trace_); }
+
  private:
   std::stop_token stop_;
+  const ReadNormal& normal_;
+  std::vector<SolverStep> trace_;
 };
 
-SolverReport report_of(const ceres::Solver::Summary& summary) {
+SolverReport report_of(const ceres::Solver::Summary& summary, std::vector<SolverStep> trace) {
   SolverReport report;
   report.iterations = summary.num_successful_steps + summary.num_unsuccessful_steps;
   report.initial_cost = summary.initial_cost;
@@ -34,6 +48,7 @@ SolverReport report_of(const ceres::Solver::Summary& summary) {
   report.termination = summary.termination_type == ceres::CONVERGENCE      ? "convergence"
                        : summary.termination_type == ceres::NO_CONVERGENCE ? "no_convergence"
                                                                            : "failure";
+  report.trace = std::move(trace);
   return report;
 }
 
@@ -69,8 +84,9 @@ bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            const std::stop_token& stop) {
-  StopCallback callback(stop);
+                            const std::stop_token& stop,
+                            const ReadNormal& normal) {
+  Follower follower(stop, normal);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -81,10 +97,11 @@ SolverReport solve_by_schur(ceres::Problem& problem,
   options.parameter_tolerance = 1e-12;
   options.num_threads = 1;  // more would cost the bit-for-bit repeatability
   options.logging_type = ceres::SILENT;
-  options.callbacks.push_back(&callback);
+  options.callbacks.push_back(&follower);
+  options.update_state_every_iteration = static_cast<bool>(normal);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  return report_of(summary);
+  return report_of(summary, std::move(follower).trace());
 }
 
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "engine/initializers/initialization.h"
 
+#include <functional>
 #include <memory>
 #include <stop_token>
 
@@ -28,12 +29,16 @@ struct SolverTolerances {
   double gradient = 1e-12;  ///< largest component of the gradient [px^2 per unit of the unknown]
 };
 
+/// Reads the plane's normal off the unknowns, for the trace.
+using ReadNormal = std::function<Eigen::Vector3d()>;
+
 /// Dogleg with a Schur complement, as the paper tunes it: at most 300 iterations, one thread so
 /// that it repeats to the bit. Group 0 of the ordering is eliminated first. Also ends within
-/// an iteration of a request to stop.
+/// an iteration of a request to stop. `normal` is called with the unknowns of each iteration.
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            const std::stop_token& stop);
+                            const std::stop_token& stop,
+                            const ReadNormal& normal = {});
 
 }  // namespace gpo

@@ -61,7 +61,7 @@ PlaneSolution solve(const Task& task,
     PlaneSolution next = solve_plane(window, observations, solution.motion, unknowns, task.stop);
     next.solver.iterations += solution.solver.iterations;
     next.solver.milliseconds += solution.solver.milliseconds;
-    next.solver.initial_cost = solution.solver.initial_cost;
+    continue_trace(solution.solver, next.solver);
     const bool settled = next.solver.iterations <= solution.solver.iterations + 1;
     solution = std::move(next);
     if (settled) break;
@@ -76,7 +76,7 @@ Fit refit(const Task& task, const Fit& from, double row_delay_s) {
           from.rotations,
           row_delay_s};
   fit.solution = solve(task, fit.window, from.solution.motion, from.rotations);
-  fit.solution.solver.initial_cost = from.solution.solver.initial_cost;
+  continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
 }
 

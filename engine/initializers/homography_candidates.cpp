@@ -32,11 +32,11 @@ Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
   return window.K.inverse() * points.colwise().homogeneous();
 }
 
-std::string reason_of_sight(const HomographyMotion& motion, const Eigen::Matrix3Xd& rays_1) {
-  if (motion.normal.dot(motion.tau) >= 1) return "the plane between the cameras";
-  const int behind = points_behind(motion, rays_1);
-  if (behind <= kMostBehind * static_cast<double>(rays_1.cols())) return "";
-  return fmt::format("points behind the camera ({} of {})", behind, rays_1.cols());
+std::string reason_of_sight(const HomographyCandidate& candidate) {
+  if (candidate.motion.normal.dot(candidate.motion.tau) >= 1)
+    return "the plane between the cameras";
+  if (candidate.behind <= kMostBehind * candidate.of) return "";
+  return fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of);
 }
 
 /// What an SVD algorithm says once more.
@@ -58,7 +58,9 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
     for (const HomographyMotion& motion : decompose_homography(H, algorithm)) {
       const double score = rotation_angle_deg(motion.R_21, window.R_wc[frame].transpose());
       HomographyCandidate candidate{frame, algorithm, motion, score, ""};
-      candidate.rejected = reason_of_sight(motion, rays_1);
+      candidate.behind = points_behind(motion, rays_1);
+      candidate.of = static_cast<int>(rays_1.cols());
+      candidate.rejected = reason_of_sight(candidate);
       if (candidate.rejected.empty())
         candidate.rejected = reason_of_repetition(candidate, candidates);
       candidates.push_back(std::move(candidate));
@@ -81,6 +83,16 @@ void reject_worse_rotations(std::span<HomographyCandidate> candidates) {
                     candidate.score,
                     worse_deg);
   }
+}
+
+std::vector<std::vector<HomographyCandidate>> candidates_of_window(const Window& window,
+                                                                   const std::stop_token& stop) {
+  std::vector<std::vector<HomographyCandidate>> candidates(window.frame_count());
+  for (int i = 1; i < window.frame_count() && !stop.stop_requested(); ++i) {
+    candidates[i] = read_homography(window, i);
+    reject_worse_rotations(candidates[i]);
+  }
+  return candidates;
 }
 
 const HomographyCandidate* best_of(std::span<const HomographyCandidate> candidates) {

@@ -6,6 +6,7 @@
 #include "engine/initializers/initialization.h"
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace gpo {
@@ -23,6 +24,11 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
 /// Rejects readings whose rotation is clearly worse than that of another one in `candidates` (of
 /// one frame).
 void reject_worse_rotations(std::span<HomographyCandidate> candidates);
+
+/// `read_homography` of every frame, with its worse rotations rejected; one a frame of the window,
+/// none of the reference frame and where it has no homography. Ends early where stopped.
+std::vector<std::vector<HomographyCandidate>> candidates_of_window(
+    const Window& window, const std::stop_token& stop = {});
 
 /// The reading with the best score of those not rejected; null where there is none.
 const HomographyCandidate* best_of(std::span<const HomographyCandidate> candidates);

@@ -21,6 +21,14 @@ struct MapPoint {
   Eigen::Vector3d position;  ///< in the world, on or near the plane
 };
 
+/// The state that an iteration of a solver left behind.
+struct SolverStep {
+  double cost = 0;      ///< half the summed squares, as the solver weighs them [px^2]
+  double gradient = 0;  ///< its largest component [px^2 per unit of the unknown]
+  double step = 0;      ///< length of the step that led here, over all unknowns; 0: none was taken
+  std::optional<Eigen::Vector3d> normal;  ///< of optimizations over a plane: the plane's
+};
+
 struct SolverReport {
   int iterations = 0;
   double initial_cost = 0;  ///< half the summed squares [px^2]
@@ -29,7 +37,18 @@ struct SolverReport {
   int residuals = 0;
   std::string termination = "none";  ///< convergence | no_convergence | failure | none
   double milliseconds = 0;
+  /// The start, then one an iteration; empty of methods that do not optimize. An iteration whose
+  /// step was refused repeats the state before it, with step 0. Ceres counts the start in
+  /// `iterations` and leaves out a last step that changes no more than its tolerance. Rounds with
+  /// other weights, a robust loss or fewer observations follow one another, their own starts left
+  /// out; what was tried and not taken is counted in `iterations` only. Normals have the sign of
+  /// the result's plane.
+  std::vector<SolverStep> trace;
 };
+
+/// The rounds before and the next one, which starts where they end, as one trace: from the initial
+/// cost of the first to the final cost of the last.
+void continue_trace(const SolverReport& before, SolverReport& next);
 
 /// One reading of a frame's homography, kept for people to look at.
 struct HomographyCandidate {
@@ -38,6 +57,8 @@ struct HomographyCandidate {
   HomographyMotion motion;
   double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
   std::string rejected;  ///< why it was not taken, with numbers; empty: it was
+  int behind = 0;        ///< inliers that it puts behind a camera
+  int of = 0;            ///< inliers
 };
 
 /// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is

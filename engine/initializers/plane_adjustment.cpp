@@ -88,9 +88,13 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
                              q_normal.coeffs().data());
     ordering->AddElementToGroup(pixel_1, 0);
   }
-  result.solver = solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, stop);
+  const auto normal_now = [&]() -> Vector3d {
+    return normal == PlaneNormal::free ? direction(q_normal).normalized() : start.normal;
+  };
+  result.solver =
+      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, stop, normal_now);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
-  if (normal == PlaneNormal::free) result.bundle.normal = direction(q_normal).normalized();
+  if (normal == PlaneNormal::free) result.bundle.normal = normal_now();
   return result;
 }
 

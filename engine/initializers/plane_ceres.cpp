@@ -212,8 +212,10 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     if (unknowns.rotations == RotationModel::free)
       ordering->AddElementToGroup(blocks.phi[i].data(), 1);
   }
-  const SolverReport solver =
-      solve_by_schur(problem, std::move(ordering), {.cost = cost_tolerance}, stop);
+  const SolverReport solver = solve_by_schur(
+      problem, std::move(ordering), {.cost = cost_tolerance}, stop, [&blocks]() -> Vector3d {
+        return direction(blocks.normal).normalized();
+      });
   return {motion_of(window, unknowns, start, blocks), solver};
 }
 

@@ -15,6 +15,7 @@ namespace gpo {
 namespace {
 
 constexpr int kMostIterations = 300;
+constexpr int kUsualIterations = 16;
 constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
 constexpr double kRounding = 1e-12;     // relative change of the cost that says nothing
 constexpr int kMostHiddenSteps = 5;     // along a valley so flat that rounding fills it
@@ -42,6 +43,23 @@ struct SplitNormals {
   Eigen::Matrix<double, S::kOwn, 1> o;
 };
 
+/// The columns of what the frames share, of (u, phi).
+template <class S>
+Eigen::Matrix<double, 5, S::kShared> shared_columns(const Window& window,
+                                                    const PlaneMotion& motion,
+                                                    int frame) {
+  Eigen::Matrix<double, 5, S::kShared> M = Eigen::Matrix<double, 5, S::kShared>::Zero();
+  M.template topLeftCorner<2, 2>().setIdentity();
+  if constexpr (S::kShared > 2) {
+    const GyroSensitivity& gyro = *window.gyro;
+    const Eigen::Matrix3d turned = so3_right_jacobian(gyro_correction_rad(window, frame, motion));
+    M.template block<3, 3>(2, 2) = turned * gyro.d_bias[frame];
+    if constexpr (S::kShared == 6)
+      M.template bottomRightCorner<3, 1>() = turned * gyro.d_offset[frame];
+  }
+  return M;
+}
+
 template <class S>
 SplitNormals<S> split(const FrameNormals& f,
                       const Window& window,
@@ -54,13 +72,7 @@ SplitNormals<S> split(const FrameNormals& f,
             f.Jtr.head<2>(),
             f.Jtr.tail<S::kOwn>()};
   } else {
-    Eigen::Matrix<double, 5, S::kShared> M = Eigen::Matrix<double, 5, S::kShared>::Zero();
-    M.template topLeftCorner<2, 2>().setIdentity();
-    const GyroSensitivity& gyro = *window.gyro;
-    const Eigen::Matrix3d turned = so3_right_jacobian(gyro_correction_rad(window, frame, motion));
-    M.template block<3, 3>(2, 2) = turned * gyro.d_bias[frame];
-    if constexpr (S::kShared == 6)
-      M.template bottomRightCorner<3, 1>() = turned * gyro.d_offset[frame];
+    const Eigen::Matrix<double, 5, S::kShared> M = shared_columns<S>(window, motion, frame);
     return {M.transpose() * f.JtJ.topLeftCorner<5, 5>() * M,
             M.transpose() * f.JtJ.topRightCorner<5, 3>(),
             f.JtJ.bottomRightCorner<3, 3>(),
@@ -87,6 +99,7 @@ class PlaneProblem {
     SharedVector shared;
     std::vector<OwnVector> own;
     double length = 0;    ///< largest component
+    double norm = 0;      ///< over all unknowns
     double decrease = 0;  ///< of the cost, expected
   };
 
@@ -144,14 +157,33 @@ class PlaneProblem {
     Step step;
     step.shared = reduced.llt().solve(-right);
     step.length = step.shared.cwiseAbs().maxCoeff();
+    double squares = step.shared.squaredNorm();
     step.decrease = -0.5 * gradient.dot(step.shared);
     step.own.assign(frame_count(), OwnVector::Zero());
     for (int i = 1; i < frame_count(); ++i) {
       step.own[i] = -(frames[i].rest + frames[i].gain * step.shared);
       step.length = std::max(step.length, step.own[i].cwiseAbs().maxCoeff());
       step.decrease -= 0.5 * frames[i].gradient.dot(step.own[i]);
+      squares += step.own[i].squaredNorm();
     }
+    step.norm = std::sqrt(squares);
     return step;
+  }
+
+  /// Largest component of the cost's gradient.
+  double gradient(const Linearized& at, const PlaneMotion& motion) const {
+    SharedVector shared = prior_gradient(motion);
+    double largest = 0;
+    for (int i = 1; i < frame_count(); ++i) {
+      const Eigen::Matrix<double, 8, 1>& Jtr = at.frames[i].Jtr;
+      if constexpr (S::kShared == 2) {
+        shared += Jtr.head<2>();
+      } else {
+        shared += shared_columns<S>(window_, motion, i).transpose() * Jtr.head<5>();
+      }
+      largest = std::max(largest, Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
+    }
+    return std::max(largest, shared.cwiseAbs().maxCoeff());
   }
 
   PlaneMotion moved(const PlaneMotion& from, const Step& step) const {
@@ -182,15 +214,20 @@ class PlaneProblem {
     return cost;
   }
 
-  void add_priors(const PlaneMotion& motion, SharedMatrix& JtJ, SharedVector& Jtr) const {
+  SharedVector prior_gradient(const PlaneMotion& motion) const {
+    SharedVector gradient = SharedVector::Zero();
     if constexpr (S::kShared > 2) {
-      JtJ.diagonal().template segment<3>(2).array() += bias_weight();
-      Jtr.template segment<3>(2) += bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s);
+      gradient.template segment<3>(2) =
+          bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s);
     }
-    if constexpr (S::kShared == 6) {
-      JtJ(5, 5) += offset_weight();
-      Jtr(5) += offset_weight() * motion.time_offset_s;
-    }
+    if constexpr (S::kShared == 6) gradient(5) = offset_weight() * motion.time_offset_s;
+    return gradient;
+  }
+
+  void add_priors(const PlaneMotion& motion, SharedMatrix& JtJ, SharedVector& Jtr) const {
+    if constexpr (S::kShared > 2) JtJ.diagonal().template segment<3>(2).array() += bias_weight();
+    if constexpr (S::kShared == 6) JtJ(5, 5) += offset_weight();
+    Jtr += prior_gradient(motion);
   }
 
   double bias_weight() const {
@@ -218,6 +255,8 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
   Linearized at = problem.linearize(start);
   report.initial_cost = at.cost;
   if (!at.in_front || !std::isfinite(at.cost)) report.termination = "failure";
+  report.trace.reserve(kUsualIterations);
+  report.trace.push_back({at.cost, problem.gradient(at, start), 0, start.normal});
   double damping = 0;
   int hidden_steps = 0;
   while (report.termination == "no_convergence" && report.iterations < kMostIterations &&
@@ -235,8 +274,11 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
       solution.motion = moved;
       at = std::move(there);
       damping = damping > kFirstDamping ? damping / 10 : 0;
+      report.trace.push_back({at.cost, problem.gradient(at, moved), step.norm, moved.normal});
     } else {
       damping = std::max(10 * damping, kFirstDamping);
+      report.trace.push_back(report.trace.back());
+      report.trace.back().step = 0;
     }
     if (settled) report.termination = "convergence";
     if (!(damping < kMostDamping)) report.termination = "failure";

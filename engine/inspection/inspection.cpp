@@ -9,6 +9,7 @@
 #include "engine/inspection/window_rotations.h"
 #include "engine/recording/board_truth.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <tuple>
@@ -49,7 +50,8 @@ struct Kept {
 
 using Span = std::tuple<int, int>;  // start, frames
 using TrackedSpan = std::tuple<Span, Tracking>;
-using Rejected = std::tuple<TrackedSpan, RansacOptions, Inliers>;
+using Excluded = std::vector<std::int64_t>;
+using Rejected = std::tuple<TrackedSpan, Excluded, RansacOptions, Inliers>;
 
 /// What is kept where it begins at the same frame and is long enough, else what is wanted.
 Span covering(const std::optional<Span>& kept, const Span& wanted) {
@@ -97,8 +99,13 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
 
 std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& whole, int frames) {
   if (whole->frame_count() == frames) return whole;
-  const auto begin = whole->raw_px.begin();
-  return std::make_shared<const Tracks>(Tracks{whole->start, whole->ids, {begin, begin + frames}});
+  Tracks tracks = *whole;
+  tracks.raw_px.resize(frames);
+  if (!tracks.forward_backward_px.empty()) tracks.forward_backward_px.resize(frames);
+  for (std::optional<TrackEnd>& end : tracks.ends) {
+    if (end && end->frame >= frames) end.reset();
+  }
+  return std::make_shared<const Tracks>(std::move(tracks));
 }
 
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
@@ -135,6 +142,19 @@ void check_window(const Recording& recording, const Settings& settings) {
                     settings.frames,
                     settings.start,
                     count));
+  }
+}
+
+void check_excluded(const Tracks& tracks, const Settings& settings) {
+  for (const std::int64_t id : settings.exclude) {
+    if (std::ranges::find(tracks.ids, id) != tracks.ids.end()) continue;
+    throw InputError(
+        tracks.ids.empty()
+            ? fmt::format("--exclude: track {} is not in the window, which has no tracks", id)
+            : fmt::format("--exclude: track {} is not in the window, which has tracks {} to {}",
+                          id,
+                          std::ranges::min(tracks.ids),
+                          std::ranges::max(tracks.ids)));
   }
 }
 
@@ -260,13 +280,18 @@ bool Inspector::Stages::update_truth(const Settings& settings,
 bool Inspector::Stages::update_window(const Settings& settings,
                                       RotationSource source,
                                       const std::stop_token& stop) {
+  check_excluded(*tracks.value, settings);
   const TrackedSpan span(Span(settings.start, settings.frames), settings.tracking);
   const RansacOptions ransac = ransac_options(settings);
   const Inliers inliers = inliers_used(settings);
-  const Rejected rejected(span, ransac, inliers);
+  const Rejected rejected(span, settings.exclude, ransac, inliers);
   outliers.update(rejected, [&]() {
-    return std::optional(std::make_shared<const Window>(
-        make_window(*tracks.value, recording->camera, recording->timestamps_ns, ransac, inliers)));
+    return std::optional(
+        std::make_shared<const Window>(make_window(without(*tracks.value, settings.exclude),
+                                                   recording->camera,
+                                                   recording->timestamps_ns,
+                                                   ransac,
+                                                   inliers)));
   });
   return rotations.update({rejected, source}, [&]() -> std::optional<Rotations> {
     Rotations computed =

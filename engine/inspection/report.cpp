@@ -38,6 +38,8 @@ ordered_json settings_json(const Inspection& inspection) {
       json[key] = to_string(inspection.window->inliers);
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<bool>>) {
       json[key] = uses_ransac(inspection.settings);
+    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::vector<std::int64_t>>) {
+      if (!value.empty()) json[key] = value;
     } else {
       json[key] = value;
     }

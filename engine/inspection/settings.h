@@ -26,8 +26,9 @@ struct Settings {
   double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
   /// Which tracks count as inliers; nothing: as the method does (`inliers_used`).
   std::optional<Inliers> inliers = std::nullopt;
-  std::vector<std::int64_t> exclude = {};  ///< ids of tracks left out by hand, ascending
-  std::uint64_t seed = 1;                  ///< of every random choice
+  std::uint64_t seed = 1;  ///< of every random choice
+  /// Ids of tracks that are left out as if they had never been seen, ascending.
+  std::vector<std::int64_t> exclude = {};
   InitializerOptions initializer = {};
 
   bool operator==(const Settings&) const = default;
@@ -83,6 +84,8 @@ void visit_settings(S& settings, Visitor&& visit) {
                     "default: as the method does"},
         settings.inliers);
   visit(SettingInfo{"seed", "Seed", "", "Seed of every random choice", 0, 1e9}, settings.seed);
+  visit(SettingInfo{"exclude", "Excluded", "", "Tracks left out by hand, by their ids"},
+        settings.exclude);
   visit(SettingInfo{"solver", "Solver", "", "Who minimizes: our own Schur solver, or Ceres"},
         settings.initializer.solver);
   visit(SettingInfo{"error", "Error", "", "Of gpo_joint: one-sided transfer error, or Sampson's"},

@@ -170,6 +170,16 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
   EXPECT_FALSE(j.contains("metrics"));
 }
 
+TEST(Run, LeavesOutTracksByTheirIds) {
+  const json whole = run_json(desk().string());
+  const json without = run_json(desk().string() + " --exclude 23,17,23");
+  EXPECT_EQ(without["settings"]["exclude"], (std::vector<int>{17, 23}));
+  EXPECT_FALSE(whole["settings"].contains("exclude"));
+  EXPECT_EQ(without["window"]["tracks"], whole["window"]["tracks"]);
+  for (const json& point : without["points"])
+    EXPECT_TRUE(point["track"] != 17 && point["track"] != 23);
+}
+
 class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
@@ -198,6 +208,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"--error two", "--error: unknown value 'two', expected one of transfer"},
         BadInput{"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
         BadInput{"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
+        BadInput{"--exclude 3,9999",
+                 "--exclude: track 9999 is not in the window, which has tracks 0 to"},
+        BadInput{"--exclude 3,x", "--exclude"},
         BadInput{"--bogus", "--bogus"},
         BadInput{"--tracks no-such-file.csv", "no-such-file.csv"}));
 

@@ -12,6 +12,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -21,7 +22,7 @@ constexpr const char* kDrag = ". Drag, or double-click to type";
 /// What few people change; folded away.
 bool is_advanced(const SettingInfo& info) {
   static const std::set<std::string> keys = {
-      "inliers", "seed", "solver", "error", "loss", "shutter", "time_offset"};
+      "inliers", "seed", "exclude", "solver", "error", "loss", "shutter", "time_offset"};
   return keys.contains(info.key);
 }
 
@@ -153,6 +154,12 @@ struct SettingRows {
       tooltip(why_not);
     }
     ImGui::EndCombo();
+  }
+
+  void widget(const SettingInfo& info, std::vector<std::int64_t>& value) {
+    ImGui::TextUnformatted(value.empty() ? "none"
+                                         : fmt::format("{}", fmt::join(value, ",")).c_str());
+    explain(info);
   }
 
   template <Choice E>

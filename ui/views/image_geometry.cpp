@@ -3,12 +3,12 @@
 #include "ui/views/image_geometry.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/inspection/residuals.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -179,18 +179,13 @@ std::optional<CubePicture> true_cube(const Inspection& inspection,
 
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
   const Window& window = *inspection.window;
-  const Initialization& estimate = *inspection.initialization;
-  if (!estimate.ok) return {};
-  const Pose& pose = estimate.cameras[frame_in_window];
-  const Vector3d tau = -pose.p_wc / estimate.plane.distance;
-  const Eigen::Matrix3d H =
-      window.K * pose.R_wc.transpose() *
-      (Eigen::Matrix3d::Identity() - tau * estimate.plane.normal.transpose()) * window.K.inverse();
+  const auto H = estimated_homography(inspection, frame_in_window);
+  if (!H) return {};
   std::vector<ResidualVector> residuals;
   for (int track = 0; track < window.track_count(); ++track) {
     if (!window.inlier[frame_in_window][track]) continue;
     const Vector2d predicted =
-        distort(inspection.recording->camera, transfer(H, window.points_px[0].col(track)));
+        distort(inspection.recording->camera, transfer(*H, window.points_px[0].col(track)));
     const Vector2d observed = inspection.tracks->raw_px[frame_in_window].col(track);
     if (predicted.allFinite() && observed.allFinite())
       residuals.push_back({track, observed, predicted});

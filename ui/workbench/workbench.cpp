@@ -43,6 +43,8 @@ void say(WorkbenchState& state, const std::string& text, Severity severity) {
 void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
   constexpr std::size_t kMostUndo = 200;
   if (state.recording) settings = fit_window(settings, state.frame_count());
+  // Their ids count within the tracks of one reference frame.
+  if (settings.start != state.settings.start) settings.exclude.clear();
   if (settings == state.settings) return;
   if (!dragging || !state.dragging_settings) state.undo.push_back(state.settings);
   if (state.undo.size() > kMostUndo) state.undo.erase(state.undo.begin());
@@ -134,6 +136,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.hover = {};
   state.cube_ray.reset();
   state.bookmarks.clear();
+  state.settings.exclude.clear();
   state.undo.clear();
   state.redo.clear();
   state.playing = false;

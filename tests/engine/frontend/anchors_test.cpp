@@ -6,6 +6,7 @@
 #include "engine/geometry/median.h"
 
 #include <functional>
+#include <map>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -185,7 +186,7 @@ TEST(Anchors, LeaveTheLostLostAndTracksOffThePlaneWhereTheyWere) {
   followed.col(0).setConstant(std::nan(""));
   for (int j = 1; j < followed.cols(); ++j) followed(0, j) += j % 5 == 0 ? 10 : 0.3;
   const Eigen::Matrix2Xd held =
-      hold(make_anchors(gray, corners, recording->camera), gray, followed);
+      hold(make_anchors(gray, corners, recording->camera), gray, followed).raw_px;
   EXPECT_FALSE(held.col(0).allFinite());
   for (int j = 1; j < held.cols(); ++j) {
     const Eigen::Matrix2Xd& expected = j % 5 == 0 ? followed : corners;
@@ -193,16 +194,42 @@ TEST(Anchors, LeaveTheLostLostAndTracksOffThePlaneWhereTheyWere) {
   }
 }
 
+TEST(Anchors, TellWhyALookIsNotFound) {
+  const auto recording = desk();
+  const cv::Rect hidden(200, 140, 200, 180);
+  const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+    if (i >= 10) bgr(hidden).setTo(cv::Scalar(40, 60, 90));
+  });
+  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  std::map<LossReason, int> ended;
+  for (int j = 0; j < held.track_count(); ++j) {
+    const std::optional<TrackEnd>& end = held.ends[j];
+    ASSERT_EQ(end.has_value(), !held.seen(kLast, j));
+    if (!end) continue;
+    EXPECT_TRUE(held.seen(end->frame - 1, j) && !held.seen(end->frame, j));
+    ++ended[end->reason];
+    if (end->reason == LossReason::look_far) {
+      EXPECT_GT(end->value, end->limit);
+    }
+    if (end->reason == LossReason::look_unlike) {
+      EXPECT_LT(end->value, end->limit);
+    }
+  }
+  EXPECT_GT(ended[LossReason::look_unlike] + ended[LossReason::look_far] +
+                ended[LossReason::look_not_found],
+            0);
+}
+
 TEST(Anchors, LeaveAllAsItIsWhereThereIsNoPlane) {
   const auto recording = desk();
   const cv::Mat gray = recording->pictures->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray).leftCols(3);
   const Anchors anchors = make_anchors(gray, corners, recording->camera);
-  EXPECT_EQ(hold(anchors, gray, corners), corners);
+  EXPECT_EQ(hold(anchors, gray, corners).raw_px, corners);
   EXPECT_EQ(hold(make_anchors(gray, Eigen::Matrix2Xd(2, 0), recording->camera),
                  gray,
                  Eigen::Matrix2Xd(2, 0))
-                .cols(),
+                .raw_px.cols(),
             0);
 }
 

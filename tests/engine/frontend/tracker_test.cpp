@@ -5,6 +5,7 @@
 #include "engine/frontend/window.h"
 
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -97,6 +98,41 @@ TEST(Tracker, DropsWhatLeavesThePictureForGood) {
   }
 }
 
+TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
+  const auto tracks = track_window(moving_picture(30), kCamera, 0, 30);
+  ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
+  std::map<LossReason, int> ended;
+  for (int j = 0; j < tracks->track_count(); ++j) {
+    const std::optional<TrackEnd>& end = tracks->ends[j];
+    EXPECT_EQ(end.has_value(), !tracks->seen(29, j));
+    if (!end) continue;
+    EXPECT_TRUE(tracks->seen(end->frame - 1, j));
+    EXPECT_FALSE(tracks->seen(end->frame, j));
+    ++ended[end->reason];
+    if (end->reason == LossReason::forward_backward) {
+      EXPECT_EQ(end->limit, 0.5);
+      EXPECT_GT(end->value, 0.5);
+      EXPECT_EQ(end->value, tracks->forward_backward_px[end->frame][j]);
+    } else {
+      EXPECT_TRUE(std::isnan(end->value));
+    }
+  }
+  EXPECT_GT(ended[LossReason::left_picture], 10);  // it moves by 38 px to the right
+}
+
+TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
+  const auto tracks = track_window(moving_picture(10), kCamera, 0, 10);
+  ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
+  EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
+  for (int i = 1; i < 10; ++i) {
+    for (int j = 0; j < tracks->track_count(); ++j) {
+      if (tracks->seen(i, j)) {
+        EXPECT_LE(tracks->forward_backward_px[i][j], 0.5);
+      }
+    }
+  }
+}
+
 TEST(Tracker, StopsWhenAsked) {
   const FrameCache pictures = moving_picture(3);
   std::stop_source source;
@@ -127,6 +163,7 @@ TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
   EXPECT_FALSE(tracks.seen(1, 0));
   EXPECT_EQ(tracks.raw_px[2].col(0), Eigen::Vector2d(4, 4));
   EXPECT_EQ(tracks.raw_px[2].col(1), Eigen::Vector2d(7, 7));
+  EXPECT_TRUE(tracks.forward_backward_px.empty() && tracks.ends.empty());
 }
 
 TEST(MakeWindow, UndistortsAndMarksInliers) {
@@ -144,6 +181,16 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
   EXPECT_GT(window.inlier_count(0), window.track_count() / 2);
   const Window all = make_window(*tracks, camera, times, {.enabled = false});
   for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
+}
+
+TEST(Without, LeavesTheTracksOutAndTheColumnsWhereTheyAre) {
+  const Tracks tracks{0, {3, 5, 8}, {Eigen::Matrix2Xd::Ones(2, 3), Eigen::Matrix2Xd::Ones(2, 3)}};
+  const Tracks left = without(tracks, std::vector<std::int64_t>{5});
+  EXPECT_EQ(left.ids, tracks.ids);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(left.seen(i, 1));
+    EXPECT_EQ(left.raw_px[i].col(2), tracks.raw_px[i].col(2));
+  }
 }
 
 }  // namespace

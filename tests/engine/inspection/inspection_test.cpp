@@ -3,7 +3,10 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/error.h"
+#include "engine/initializers/methods.h"
 #include "engine/inspection/report.h"
+
+#include <algorithm>
 
 #include <gmock/gmock.h>
 
@@ -109,6 +112,97 @@ TEST(Inspector, AShorterWindowIsTheBeginningOfALongerOne) {
   }
 }
 
+TEST(Inspector, AShorterWindowEndsItsTracksAsIfItWereAlone) {
+  const auto recording = desk();
+  Inspector used(recording);
+  Settings settings{.frames = 30};
+  const auto longer = used.inspect(settings);
+  settings.frames = 12;
+  const auto shorter = used.inspect(settings);
+  const auto alone = Inspector(recording).inspect(settings);
+  ASSERT_EQ(shorter->tracks->forward_backward_px.size(), 12U);
+  int ends = 0;
+  int later = 0;
+  for (int j = 0; j < shorter->tracks->track_count(); ++j) {
+    const auto& end = shorter->tracks->ends[j];
+    ASSERT_EQ(end.has_value(), alone->tracks->ends[j].has_value());
+    later += longer->tracks->ends[j].has_value() && !end ? 1 : 0;
+    if (!end) continue;
+    ++ends;
+    EXPECT_LT(end->frame, 12);
+    EXPECT_EQ(end->frame, alone->tracks->ends[j]->frame);
+    EXPECT_EQ(end->reason, alone->tracks->ends[j]->reason);
+  }
+  EXPECT_GT(ends, 0);
+  EXPECT_GT(later, 0);
+}
+
+TEST(Inspector, LeavesOutTracksByHandAndTakesThemBack) {
+  const auto recording = desk();
+  Inspector inspector(recording);
+  Settings settings{.frames = 12};
+  const auto whole = inspector.inspect(settings);
+  settings.exclude = {3, 17};
+  const auto without = inspector.inspect(settings);
+  EXPECT_EQ(without->tracks, whole->tracks);
+  EXPECT_EQ(without->window->track_count(), whole->window->track_count());
+  for (int i = 0; i < 12; ++i) {
+    for (const int j : {3, 17}) {
+      EXPECT_FALSE(without->window->inlier[i][j]);
+      EXPECT_FALSE(without->window->points_px[i].col(j).allFinite());
+    }
+  }
+  EXPECT_NE(without->initialization->plane.normal, whole->initialization->plane.normal);
+  EXPECT_EQ(to_json(*without)["settings"]["exclude"], (std::vector<int>{3, 17}));
+  EXPECT_FALSE(to_json(*whole)["settings"].contains("exclude"));
+  settings.exclude.clear();
+  EXPECT_EQ(result_of(*inspector.inspect(settings)), result_of(*whole));
+}
+
+/// The recording with tracks of its own, of which a few jump.
+std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int64_t>& wrong) {
+  Recording recording = *desk();
+  const auto inspection = Inspector(desk()).inspect({.frames = 12, .method = "gpo"});
+  const Tracks& tracks = *inspection->tracks;
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < tracks.track_count(); ++j) {
+      if (!tracks.seen(11, j) || !inspection->window->inlier[11][j]) continue;
+      const bool jumps = i > 0 && std::ranges::find(wrong, j) != wrong.end();
+      recording.tracks.push_back(
+          {i, j, tracks.raw_px[i].col(j) + Eigen::Vector2d(jumps ? 4.0 * i : 0, 0)});
+    }
+  }
+  return std::make_shared<const Recording>(std::move(recording));
+}
+
+TEST(Inspector, IsBetterWithoutAGrossOutlierAndAsGoodAsIfItHadNeverBeen) {
+  const auto clean = Inspector(with_gross_outliers({})).inspect({.frames = 12, .ransac = false});
+  const std::vector<std::int64_t> ids(clean->tracks->ids.begin() + 5,
+                                      clean->tracks->ids.begin() + 8);
+  for (const Method& method : methods()) {
+    SCOPED_TRACE(method.key);
+    Settings settings{.frames = 12, .method = method.key, .ransac = false};
+    Inspector inspector(with_gross_outliers(ids));
+    const auto spoiled = inspector.inspect(settings);
+    settings.exclude = ids;
+    const auto freed = inspector.inspect(settings);
+    Recording bare = *with_gross_outliers(ids);
+    std::erase_if(bare.tracks, [&](const TrackObservation& o) {
+      return std::ranges::find(ids, o.track) != ids.end();
+    });
+    settings.exclude.clear();
+    const auto never = Inspector(std::make_shared<const Recording>(bare)).inspect(settings);
+    ASSERT_TRUE(freed->initialization->ok) << freed->initialization->reason;
+    // Those that use all tracks find the outliers themselves.
+    const double more = method.needs_plane ? 0 : 1e-6;
+    EXPECT_LT(freed->initialization->rms_px,
+              spoiled->initialization->ok ? spoiled->initialization->rms_px + more : 100);
+    EXPECT_LT(angle_deg(freed->initialization->plane.normal, never->initialization->plane.normal),
+              1e-3);
+    EXPECT_NEAR(freed->initialization->rms_px, never->initialization->rms_px, 1e-6);
+  }
+}
+
 TEST(Inspector, StopsInTheMiddleAndStartsAnewAfterwards) {
   Inspector inspector(desk());
   Settings settings;
@@ -181,6 +275,14 @@ TEST(Inspector, SaysWhatARecordingLacks) {
   bare.pictures.reset();
   EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
               HasSubstr("no pictures and no tracks"));
+}
+
+TEST(Inspector, NamesATrackToLeaveOutThatIsNotThere) {
+  const auto recording = desk();
+  const int last = Inspector(recording).inspect({.frames = 12})->tracks->track_count() - 1;
+  EXPECT_EQ(
+      message(recording, {.frames = 12, .exclude = {3, 9999}}),
+      "--exclude: track 9999 is not in the window, which has tracks 0 to " + std::to_string(last));
 }
 
 TEST(Inspector, NamesTheFrameWithoutTruth) {
