@@ -55,10 +55,9 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
 Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
-  clear(palette::kBorder);
   gui.begin_frame(size.width, size.height, 1, delta_seconds);
   draw_panels(input, size, views, commands);
-  gui.end_frame();
+  gui.end_frame(views.window, palette::kBorder);
   return commands;
 }
 

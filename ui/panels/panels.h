@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/worker.h"
+#include "ui/context/window_picture.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/scene_view.h"
 #include "ui/workbench/layout.h"
@@ -30,6 +31,7 @@ struct Views {
   int frame = -1;
   std::string picture_error;  ///< why there is none
   SceneView scene;
+  WindowPicture window;  ///< of which only the parts that change are drawn anew
 };
 
 // Each draws one part of the window through Dear ImGui and changes nothing but `Views`.

@@ -3,6 +3,7 @@
 #include "ui/views/image_view.h"
 
 #include "engine/initializers/methods.h"
+#include "ui/context/window_picture.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
 #include "ui/views/picture_texture.h"
@@ -57,6 +58,7 @@ void draw_picture(ImDrawList& list,
       to_imgui(mapping.origin + mapping.scale * Vector2d(camera.width, camera.height));
   if (picture != nullptr && picture->id() != nullptr) {
     picture->set_screen_scale(mapping.scale);
+    mark_content(list, picture->revision());
     list.AddImage(picture->id(), low, high);
   } else {
     list.AddRectFilled(low, high, imgui_color(palette::kRaised));
