@@ -78,19 +78,30 @@ void draw_uncertainty(const Projection& projection,
   for (const auto& line : ellipsoid) projection.closed(line, palette::kUncertain, 1.2F);
 }
 
-/// Its picture as a face, and which edge of it is up. The reference camera keeps its color.
-void draw_camera(const Projection& projection, const Inspection& inspection, int frame_in_window) {
+/// The frame's camera as it is drawn: which edge of its picture is up is marked. The reference
+/// camera keeps its color.
+struct MarkedFrustum {
+  std::array<Vector3d, 6> corners;
+  std::array<Vector3d, 3> mark;
+  std::uint32_t rgb;
+
+  void draw_faces(const Projection& projection) const {
+    projection.face(std::span(corners).subspan(1, 4), rgb, 0.2);
+    projection.face(mark, rgb, 0.4);
+  }
+  void draw_lines(const Projection& projection) const {
+    projection.frustum(corners, rgb, 2.6F);
+    projection.closed(mark, rgb, 2.6F);
+  }
+};
+MarkedFrustum marked_frustum(const Inspection& inspection, int frame_in_window) {
   const std::uint32_t method = find_method(inspection.settings.method).rgb;
-  const std::uint32_t rgb =
-      frame_in_window == 0 ? palette::kReference : mixed_rgb(method, palette::kText, 0.35);
   const auto corners = frustum(inspection.recording->camera,
                                inspection.initialization->cameras[frame_in_window],
                                frustum_depth(inspection));
-  const std::array<Vector3d, 3> mark = {corners[1], corners[2], corners[5]};
-  projection.face(std::span(corners).subspan(1, 4), rgb, 0.35);
-  projection.face(mark, rgb, 0.7);
-  projection.frustum(corners, rgb, 2.6F);
-  projection.closed(mark, rgb, 2.6F);
+  return {corners,
+          {corners[1], corners[2], corners[5]},
+          frame_in_window == 0 ? palette::kReference : mixed_rgb(method, palette::kText, 0.35)};
 }
 
 }  // namespace
@@ -104,12 +115,16 @@ void draw_scene_moment(ImDrawList& list,
   const Projection projection{list, rect, camera};
   const bool in_window = frame_in_window >= 0 && frame_in_window < inspection.window->frame_count();
   if (!in_window) return;
-  if (options.truth) draw_true_camera(projection, inspection, frame_in_window);
   const Initialization& estimate = *inspection.initialization;
-  if (!estimate.ok || frame_in_window >= std::ssize(estimate.cameras)) return;
-  if (shows_uncertainty(inspection, options))
+  std::optional<MarkedFrustum> marked;
+  if (estimate.ok && frame_in_window < std::ssize(estimate.cameras))
+    marked = marked_frustum(inspection, frame_in_window);
+  // Faces first: they would hide the lines behind them.
+  if (marked) marked->draw_faces(projection);
+  if (options.truth) draw_true_camera(projection, inspection, frame_in_window);
+  if (marked && shows_uncertainty(inspection, options))
     draw_uncertainty(projection, inspection, frame_in_window, options.uncertainty);
-  draw_camera(projection, inspection, frame_in_window);
+  if (marked) marked->draw_lines(projection);
 }
 
 }  // namespace gpo
