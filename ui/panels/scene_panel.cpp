@@ -45,6 +45,7 @@ void scene_panel(const PanelInput& input,
                  const Rectangle& place,
                  Views& views,
                  Commands& commands) {
+  ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("scene", place, {0, 0});
   if (!input.inspection) return draw_waiting(place);
   const WorkbenchState& state = input.state;
