@@ -127,10 +127,9 @@ cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size win
 Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
-  clear(palette::kBorder);
   gui.begin_frame(size.width, size.height, 1, delta_seconds);
   draw_panels(input, size, views, commands);
-  gui.end_frame();
+  gui.end_frame(views.window, palette::kBorder);
   return commands;
 }
 

@@ -20,6 +20,9 @@ class Framebuffer {
 
   /// Draws go here from now on, to all of it.
   void bind() const;
+  /// Copies what was drawn into another framebuffer (0: the window's), pixel by pixel, and binds
+  /// that one.
+  void copy_to(unsigned framebuffer) const;
 
  private:
   int width_, height_;

@@ -4,6 +4,7 @@
 
 #include "ui/context/gui_style.h"
 #include "ui/context/window_context.h"
+#include "ui/context/window_picture.h"
 
 #include <algorithm>
 
@@ -61,6 +62,11 @@ void Gui::begin_frame(int width, int height, float framebuffer_scale, double del
 void Gui::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Gui::end_frame(WindowPicture& picture, std::uint32_t background_rgb) {
+  ImGui::Render();
+  picture.show(*ImGui::GetDrawData(), background_rgb);
 }
 
 }  // namespace gpo

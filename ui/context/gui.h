@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+
 struct ImFont;
 
 namespace gpo {
 
 class WindowContext;
+class WindowPicture;
 
 enum class Font { regular, bold, small, heading };
 
@@ -34,6 +37,8 @@ class Gui {
                    double delta_seconds = kFixedFrame_s);
   /// Renders into the framebuffer that is bound, over what is there.
   void end_frame();
+  /// The same, but draws only what has changed since the picture's last frame.
+  void end_frame(WindowPicture& picture, std::uint32_t background_rgb);
   /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
   float scale() const { return scale_; }
 

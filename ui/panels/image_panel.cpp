@@ -109,6 +109,7 @@ void image_panel(const PanelInput& input,
                  const Rectangle& place,
                  Views& views,
                  Commands& commands) {
+  ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("picture", place, {0, 0});
   const WorkbenchState& state = input.state;
   update_picture(state, views);

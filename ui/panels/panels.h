@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/worker.h"
+#include "ui/context/window_picture.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/scene_view.h"
 #include "ui/workbench/layout.h"
@@ -42,6 +43,7 @@ struct Views {
   std::string picture_error;  ///< why there is none
   SceneView scene;
   PaletteEntry palette;
+  WindowPicture window;  ///< of which only the parts that change are drawn anew
 };
 
 /// Brings the picture of the current frame into `views`, where it is not there yet.

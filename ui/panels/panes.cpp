@@ -70,6 +70,8 @@ void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& comm
 }
 
 void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
+  if (input.state.panes.side == SidePane::scene)
+    ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("side", place, {0, 0});
   kSidePanes[static_cast<std::size_t>(input.state.panes.side)](input, place, views, commands);
 }

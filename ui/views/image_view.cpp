@@ -3,11 +3,13 @@
 #include "ui/views/image_view.h"
 
 #include "engine/initializers/methods.h"
+#include "ui/context/window_picture.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
 #include "ui/views/picture_texture.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -45,18 +47,38 @@ struct Canvas {
   }
 };
 
+/// Only what the picture leaves free: without a graphics card each layer costs milliseconds.
+void draw_surroundings(ImDrawList& list,
+                       const ScreenRect& rect,
+                       const ImVec2& picture_low,
+                       const ImVec2& picture_high) {
+  const ImU32 color = imgui_color(palette::kBackground);
+  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
+  // The picture's last pixels are whole ones only where its scale is.
+  const float right = std::clamp(std::floor(picture_high.x), low.x, high.x);
+  const float bottom = std::clamp(std::floor(picture_high.y), low.y, high.y);
+  const float left = std::clamp(picture_low.x, low.x, right);
+  const float top = std::clamp(picture_low.y, low.y, bottom);
+  const std::array<std::pair<ImVec2, ImVec2>, 4> sides = {{{low, {high.x, top}},
+                                                           {{low.x, bottom}, high},
+                                                           {{low.x, top}, {left, bottom}},
+                                                           {{right, top}, {high.x, bottom}}}};
+  for (const auto& [from, to] : sides)
+    if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, color);
+}
+
 void draw_picture(ImDrawList& list,
                   const ScreenRect& rect,
                   const Camera& camera,
                   PictureTexture* picture,
                   const PictureMapping& mapping) {
-  list.AddRectFilled(
-      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kBackground));
   const ImVec2 low = to_imgui(mapping.origin);
   const ImVec2 high =
       to_imgui(mapping.origin + mapping.scale * Vector2d(camera.width, camera.height));
+  draw_surroundings(list, rect, low, high);
   if (picture != nullptr && picture->id() != nullptr) {
     picture->set_screen_scale(mapping.scale);
+    mark_content(list, picture->revision());
     list.AddImage(picture->id(), low, high);
   } else {
     list.AddRectFilled(low, high, imgui_color(palette::kRaised));

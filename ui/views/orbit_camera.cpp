@@ -116,6 +116,18 @@ Eigen::Vector3d view_ray(const OrbitCamera& camera,
   return view_axes(camera) * ((pixel - view_size_px / 2) / focal_px).homogeneous();
 }
 
+std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera,
+                                                       const Eigen::Vector3d& a,
+                                                       const Eigen::Vector3d& b) {
+  const Eigen::Vector3d forward = view_axes(camera).col(2), from = eye(camera);
+  const double nearest = 1e-3 * camera.distance;
+  const double depth_a = forward.dot(a - from), depth_b = forward.dot(b - from);
+  if (depth_a < nearest && depth_b < nearest) return std::nullopt;
+  const auto cut = [&] { return a + (nearest - depth_a) / (depth_b - depth_a) * (b - a); };
+  return std::array<Eigen::Vector3d, 2>{depth_a < nearest ? cut() : a,
+                                        depth_b < nearest ? cut() : b};
+}
+
 double pixels_a_unit(const OrbitCamera& camera, double height_px) {
   return height_px / 2 / half_tangent(camera) / camera.distance;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -51,6 +52,11 @@ std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
 Eigen::Vector3d view_ray(const OrbitCamera& camera,
                          const Eigen::Vector2d& pixel,
                          const Eigen::Vector2d& view_size_px);
+
+/// The part of a line that is in front of the eye, so that its ends have pixels.
+std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera,
+                                                       const Eigen::Vector3d& a,
+                                                       const Eigen::Vector3d& b);
 
 /// Pixels that a unit of length at the target's depth is long.
 double pixels_a_unit(const OrbitCamera& camera, double height_px);

@@ -52,6 +52,9 @@ void draw_ground(ImDrawList& list, const ImVec2& min, const ImVec2& max, std::ui
   list.AddRect(min, max, imgui_color(frame_rgb, 0.9), 5 * scale, 0, scale);
 }
 
+/// A tenth of a pixel off a circle of `Sign::circle`'s size at most.
+int circle_sides(float scale) { return static_cast<int>(std::ceil(13 * std::sqrt(scale))); }
+
 void draw_frustum_sign(ImDrawList& list, const ImVec2& c, float scale, ImU32 color) {
   const ImVec2 apex(c.x - 5 * scale, c.y);
   const ImVec2 top(c.x + 5 * scale, c.y - 5 * scale), bottom(c.x + 5 * scale, c.y + 5 * scale);
@@ -72,8 +75,9 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
   const ImU32 rim = imgui_color(palette::kBackground, 0.55);
   switch (sign) {
     case Sign::circle:
-      list.AddCircle(c, 3.8F * s, rim, 20, 3.4F * s);
-      list.AddCircle(c, 3.8F * s, color, 20, 1.6F * s);
+      // As many sides as tell it from a circle at its size: there are hundreds in a picture.
+      list.AddCircle(c, 3.8F * s, rim, circle_sides(s), 3.4F * s);
+      list.AddCircle(c, 3.8F * s, color, circle_sides(s), 1.6F * s);
       break;
     case Sign::cross:
       for (const auto& [paint, width] : {std::pair{rim, 3.6F}, std::pair{color, 1.8F}}) {

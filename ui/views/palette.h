@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace gpo {
@@ -53,6 +54,15 @@ constexpr std::uint32_t kPaperGrid = 0xE4E7EB;
 constexpr double red(std::uint32_t rgb) { return ((rgb >> 16) & 0xFF) / 255.0; }
 constexpr double green(std::uint32_t rgb) { return ((rgb >> 8) & 0xFF) / 255.0; }
 constexpr double blue(std::uint32_t rgb) { return (rgb & 0xFF) / 255.0; }
+
+/// Between two colors, 0..1: thin things are drawn dim and opaque, so that depth is right.
+inline std::uint32_t mixed_rgb(std::uint32_t a, std::uint32_t b, double share) {
+  const auto channel = [&](int shift) {
+    const double x = (a >> shift) & 0xFF, y = (b >> shift) & 0xFF;
+    return static_cast<std::uint32_t>(std::lround(x + share * (y - x))) << shift;
+  };
+  return channel(16) | channel(8) | channel(0);
+}
 
 /// As Dear ImGui packs a color (IM_COL32). `alpha` in 0..1.
 constexpr std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {

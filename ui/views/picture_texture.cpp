@@ -27,7 +27,7 @@ void PictureTexture::upload(const cv::Mat& bgr) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glBindTexture(GL_TEXTURE_2D, 0);
-  filled_ = true;
+  ++revision_;
 }
 
 void PictureTexture::set_screen_scale(double screen_pixels_a_pixel) {
@@ -37,6 +37,6 @@ void PictureTexture::set_screen_scale(double screen_pixels_a_pixel) {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void* PictureTexture::id() const { return filled_ ? imgui_texture(texture_) : nullptr; }
+void* PictureTexture::id() const { return revision_ > 0 ? imgui_texture(texture_) : nullptr; }
 
 }  // namespace gpo

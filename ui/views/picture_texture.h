@@ -23,10 +23,12 @@ class PictureTexture {
   void set_screen_scale(double screen_pixels_a_pixel);
   /// For Dear ImGui; null before the first upload.
   void* id() const;
+  /// Counts the uploads: another one, another picture.
+  std::size_t revision() const { return revision_; }
 
  private:
   unsigned texture_ = 0;
-  bool filled_ = false;
+  std::size_t revision_ = 0;
 };
 
 }  // namespace gpo

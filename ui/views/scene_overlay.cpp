@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/methods.h"
 #include "ui/context/gui.h"
+#include "ui/context/window_picture.h"
 #include "ui/views/image_view.h"
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/scene_geometry.h"
+#include "ui/views/scene_moment.h"
 #include "ui/views/scene_view.h"
 
 #include <cmath>
@@ -141,7 +143,6 @@ void draw_scene_view(ImDrawList& list,
                      const OrbitCamera& camera,
                      const SceneViewOptions& options) {
   const unsigned texture = view.render(inspection,
-                                       frame,
                                        camera,
                                        options,
                                        static_cast<int>(rect.size.x()),
@@ -149,10 +150,12 @@ void draw_scene_view(ImDrawList& list,
   if (texture == 0) return;
   const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
   list.PushClipRect(low, high, true);
+  mark_content(list, view.renders());
   list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
+  const int frame_in_window = frame - inspection.window->start;
+  draw_scene_moment(list, rect, inspection, frame_in_window, camera, options);
   const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
-  const int frame_in_window = frame - inspection.window->start;
   if (options.legend)
     draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);

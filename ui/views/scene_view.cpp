@@ -22,11 +22,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One frame of one inspection on its way to the renderer. Sizes in pixels grow with the font.
+/// One inspection on its way to the renderer. Sizes in pixels grow with the font.
 struct Stage {
   vtkRenderer& renderer;
   const Inspection& inspection;
-  int frame;  ///< in the window; may be outside of it
   const SceneViewOptions& options;
   double scale;
 
@@ -35,33 +34,20 @@ struct Stage {
   }
 };
 
-/// Between two colors, 0..1: thin things are drawn dim and opaque, so that depth is right.
-std::uint32_t mixed(std::uint32_t a, std::uint32_t b, double share) {
-  const auto channel = [&](int shift) {
-    const double x = (a >> shift) & 0xFF, y = (b >> shift) & 0xFF;
-    return static_cast<std::uint32_t>(std::lround(x + share * (y - x))) << shift;
-  };
-  return channel(16) | channel(8) | channel(0);
-}
-
 void add_frustum(Shapes& shapes, const std::array<Vector3d, 6>& corners, std::uint32_t rgb) {
   for (int k = 1; k <= 4; ++k) shapes.line(corners[0], corners[k], rgb);
   shapes.lines(std::span(corners).subspan(1, 4), true, rgb);
 }
 
 /// Its picture as a face, and which edge of it is up.
-void add_marked_frustum(const Stage& stage,
-                        const std::array<Vector3d, 6>& corners,
-                        std::uint32_t rgb,
-                        double alpha,
-                        double width_px) {
+void add_reference(const Stage& stage, const std::array<Vector3d, 6>& corners) {
   Shapes lines, face;
-  add_frustum(lines, corners, rgb);
+  add_frustum(lines, corners, palette::kReference);
   const std::array<Vector3d, 3> mark = {corners[1], corners[2], corners[5]};
-  lines.lines(mark, true, rgb);
-  face.face(std::span(corners).subspan(1, 4), rgb, alpha);
-  face.face(mark, rgb, 2 * alpha);
-  stage.add(lines, width_px);
+  lines.lines(mark, true, palette::kReference);
+  face.face(std::span(corners).subspan(1, 4), palette::kReference, 0.12);
+  face.face(mark, palette::kReference, 0.24);
+  stage.add(lines, 1.8);
   stage.add(face, 1);
 }
 
@@ -77,49 +63,36 @@ void add_cameras(const Stage& stage) {
   std::vector<Vector3d> centers;
   for (int i = 0; i < static_cast<int>(estimate.cameras.size()); ++i) {
     centers.push_back(estimate.cameras[i].p_wc);
-    if (i != stage.frame && i % stride == 0 && i != 0)
+    if (i % stride == 0 && i != 0)
       add_frustum(frusta,
                   frustum(camera, estimate.cameras[i], depth),
-                  mixed(palette::kSceneBottom, rgb, 0.75));
+                  mixed_rgb(palette::kSceneBottom, rgb, 0.75));
   }
-  path.lines(centers, false, mixed(rgb, palette::kText, 0.35));
+  path.lines(centers, false, mixed_rgb(rgb, palette::kText, 0.35));
   stage.add(frusta, 1.2);
   stage.add(path, 2.6);
-  add_marked_frustum(stage,
-                     frustum(camera, estimate.cameras[0], depth),
-                     palette::kReference,
-                     stage.frame == 0 ? 0.35 : 0.12,
-                     1.8);
-  if (stage.frame > 0 && stage.frame < static_cast<int>(estimate.cameras.size()))
-    add_marked_frustum(stage,
-                       frustum(camera, estimate.cameras[stage.frame], depth),
-                       mixed(rgb, palette::kText, 0.35),
-                       0.35,
-                       2.6);
+  add_reference(stage, frustum(camera, estimate.cameras[0], depth));
 }
 
 void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
   const Inspection& inspection = stage.inspection;
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
-  const std::uint32_t dim = mixed(palette::kSceneBottom, palette::kTruth, 0.6);
+  const std::uint32_t dim = mixed_rgb(palette::kSceneBottom, palette::kTruth, 0.6);
   const double depth = 0.75 * frustum_depth(inspection);
   const int stride = frustum_stride(inspection);
-  Shapes frusta, path, current;
+  Shapes frusta, path;
   std::vector<Vector3d> centers;
   for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i) {
     const auto pose = true_camera(inspection, *T_est_true, i);
     if (!pose) continue;
     centers.push_back(pose->p_wc);
-    if (i == stage.frame)
-      add_frustum(current, frustum(inspection.recording->camera, *pose, depth), palette::kTruth);
-    else if (i % stride == 0)
+    if (i % stride == 0)
       add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dim);
   }
   path.lines(centers, false, palette::kTruth);
   stage.add(frusta, 1);
   stage.add(path, 1.6);
-  stage.add(current, 2);
   if (!grid) return;
   if (const auto border = true_plane_border(inspection, *T_est_true, *grid)) {
     Shapes plane;
@@ -131,14 +104,14 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
 /// The lines lie on the face; the face moves a hair away from the eye.
 void add_plane(const Stage& stage, const PlaneGrid& grid, const OrbitCamera& camera) {
   Shapes lines, border, face;
-  const std::uint32_t rgb = mixed(palette::kSceneBottom, palette::kPlane, 0.42);
+  const std::uint32_t rgb = mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.42);
   const auto [i0, j0] = grid.low;
   const auto [i1, j1] = grid.high;
   for (int i = i0 + 1; i < i1; ++i) lines.line(grid.at(i, j0), grid.at(i, j1), rgb);
   for (int j = j0 + 1; j < j1; ++j) lines.line(grid.at(i0, j), grid.at(i1, j), rgb);
   const std::array<Vector3d, 4> corners = {
       grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
-  border.lines(corners, true, mixed(palette::kSceneBottom, palette::kPlane, 0.8));
+  border.lines(corners, true, mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.8));
   const bool above = grid.normal.dot(eye(camera) - grid.origin) > 0;
   const Vector3d away = (above ? -0.02 : 0.02) * grid.cell * grid.normal;
   std::array<Vector3d, 4> behind;
@@ -195,8 +168,7 @@ void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   const int stride = frustum_stride(stage.inspection);
   Shapes lines, arrow_line, face;
   const auto count = std::min(estimate.cameras.size(), uncertainty.center_covariances.size());
-  for (int i = 1; i < static_cast<int>(count); ++i) {
-    if (i != stage.frame && i % stride != 0) continue;
+  for (int i = stride; i < static_cast<int>(count); i += stride) {
     const auto ellipsoid =
         confidence_ellipsoid(estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged);
     for (const auto& line : ellipsoid) lines.lines(line, true, palette::kUncertain);
@@ -249,12 +221,12 @@ struct SceneView::Pipeline {
   vtkSmartPointer<VtkWindow> window = make_vtk_window();
   vtkNew<vtkRenderer> renderer;
   Inspection inspection;
-  int frame = -1;
   OrbitCamera camera;
   SceneViewOptions options;
   cv::Size size;
   double scale = 0;
   unsigned texture = 0;
+  std::size_t renders = 0;
 
   bool shows(const Inspection& other) const {
     return inspection.initialization == other.initialization && inspection.truth == other.truth &&
@@ -276,27 +248,28 @@ SceneView::SceneView() : pipeline_(std::make_unique<Pipeline>()) {
 SceneView::~SceneView() { pipeline_->window->Finalize(); }
 
 unsigned SceneView::render(const Inspection& inspection,
-                           int frame,
                            const OrbitCamera& camera,
                            const SceneViewOptions& options,
                            int width,
                            int height) {
   Pipeline& now = *pipeline_;
   const double scale = overlay_scale();
-  if (now.texture != 0 && now.shows(inspection) && now.frame == frame && same(now.camera, camera) &&
+  if (now.texture != 0 && now.shows(inspection) && same(now.camera, camera) &&
       now.options == options && now.size == cv::Size(width, height) && now.scale == scale)
     return now.texture;
   now.inspection = inspection;
-  now.frame = frame;
   now.camera = camera;
   now.options = options;
   now.size = {width, height};
   now.scale = scale;
-  build({*now.renderer, inspection, frame - inspection.window->start, options, scale}, camera);
+  build({*now.renderer, inspection, options, scale}, camera);
   set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);
   now.renderer->ResetCameraClippingRange();
   now.texture = render_to_texture(*now.window, width, height);
+  ++now.renders;
   return now.texture;
 }
+
+std::size_t SceneView::renders() const { return pipeline_->renders; }
 
 }  // namespace gpo

@@ -37,20 +37,23 @@ class SceneView {
   SceneView& operator=(const SceneView&) = delete;
 
   /// The texture of the rendered scene, bottom row first; 0 for an empty size. Renders only when
-  /// something has changed since the last call. `frame` counts in the recording.
+  /// something has changed since the last call; what belongs to a single frame is not in it.
   unsigned render(const Inspection& inspection,
-                  int frame,
                   const OrbitCamera& camera,
                   const SceneViewOptions& options,
                   int width,
                   int height);
+
+  /// How often something had changed.
+  std::size_t renders() const;
 
  private:
   struct Pipeline;
   std::unique_ptr<Pipeline> pipeline_;
 };
 
-/// Draws the scene into the rectangle (whole pixels), and over it labels, legend and scale bar.
+/// Draws the scene into the rectangle (whole pixels), and over it the frame's camera, labels,
+/// legend and scale bar. `frame` counts in the recording.
 void draw_scene_view(ImDrawList& list,
                      const ScreenRect& rect,
                      SceneView& view,
