@@ -43,7 +43,7 @@ struct SolverReport {
   /// other weights, a robust loss or fewer observations follow one another, their own starts left
   /// out; what was tried and not taken is counted in `iterations` only. Normals have the sign of
   /// the result's plane.
-  std::vector<SolverStep> trace;
+  std::vector<SolverStep> trace = {};
 };
 
 /// The rounds before and the next one, which starts where they end, as one trace: from the initial

@@ -58,7 +58,7 @@ double positive_number(const YamlEntry& entry, const std::string& expected) {
 ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::string>& notes) {
   ImuCalibration result;
   if (!fs::exists(file)) {
-    notes.push_back("no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
+    notes.emplace_back("no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
     return result;
   }
   const auto root = load_yaml(file);

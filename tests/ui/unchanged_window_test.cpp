@@ -19,13 +19,15 @@ class UnchangedWindow : public DrawingTest {
   static constexpr int kWidth = 1280, kHeight = 720;
 
   UnchangedWindow() {
-    state_.settings = inspection_.settings;
-    adopt(state_, inspection_.recording);
+    const auto inspection = std::make_shared<const Inspection>(made_inspection());
+    state_.settings = inspection->settings;
+    adopt(state_, inspection->recording);
+    state_.inspection = inspection;
     for (int i = 0; i < 3; ++i) draw();  // sizes settle
   }
   void draw() {
     context_.bind();
-    draw_workbench({state_, &inspection_, idle_}, {kWidth, kHeight}, gui_, views_);
+    draw_workbench({state_, idle_, no_survey_}, {kWidth, kHeight}, gui_, views_);
   }
   bool redrawn(const Rectangle& place) const {
     const cv::Point middle(static_cast<int>(place.x + place.width / 2),
@@ -39,8 +41,8 @@ class UnchangedWindow : public DrawingTest {
   Views views_;
   WorkbenchState state_;
   WorkerStatus idle_;
-  Inspection inspection_ = made_inspection();
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1);
+  SurveyStatus no_survey_;
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
 };
 
 TEST_F(UnchangedWindow, IsNotDrawnAgain) {
@@ -56,7 +58,7 @@ TEST_F(UnchangedWindow, StepDrawsTheViewsButNotTheSettingsNorTheSceneAnew) {
     apply(state_, GoToFrame{frame});
     draw();
     EXPECT_TRUE(redrawn(layout_.picture));
-    EXPECT_TRUE(redrawn(layout_.scene));
+    EXPECT_TRUE(redrawn(layout_.side));
     EXPECT_FALSE(redrawn(layout_.settings));
     const cv::Mat kept = context_.read_bgr();
     views_.window = WindowPicture();  // all of it is drawn at once now
@@ -70,7 +72,7 @@ TEST_F(UnchangedWindow, HiddenTracksAreGoneAtOnce) {
   state_.view.tracks = !state_.view.tracks;
   draw();
   EXPECT_TRUE(redrawn(layout_.picture));
-  EXPECT_FALSE(redrawn(layout_.scene));
+  EXPECT_FALSE(redrawn(layout_.side));
 }
 
 }  // namespace

@@ -35,6 +35,15 @@ struct PaletteEntry {
   bool typed_out = false;  ///< by us: the cursor is to go to its end
 };
 
+/// An enlarged part of a picture, and what it shows.
+struct Patch {
+  PictureTexture texture;
+  std::shared_ptr<const Recording> recording;
+  int frame = -1;
+  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+  bool empty = true;  ///< there is no picture
+};
+
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
@@ -43,7 +52,8 @@ struct Views {
   std::string picture_error;  ///< why there is none
   SceneView scene;
   PaletteEntry palette;
-  WindowPicture window;  ///< of which only the parts that change are drawn anew
+  std::array<Patch, 2> patches;  ///< of a track: in its first frame, in the current one
+  WindowPicture window;          ///< of which only the parts that change are drawn anew
 };
 
 /// Brings the picture of the current frame into `views`, where it is not there yet.
