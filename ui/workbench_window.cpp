@@ -71,7 +71,8 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
 }
 
 void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
-  const Inspection* inspection = input.inspection();
+  const auto other = flipped_result(input.state);
+  const Inspection* inspection = other ? other->inspection.get() : input.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
   update_picture(input.state, views);
   draw_image_view(*ImGui::GetBackgroundDrawList(),
@@ -81,6 +82,8 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
                   input.state.recording->pictures ? &views.picture : nullptr,
                   {},
                   image_options(input.state, inspection));
+  if (other)
+    draw_flip_label(*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}, *other);
 }
 
 /// One view that fills the framebuffer; between `begin_frame` and `end_frame`.

@@ -6,6 +6,7 @@
 #include "ui/views/image_view.h"
 #include "ui/views/scene_view.h"
 #include "ui/views/track_highlight.h"
+#include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
 
@@ -17,6 +18,11 @@ namespace gpo {
 ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection);
 SceneViewOptions scene_options(const WorkbenchState& state);
 
+/// The state with another's result in place of the current one. While it is computed there is none.
+WorkbenchState showing(const WorkbenchState& state, const Compared& other);
+/// In the upper right corner of the picture: whose result is seen in place of the current one.
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other);
+
 /// What is picked and pointed at, by columns of the inspection's tracks. Nothing without one.
 Highlight highlight_of(const WorkbenchState& state);
 
@@ -24,8 +30,4 @@ Highlight highlight_of(const WorkbenchState& state);
 bool room_for_legend(const Rectangle& place, float scale);
 
 ScreenRect screen_rect(const Rectangle& place);
-
-/// For the views, while nothing has been computed: a recording with an empty window.
-Inspection nothing_inspected(std::shared_ptr<const Recording> recording);
-
 }  // namespace gpo

@@ -63,7 +63,12 @@ Action export_of(std::string what, std::string title, std::string (*text)(const 
 std::string json_text(const Inspection& inspection) { return to_json(inspection).dump(2) + "\n"; }
 
 void add_open(std::vector<Action>& table) {
-  Action open{"open", "Open", "File", {}, "Opens a recording (a folder or a file), or a session"};
+  Action open{"open",
+              "Open",
+              "File",
+              {},
+              "Opens a recording (a folder or a file), a session, or "
+              "a results.csv of `evaluate`"};
   open.arguments = "PATH";
   open.needs_recording = false;
   open.run = [](State& state, const Arguments& arguments) {
