@@ -70,28 +70,6 @@ void choose_by_heading(const PanelInput& input,
                   : "Click: makes it the current method");
 }
 
-CompareOptions options_of(const WorkbenchState& state) {
-  CompareOptions options;
-  options.zoom = state.compare_zoom;
-  options.cube = state.view.cube;
-  options.cube_side = state.cube_side;
-  options.truth = state.view.truth;
-  options.residuals = state.view.residuals;
-  options.top_line = false;
-  return options;
-}
-
-std::vector<CompareColumn> columns_of(const std::vector<Compared>& results) {
-  std::vector<CompareColumn> columns;
-  for (const Compared& one : results)
-    columns.push_back({one.configuration,
-                       one.inspection,
-                       one.inspection      ? ""
-                       : one.error.empty() ? "computing"
-                                           : one.error});
-  return columns;
-}
-
 /// Below the chips: what is seen. Returns what is left for the columns.
 ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawList& list) {
   const float s = input.scale;
@@ -126,14 +104,14 @@ void draw_columns(const PanelInput& input,
   constexpr double kLeastRow = 290;  // at scale 1 [px]
   const WorkbenchState& state = input.state;
   const std::vector<Compared> results = compared_results(state);
-  const std::vector<CompareColumn> columns = columns_of(results);
+  const std::vector<CompareColumn> columns = compare_columns(results);
   const int count = static_cast<int>(columns.size());
   const double least = (count + 3) / 4 * kLeastRow * input.scale;
   const bool scrolls = least > visible.size.y();
   const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves as one scrolls
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
-  const CompareOptions options = options_of(state);
+  const CompareOptions options = compare_options(state);
   const bool shown = state.recording->pictures && views.picture_error.empty();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_compare_view(list,

@@ -34,6 +34,28 @@ SceneViewOptions scene_options(const WorkbenchState& state) {
   return options;
 }
 
+CompareOptions compare_options(const WorkbenchState& state) {
+  CompareOptions options;
+  options.zoom = state.compare_zoom;
+  options.cube = state.view.cube;
+  options.cube_side = state.cube_side;
+  options.truth = state.view.truth;
+  options.residuals = state.view.residuals;
+  options.top_line = false;
+  return options;
+}
+
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
+  std::vector<CompareColumn> columns;
+  for (const Compared& one : results)
+    columns.push_back({one.configuration,
+                       one.inspection,
+                       one.inspection      ? ""
+                       : one.error.empty() ? "computing"
+                                           : one.error});
+  return columns;
+}
+
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   WorkbenchState shown = state;
   shown.inspection = other.inspection;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/views/compare_view.h"
 #include "ui/views/image_view.h"
 #include "ui/views/scene_view.h"
 #include "ui/views/track_highlight.h"
@@ -10,13 +11,17 @@
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
 
-#include <memory>
+#include <vector>
 
 namespace gpo {
 
 /// What the state asks the views to show. `inspection` may be null.
 ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection);
 SceneViewOptions scene_options(const WorkbenchState& state);
+
+/// What the state asks the comparison to show, without the line above it; and its columns.
+CompareOptions compare_options(const WorkbenchState& state);
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results);
 
 /// The state with another's result in place of the current one. While it is computed there is none.
 WorkbenchState showing(const WorkbenchState& state, const Compared& other);
