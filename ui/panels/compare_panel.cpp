@@ -101,12 +101,13 @@ void draw_columns(const PanelInput& input,
                   const ScreenRect& visible,
                   Views& views,
                   Commands& commands) {
-  constexpr double kLeastRow = 290;  // at scale 1 [px]
+  constexpr double kLeastHeight = 190, kLeastRow = 290;  // of one row, of each of many [px]
   const WorkbenchState& state = input.state;
   const std::vector<Compared> results = compared_results(state);
   const std::vector<CompareColumn> columns = compare_columns(results);
   const int count = static_cast<int>(columns.size());
-  const double least = (count + 3) / 4 * kLeastRow * input.scale;
+  const int rows = (count + 3) / 4;
+  const double least = input.scale * (rows > 1 ? rows * kLeastRow : kLeastHeight);
   const bool scrolls = least > visible.size.y();
   const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves as one scrolls
   ScreenRect rect{{origin.x, origin.y}, visible.size};

@@ -39,8 +39,10 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
 /// What the curves are of, and how far they are: to the right of the names, or below.
 std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
   if (facts.of > facts.done) return fmt::format("computing {}/{}", facts.done, facts.of);
-  if (state.experiment) return state.experiment_name;
-  return fmt::format("windows from frame {}", state.settings.start);
+  const bool bound = facts.figure.charts.size() == 3;  // with truth
+  const char* dotted = bound ? " \u00b7 dotted: the least that the PNE can be" : "";
+  if (state.experiment) return state.experiment_name + dotted;
+  return fmt::format("windows from frame {}{}", state.settings.start, dotted);
 }
 
 /// The names in as many lines as they take. Returns where the charts begin [screen px].

@@ -34,7 +34,9 @@ void header(const std::vector<ComparedRow>& rows) {
   ImGui::TableSetupColumn("method", ImGuiTableColumnFlags_WidthFixed, widest_name(rows));
   ImGui::TableSetupColumn("status");
   for (const ComparedColumn& column : compared_columns()) ImGui::TableSetupColumn(column.title);
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  // Not a row of headers: of those ImGui does not count the text when it chooses widths.
+  ImGui::TableNextRow();
+  ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(palette::kRaised));
   header_cell("Method", "Click a row: makes it the current method");
   header_cell("Status", "Whether it solved the window, and how fit the window is by its result");
   for (const ComparedColumn& column : compared_columns()) header_cell(column.title, column.meaning);

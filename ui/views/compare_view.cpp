@@ -216,12 +216,15 @@ bool too_wide(const ComparedError& error, double width) {
 }
 
 /// In a third of the caption: value and name, side by side or `stacked`; below the difference.
-void draw_error(ImDrawList& list, const Vector2d& at, bool stacked, const ComparedError& error) {
+void draw_error(
+    ImDrawList& list, const Vector2d& at, double width, bool stacked, const ComparedError& error) {
   const double s = overlay_scale();
   const std::string value = error.value ? error.text(*error.value) : "–";
   const double right = stacked ? 0 : width_of(Font::small, error.name) + 6 * s;
   write(list, Font::small, at + Vector2d(0, stacked ? 0 : 8 * s), error.name, palette::kTextDim);
-  write(list, Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
+  const bool tight = right + width_of(Font::bold, value) > width - 4 * s;
+  write(
+      list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
   if (!error.value || !error.first) return;
   const std::string difference = difference_text(*error.value, *error.first, error.text);
   const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
@@ -251,7 +254,7 @@ void draw_caption(ImDrawList& list,
   const bool stacked =
       std::ranges::any_of(errors, [&](const auto& one) { return too_wide(one, third); });
   for (int i = 0; i < 3; ++i)
-    draw_error(list, rect.min + Vector2d(i * third, 0), stacked, errors[i]);
+    draw_error(list, rect.min + Vector2d(i * third, 0), third, stacked, errors[i]);
   write(list,
         Font::small,
         rect.min + Vector2d(0, 50 * s),
