@@ -64,7 +64,7 @@ struct Session {
   /// heeded: what begins to play now has not slept.
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
-    if (due || settled) {
+    if ((due || settled) && !host.writing()) {
       window.wait(std::max(0.001, due.value_or(kIdle_s)));
     } else {
       window.poll();
@@ -77,7 +77,7 @@ struct Session {
 
   /// One command at a time, each when what the last one asked for is computed.
   void go_on_with_script() {
-    if (script.empty() || host.link.busy()) return;
+    if (script.empty() || host.busy()) return;
     run_action(host.state, script.front().text);
     script.pop_front();
     glfwPostEmptyEvent();

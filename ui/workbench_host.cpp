@@ -34,8 +34,19 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       survey_(changed),
       worker_(std::move(open), changed) {}
 
+PanelInput WorkbenchHost::input() const {
+  const WorkerStatus* writing = movie_ ? &movie_status_ : nullptr;
+  return {state, link.worker, link.survey, timings, gui_.scale(), writing};
+}
+
 void WorkbenchHost::synchronize() {
+  if ((movie_ || state.wishes.movie) && std::exchange(state.wishes.cancel, false)) {
+    movie_.reset();
+    state.wishes.movie.reset();
+    say(state, "the movie was canceled; nothing of it was kept");
+  }
   gpo::synchronize(state, link, worker_, survey_, example_);
+  if (writing()) write_movie();
   for (const Screenshot& screenshot : std::exchange(state.wishes.screenshots, {})) save(screenshot);
 }
 
@@ -43,7 +54,7 @@ void WorkbenchHost::settle() {
   do {
     synchronize();
     if (link.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  } while (link.busy());
+  } while (busy());
   synchronize();
 }
 
@@ -53,6 +64,24 @@ Commands WorkbenchHost::draw(double delta_seconds) {
 
 cv::Mat WorkbenchHost::picture(const std::string& view, std::optional<cv::Size> wanted) {
   return draw_view(view, wanted, input(), size, gui_, views_);
+}
+
+/// Begins, when everything that it shows is computed, or goes on.
+void WorkbenchHost::write_movie() {
+  try {
+    if (!movie_) movie_.emplace(*std::exchange(state.wishes.movie, {}), state);
+    movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
+      const PanelInput input{shown, link.worker, link.survey, timings, gui_.scale()};
+      return draw_view(view, pixels, input, size, gui_, views_);
+    });
+    movie_status_ = {true, "movie", movie_->done(), movie_->of(), ""};
+    if (movie_->finished()) say(state, "saved " + movie_->file().string());
+    if (movie_->finished()) movie_.reset();
+  } catch (const InputError& error) {
+    movie_.reset();
+    state.wishes.movie.reset();
+    say(state, error.what(), Severity::error);
+  }
 }
 
 void WorkbenchHost::save(const Screenshot& screenshot) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "ui/context/gui.h"
+#include "ui/movie.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/worker_link.h"
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include <opencv2/core/types.hpp>
 
@@ -30,8 +32,12 @@ class WorkbenchHost {
   cv::Size size = cv::Size(1280, 720);  ///< of the window [px]
 
   /// Exchanges with worker and survey, and fulfills the wishes of the state but `quit`. Returns at
-  /// once.
+  /// once; a movie that is written takes one of its frames a call.
   void synchronize();
+  /// Whether something is computed or written.
+  bool busy() const { return link.busy() || movie_ || state.wishes.movie; }
+  /// Whether the next call of `synchronize` writes a frame of a movie.
+  bool writing() const { return movie_ || (state.wishes.movie && !link.busy()); }
   /// Until nothing is computed any more.
   void settle();
   /// One frame of the window into the framebuffer that is bound. Returns what the user did.
@@ -41,11 +47,14 @@ class WorkbenchHost {
   cv::Mat picture(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:
-  PanelInput input() const { return {state, link.worker, link.survey, timings, gui_.scale()}; }
+  PanelInput input() const;
   void save(const Screenshot& screenshot);
+  void write_movie();
 
   Gui& gui_;
   std::filesystem::path example_;
+  std::optional<Movie> movie_;  ///< is being written
+  WorkerStatus movie_status_;   ///< how far it is
   Views views_;
   Survey survey_;
   Worker worker_;

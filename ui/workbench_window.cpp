@@ -81,7 +81,8 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
 }
 
 void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
-  const Inspection* inspection = input.inspection();
+  const auto other = flipped_result(input.state);
+  const Inspection* inspection = other ? other->inspection.get() : input.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
   update_picture(input.state, views);
   draw_image_view(*ImGui::GetBackgroundDrawList(),
@@ -91,6 +92,23 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
                   input.state.recording->pictures ? &views.picture : nullptr,
                   {},
                   image_options(input.state, inspection));
+  if (other)
+    draw_flip_label(*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}, *other);
+}
+
+/// The columns alone, without what one clicks.
+void draw_compare(const PanelInput& input, cv::Size size, Views& views) {
+  const WorkbenchState& state = input.state;
+  update_picture(state, views);
+  CompareOptions options = compare_options(state);
+  options.top_line = true;
+  draw_compare_view(*ImGui::GetBackgroundDrawList(),
+                    {{0, 0}, {size.width, size.height}},
+                    compare_columns(compared_results(state)),
+                    *state.recording,
+                    state.frame,
+                    state.recording->pictures ? &views.picture : nullptr,
+                    options);
 }
 
 /// One view that fills the framebuffer; between `begin_frame` and `end_frame`.
@@ -98,7 +116,7 @@ void draw_alone(const std::string& view, const PanelInput& input, cv::Size size,
   const Rectangle place{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
   Commands ignored;
   if (view == "picture") return draw_picture(input, size, views);
-  if (view == "compare") return compare_panel(input, place, views, ignored);
+  if (view == "compare") return draw_compare(input, size, views);
   WorkbenchState state = input.state;
   const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
   if (is_choice<SidePane>(view)) {

@@ -123,6 +123,14 @@ std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   return sum;
 }
 
+/// Without what only says what is so by default.
+Configuration without_repeated_defaults(Configuration configuration) {
+  const Settings by_default{.method = configuration.method};
+  if (configuration.ransac == uses_ransac(by_default)) configuration.ransac.reset();
+  if (configuration.inliers == inliers_used(by_default)) configuration.inliers.reset();
+  return configuration;
+}
+
 }  // namespace
 
 Configuration parse_configuration(const std::string& text) {
@@ -134,10 +142,7 @@ Configuration parse_configuration(const std::string& text) {
   }
   Configuration configuration{.method = parts.front()};
   for (std::size_t i = 1; i < parts.size(); ++i) set(configuration, parts[i], text);
-  const Settings by_default{.method = configuration.method};
-  if (configuration.ransac == uses_ransac(by_default)) configuration.ransac.reset();
-  if (configuration.inliers == inliers_used(by_default)) configuration.inliers.reset();
-  return configuration;
+  return without_repeated_defaults(configuration);
 }
 
 std::vector<Configuration> parse_configurations(const std::string& text) {
@@ -176,6 +181,11 @@ std::uint32_t color_of(const Configuration& configuration) {
   std::uint32_t rgb = find_method(configuration.method).rgb;
   for (const Variation& variation : variations(configuration)) rgb = mixed(rgb, variation.rgb);
   return rgb;
+}
+
+Configuration configuration_of(const Settings& settings) {
+  return without_repeated_defaults(
+      {settings.method, settings.ransac, settings.rotations, settings.tracking, settings.inliers});
 }
 
 Settings apply(const Configuration& configuration, Settings settings) {

@@ -39,6 +39,9 @@ std::string title_of(const Configuration& configuration);
 /// The method's color, or for an ablation one of its own; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
+/// What of the settings a configuration says; as `parse_configuration` reads it back.
+Configuration configuration_of(const Settings& settings);
+
 /// The settings with method, RANSAC, rotations, tracking and inliers as configured.
 Settings apply(const Configuration& configuration, Settings settings);
 

@@ -63,6 +63,7 @@ constexpr std::array kAxes{
     Axis{"pne_deg", "Plane normal error", "PNE [deg]", 1, true},
     Axis{"pde_m", "Plane distance error", "PDE [mm]", 1e3, false},
 };
+constexpr Axis kRmsAxis{"rms_px", "Reprojection error", "RMS [px]", 1, false};
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
 
@@ -156,6 +157,11 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
       {}};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
   return figure;
+}
+
+Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan) {
+  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
+  return {plan.name, plan.title, {chart_of(cells, plan, kRmsAxis)}};
 }
 
 std::vector<Figure> figures(std::span<const Row> rows,

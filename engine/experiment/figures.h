@@ -28,6 +28,9 @@ std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configura
 /// configuration. `rows` may have others.
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
+/// The same where no truth is known: the root mean square error in the picture over the length.
+Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);
+
 /// All of an experiment's figures.
 std::vector<Figure> figures(std::span<const Row> rows,
                             const std::vector<Configuration>& configurations);

@@ -10,6 +10,7 @@
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
 #include "ui/views/track_highlight.h"
+#include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <cmath>
@@ -90,25 +91,7 @@ void move_cube(const Pointer& pointer, Commands& commands) {
   if (ray) push(commands, MoveCube{ray});
 }
 
-}  // namespace
-
-void update_picture(const WorkbenchState& state, Views& views) {
-  if (views.recording == state.recording && views.frame == state.frame) return;
-  views.recording = state.recording;
-  views.frame = state.frame;
-  views.picture_error.clear();
-  if (!state.recording->pictures) return;
-  try {
-    views.picture.upload(state.recording->pictures->bgr(state.frame));
-  } catch (const InputError& error) {
-    views.picture_error = error.what();
-  }
-}
-
-void image_panel(const PanelInput& input,
-                 const Rectangle& place,
-                 Views& views,
-                 Commands& commands) {
+void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
   ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("picture", place, {0, 0});
   const WorkbenchState& state = input.state;
@@ -151,6 +134,30 @@ void image_panel(const PanelInput& input,
   if (!views.picture_error.empty()) {
     draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
   }
+}
+
+}  // namespace
+
+void update_picture(const WorkbenchState& state, Views& views) {
+  if (views.recording == state.recording && views.frame == state.frame) return;
+  views.recording = state.recording;
+  views.frame = state.frame;
+  views.picture_error.clear();
+  if (!state.recording->pictures) return;
+  try {
+    views.picture.upload(state.recording->pictures->bgr(state.frame));
+  } catch (const InputError& error) {
+    views.picture_error = error.what();
+  }
+}
+
+void image_panel(const PanelInput& own, const Rectangle& place, Views& views, Commands& commands) {
+  const auto other = flipped_result(own.state);
+  if (!other) return draw_panel(own, place, views, commands);
+  const WorkbenchState state = showing(own.state, *other);
+  draw_panel({state, own.worker, own.survey, own.timings, own.scale}, place, views, commands);
+  const PanelScope panel("picture", place, {0, 0});
+  draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
 }
 
 }  // namespace gpo

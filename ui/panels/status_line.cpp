@@ -54,8 +54,8 @@ void status_line(const PanelInput& input, const Rectangle& place) {
     const bool error = !input.worker.error.empty();
     const std::string& message = error ? input.worker.error : input.state.message;
     const std::uint32_t color = error ? palette::kBad : palette::kTextDim;
-    if (input.worker.busy) {
-      draw_progress(input.worker, s);
+    if (input.worker.busy || input.writing != nullptr) {
+      draw_progress(input.writing != nullptr ? *input.writing : input.worker, s);
       const float left = 450 * s;
       ImGui::SameLine(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));
       clipped_text(message, right - left, color);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare_view.h"
 
-#include "engine/experiment/configuration.h"
 #include "ui/context/gui.h"
 #include "ui/views/image_view.h"
 #include "ui/views/numbers.h"
@@ -23,30 +22,26 @@ using Eigen::Vector2d;
 
 constexpr int kMostColumns = 4;
 // Sizes at text scale 1 [px].
-constexpr double kColumn = 480, kGap = 12, kTop = 38, kHeading = 54, kCaption = 58;
+constexpr double kColumn = 480, kGap = 12, kTop = 38, kHeading = 54, kCaption = 70;
 
 struct Grid {
   int columns, rows;
 };
 
-Grid grid(Comparison inspections) {
-  const int count = std::max(1, static_cast<int>(inspections.size()));
+Grid grid(int wanted) {
+  const int count = std::max(1, wanted);
   const int rows = (count + kMostColumns - 1) / kMostColumns;
   return {(count + rows - 1) / rows, rows};
 }
 
-/// Heading, picture and caption of one column.
-struct Column {
-  ScreenRect heading, picture, caption;
-};
-
-Column column_at(const ScreenRect& rect, const Grid& grid, int index, double scale) {
-  const Vector2d free = rect.size - scale * Vector2d(kGap, kTop);
+ColumnPlace column_at(
+    const ScreenRect& rect, const Grid& grid, int index, double top, double scale) {
+  const Vector2d free = rect.size - Vector2d(scale * kGap, top);
   const double width = std::floor(free.x() / grid.columns),
                height = std::floor(free.y() / grid.rows);
   const int x = index % grid.columns, y = index / grid.columns;
-  const Vector2d at = rect.min + Vector2d(std::round(scale * kGap) + width * x,
-                                          std::round(scale * kTop) + height * y);
+  const Vector2d at =
+      rect.min + Vector2d(std::round(scale * kGap) + width * x, std::round(top) + height * y);
   const double inner = width - std::round(scale * kGap);
   const double heading = std::round(scale * kHeading), caption = std::round(scale * kCaption);
   const double picture = std::max(1.0, height - heading - caption);
@@ -55,26 +50,30 @@ Column column_at(const ScreenRect& rect, const Grid& grid, int index, double sca
           {at + Vector2d(0, heading + picture), {inner, caption}}};
 }
 
+using Columns = std::span<const CompareColumn>;
+
 /// One size for all, so that they compare: as many squares of the board, or distances of the plane,
 /// as the first one's [unit of the estimate].
-double common_cube_side(Comparison inspections, const Inspection& inspection) {
-  const auto first =
-      std::ranges::find_if(inspections, [](const auto& one) { return one->cube.has_value(); });
-  if (!inspection.cube || first == inspections.end()) return 0;
-  const CubeAnchor& model = *(*first)->cube;
-  if (model.on_board != inspection.cube->on_board) return cube_side(inspection, 0);
-  return cube_side(**first, 0) / model.unit * inspection.cube->unit;
+double common_cube_side(Columns columns, const Inspection& inspection, double chosen) {
+  const auto first = std::ranges::find_if(
+      columns, [](const auto& one) { return one.inspection && one.inspection->cube; });
+  if (!inspection.cube || first == columns.end()) return 0;
+  const CubeAnchor& model = *first->inspection->cube;
+  if (model.on_board != inspection.cube->on_board) return cube_side(inspection, chosen);
+  return cube_side(*first->inspection, chosen) / model.unit * inspection.cube->unit;
 }
 
 /// What both kinds of cubes cover [raw px].
-Eigen::AlignedBox2d cubes_box(Comparison inspections, int frame) {
+Eigen::AlignedBox2d cubes_box(Columns columns, int frame, const CompareOptions& options) {
   Eigen::AlignedBox2d box;
-  for (const auto& inspection : inspections) {
-    const int in_window = frame - inspection->window->start;
-    if (in_window < 0 || in_window >= inspection->window->frame_count()) continue;
-    const double side = common_cube_side(inspections, *inspection);
+  for (const CompareColumn& column : columns) {
+    if (!column.inspection) continue;
+    const Inspection& inspection = *column.inspection;
+    const int in_window = frame - inspection.window->start;
+    if (in_window < 0 || in_window >= inspection.window->frame_count()) continue;
+    const double side = common_cube_side(columns, inspection, options.cube_side);
     for (const auto& cube :
-         {estimated_cube(*inspection, in_window, side), true_cube(*inspection, in_window, side)})
+         {estimated_cube(inspection, in_window, side), true_cube(inspection, in_window, side)})
       for (const CubeEdge& edge : cube.value_or(CubePicture{}).edges)
         for (const Vector2d& pixel : edge.raw_px) box.extend(pixel);
   }
@@ -117,17 +116,33 @@ double width_of(Font which, const std::string& text) {
   return f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
 }
 
-Configuration configuration_of(const Settings& settings) {
-  return {settings.method, settings.ransac, settings.rotations};
+/// The first of the texts that is not wider; else the last one, cut.
+std::string fitting(Font which, std::initializer_list<std::string> texts, double width) {
+  for (const std::string& text : texts)
+    if (width_of(which, text) <= width) return text;
+  std::string text = *std::prev(texts.end());
+  const auto cut = [&] {
+    do text.pop_back();
+    while (!text.empty() && (text.back() & 0xC0) == 0x80);
+  };
+  while (!text.empty() && width_of(which, text + "\u2026") > width) cut();
+  return text + "\u2026";
 }
 
-std::string conditions(const Inspection& inspection) {
+std::string conditions(const Inspection& inspection, double width) {
   const Window& window = *inspection.window;
-  const std::string tracks =
-      uses_ransac(inspection.settings)
-          ? fmt::format("RANSAC on · {} of {} tracks", window.inlier_count(0), window.track_count())
-          : fmt::format("RANSAC off · all {} tracks", window.track_count());
-  return fmt::format("rotations: {} · {}", to_string(inspection.rotations_used), tracks);
+  const bool ransac = uses_ransac(inspection.settings);
+  const std::string rotations = to_string(inspection.rotations_used);
+  const int inliers = window.inlier_count(0), all = window.track_count();
+  const std::string tracks = ransac ? fmt::format("RANSAC on · {} of {} tracks", inliers, all)
+                                    : fmt::format("RANSAC off · all {} tracks", all);
+  const std::string few =
+      ransac ? fmt::format("{}/{} tracks", inliers, all) : fmt::format("all {} tracks", all);
+  return fitting(Font::small,
+                 {fmt::format("rotations: {} · {}", rotations, tracks),
+                  fmt::format("{} · {}", rotations, tracks),
+                  fmt::format("{} · {}", rotations, few)},
+                 width);
 }
 
 /// Sign and word of the verdict, ending at the rectangle's right edge. Returns its width [px].
@@ -144,23 +159,27 @@ double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& 
   return width + 10 * s;
 }
 
-void draw_heading(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
+void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column) {
   const double s = overlay_scale();
-  const Configuration configuration = configuration_of(inspection.settings);
   const Vector2d bar = rect.min + Vector2d(0, 8 * s);
   list.AddRectFilled(to_imgui(bar),
                      to_imgui(bar + s * Vector2d(6, 40)),
-                     imgui_color(color_of(configuration)),
+                     imgui_color(color_of(column.configuration)),
                      static_cast<float>(2 * s));
-  const std::string title = title_of(configuration);
-  const double room = rect.size.x() - 16 * s - draw_verdict(list, rect, inspection);
+  const double wide = rect.size.x() - 16 * s;
+  const std::string title = title_of(column.configuration);
+  const double room = wide - (column.inspection ? draw_verdict(list, rect, *column.inspection) : 0);
   const Font large = width_of(Font::heading, title) <= room ? Font::heading : Font::bold;
-  write(list, large, bar + s * Vector2d(16, large == Font::heading ? 0 : 2), title);
-  write(list, Font::small, bar + s * Vector2d(16, 24), conditions(inspection), palette::kTextDim);
-}
-
-std::string known(const std::optional<double>& value, std::string (*text)(double)) {
-  return value ? text(*value) : "–";
+  write(list,
+        large,
+        bar + s * Vector2d(16, large == Font::heading ? 0 : 2),
+        fitting(large, {title, key_of(column.configuration)}, room));
+  if (column.inspection)
+    write(list,
+          Font::small,
+          bar + s * Vector2d(16, 24),
+          conditions(*column.inspection, wide),
+          palette::kTextDim);
 }
 
 std::string why_no_metrics(const Inspection& inspection) {
@@ -171,92 +190,230 @@ std::string why_no_metrics(const Inspection& inspection) {
 }
 
 /// What stands below the errors.
-std::string remarks(const Inspection& inspection, const Evaluation& e) {
-  std::string text = fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
+std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
+  std::string least = fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
+  if (!e.pne_deg || !e.ate_m) least += " · " + why_no_metrics(inspection);
+  std::string more = least;
   if (const auto& uncertainty = inspection.initialization->uncertainty)
-    text += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
-  if (e.pne_bound_deg) text += fmt::format(" · PNE bound {}", angle_text(*e.pne_bound_deg));
-  if (!e.pne_deg || !e.ate_m) text += " · " + why_no_metrics(inspection);
-  return text;
+    more += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
+  std::string most = more;
+  if (e.pne_bound_deg) most += fmt::format(" · PNE bound {}", angle_text(*e.pne_bound_deg));
+  return fitting(Font::small, {most, more, least}, width);
 }
 
-void draw_caption(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
+/// An error, and that of the first column.
+struct ComparedError {
+  const char* name;
+  std::optional<double> value, first;
+  std::string (*text)(double);
+};
+
+/// Whether the value does not fit beside its name.
+bool too_wide(const ComparedError& error, double width) {
+  const std::string value = error.value ? error.text(*error.value) : "–";
+  const double beside = width_of(Font::small, error.name) + 6 * overlay_scale();
+  return beside + width_of(Font::bold, value) > width - 4 * overlay_scale();
+}
+
+/// In a third of the caption: value and name, side by side or `stacked`; below the difference.
+void draw_error(
+    ImDrawList& list, const Vector2d& at, double width, bool stacked, const ComparedError& error) {
   const double s = overlay_scale();
-  const Vector2d first = rect.min + Vector2d(0, 8 * s), second = rect.min + Vector2d(0, 31 * s);
+  const std::string value = error.value ? error.text(*error.value) : "–";
+  const double right = stacked ? 0 : width_of(Font::small, error.name) + 6 * s;
+  write(list, Font::small, at + Vector2d(0, stacked ? 0 : 8 * s), error.name, palette::kTextDim);
+  const bool tight = right + width_of(Font::bold, value) > width - 4 * s;
+  write(
+      list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
+  if (!error.value || !error.first) return;
+  const std::string difference = difference_text(*error.value, *error.first, error.text);
+  const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
+  write(list,
+        Font::small,
+        at + Vector2d(right, (stacked ? 34 : 28) * s),
+        difference,
+        difference == "\u00b10" ? palette::kTextDim : rgb);
+}
+
+/// `first`: of the first column, to which the others are compared; null: this is it.
+void draw_caption(ImDrawList& list,
+                  const ScreenRect& rect,
+                  const Inspection& inspection,
+                  const Inspection* first) {
+  const double s = overlay_scale();
   if (!inspection.initialization->ok) {
-    write(list, Font::bold, first, "not initialized", palette::kWarning);
+    write(list, Font::bold, rect.min + Vector2d(0, 8 * s), "not initialized", palette::kWarning);
     return;
   }
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
-  Vector2d at = first;
-  for (const auto& [name, value] : {std::pair("PNE", known(e.pne_deg, angle_text)),
-                                    std::pair("ATE", known(e.ate_m, length_text)),
-                                    std::pair("PDE", known(e.pde_m, length_text))}) {
-    write(list, Font::regular, at, name, palette::kTextDim);
-    at.x() += width_of(Font::regular, name) + 6 * s;
-    write(list, Font::bold, at, value);
-    at.x() += width_of(Font::bold, value) + 22 * s;
-  }
-  write(list, Font::small, second, remarks(inspection, e), palette::kTextDim);
+  const Evaluation f = first ? first->evaluation.value_or(Evaluation{}) : Evaluation{};
+  const double third = std::min(rect.size.x() / 3, 150 * s);
+  const ComparedError errors[] = {{"PNE", e.pne_deg, f.pne_deg, angle_text},
+                                  {"ATE", e.ate_m, f.ate_m, length_text},
+                                  {"PDE", e.pde_m, f.pde_m, length_text}};
+  const bool stacked =
+      std::ranges::any_of(errors, [&](const auto& one) { return too_wide(one, third); });
+  for (int i = 0; i < 3; ++i)
+    draw_error(list, rect.min + Vector2d(i * third, 0), third, stacked, errors[i]);
+  write(list,
+        Font::small,
+        rect.min + Vector2d(0, 50 * s),
+        remarks(inspection, e, rect.size.x()),
+        palette::kTextDim);
 }
 
-void draw_top(ImDrawList& list, const ScreenRect& rect, const Inspection& one, int frame) {
+void draw_top(ImDrawList& list,
+              const ScreenRect& rect,
+              const Recording& recording,
+              const Inspection* one,
+              int frame) {
   const double s = overlay_scale();
-  const int first = one.window->start, last = first + one.window->frame_count() - 1;
-  std::string text =
-      fmt::format("{} · frame {} of the window {}–{}", one.recording->name, frame, first, last);
-  const bool inside = frame >= first && frame <= last;
-  if (!inside)
-    text = fmt::format(
-        "{} · frame {}, outside of the window {}–{}", one.recording->name, frame, first, last);
+  std::string text = fmt::format("{} · frame {}", recording.name, frame);
+  bool inside = false;
+  if (one) {
+    const int first = one->window->start, last = first + one->window->frame_count() - 1;
+    inside = frame >= first && frame <= last;
+    text += fmt::format("{} the window {}–{}", inside ? " of" : ", outside of", first, last);
+  }
   const Vector2d at = rect.min + s * Vector2d(kGap, 11);
   write(list, Font::regular, at, text);
   if (!inside) return;
-  const std::pair<std::uint32_t, const char*> signs[] = {
-      {palette::kCubeBase, "cube on the estimated plane"}, {palette::kTruth, "true cube"}};
-  double x = at.x() + width_of(Font::regular, text) + 30 * s;
-  for (const auto& [rgb, meaning] : signs) {
-    draw_sign(list, Sign::square, to_imgui({x, at.y() + 8 * s}), rgb);
-    write(list, Font::small, {x + 13 * s, at.y() + s}, meaning, palette::kTextDim);
-    x += 38 * s + width_of(Font::small, meaning);
-    if (!one.truth) break;
-  }
+  draw_cube_legend(
+      list, at + Vector2d(width_of(Font::regular, text) + 30 * s, 0), one->truth != nullptr);
+}
+
+void draw_column(ImDrawList& list,
+                 const ColumnPlace& place,
+                 const CompareColumn& column,
+                 const Inspection* first,
+                 int frame,
+                 PictureTexture* picture,
+                 const PictureZoom& zoom,
+                 const ImageViewOptions& options) {
+  const Inspection& inspection = *column.inspection;
+  draw_heading(list, place.heading, column);
+  draw_image_view(list, place.picture, inspection, frame, picture, zoom, options);
+  draw_caption(list, place.caption, inspection, first);
+}
+
+/// What is still computed, or could not be: the picture alone, and why.
+void draw_missing(ImDrawList& list,
+                  const ColumnPlace& place,
+                  const CompareColumn& column,
+                  const Inspection& nothing,
+                  int frame,
+                  PictureTexture* picture,
+                  const PictureZoom& zoom) {
+  draw_heading(list, place.heading, column);
+  ImageViewOptions plain;
+  plain.legend = false;
+  draw_image_view(list, place.picture, nothing, frame, picture, zoom, plain);
+  const bool computing = column.missing == "computing";
+  draw_badge(list,
+             place.picture,
+             computing ? palette::kAccent : palette::kWarning,
+             computing ? "computing" : "not computed",
+             computing ? "" : column.missing);
+}
+
+std::vector<CompareColumn> columns_of(Comparison inspections) {
+  std::vector<CompareColumn> columns;
+  for (const auto& inspection : inspections)
+    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  return columns;
 }
 
 }  // namespace
+
+std::vector<ColumnPlace> compare_places(const ScreenRect& rect, int count, bool top_line) {
+  const double scale = overlay_scale();
+  const double top = scale * (top_line ? kTop : 0);
+  std::vector<ColumnPlace> places;
+  for (int i = 0; i < count; ++i) places.push_back(column_at(rect, grid(count), i, top, scale));
+  return places;
+}
+
+PictureZoom compare_zoom(std::span<const CompareColumn> columns,
+                         const Recording& recording,
+                         int frame,
+                         const Eigen::Vector2d& picture_size,
+                         const CompareOptions& options) {
+  if (options.zoom) return *options.zoom;
+  return zoom_on(cubes_box(columns, frame, options), recording.camera, picture_size);
+}
+
+void draw_compare_view(ImDrawList& list,
+                       const ScreenRect& rect,
+                       std::span<const CompareColumn> columns,
+                       const Recording& recording,
+                       int frame,
+                       PictureTexture* picture,
+                       const CompareOptions& options) {
+  list.AddRectFilled(
+      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kPanel));
+  if (columns.empty()) return;
+  const Inspection* first = columns.front().inspection.get();
+  if (options.top_line) draw_top(list, rect, recording, first, frame);
+  // Where there is no picture the tracks say what the cube stands on.
+  ImageViewOptions image{
+      .tracks = !recording.pictures, .tail_frames = 0, .residuals = options.residuals};
+  image.cube = options.cube;
+  image.truth = options.truth;
+  image.legend = false;
+  const auto places = compare_places(rect, static_cast<int>(columns.size()), options.top_line);
+  const PictureZoom zoom =
+      compare_zoom(columns, recording, frame, places.front().picture.size, options);
+  const Inspection nothing = nothing_inspected({std::shared_ptr<const Recording>(), &recording});
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!columns[i].inspection) {
+      draw_missing(list, places[i], columns[i], nothing, frame, picture, zoom);
+      continue;
+    }
+    image.cube_side = common_cube_side(columns, *columns[i].inspection, options.cube_side);
+    draw_column(list, places[i], columns[i], i > 0 ? first : nullptr, frame, picture, zoom, image);
+  }
+}
 
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        Comparison inspections,
                        int frame,
                        PictureTexture* picture) {
-  list.AddRectFilled(
-      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kPanel));
-  if (inspections.empty()) return;
-  draw_top(list, rect, *inspections.front(), frame);
-  const Grid cells = grid(inspections);
-  const Eigen::AlignedBox2d cubes = cubes_box(inspections, frame);
-  // Where there is no picture the tracks say what the cube stands on.
-  const bool no_pictures = !inspections.front()->recording->pictures;
-  ImageViewOptions options{.tracks = no_pictures, .tail_frames = 0, .legend = false};
-  for (std::size_t i = 0; i < inspections.size(); ++i) {
-    const Inspection& inspection = *inspections[i];
-    const Column column = column_at(rect, cells, static_cast<int>(i), overlay_scale());
-    const PictureZoom zoom = zoom_on(cubes, inspection.recording->camera, column.picture.size);
-    options.cube_side = common_cube_side(inspections, inspection);
-    draw_heading(list, column.heading, inspection);
-    draw_image_view(list, column.picture, inspection, frame, picture, zoom, options);
-    draw_caption(list, column.caption, inspection);
+  if (inspections.empty()) {
+    list.AddRectFilled(
+        to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kPanel));
+    return;
   }
+  draw_compare_view(
+      list, rect, columns_of(inspections), *inspections.front()->recording, frame, picture, {});
+}
+
+double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
+  const double s = overlay_scale();
+  const std::pair<std::uint32_t, const char*> signs[] = {
+      {palette::kCubeBase, "cube on the estimated plane"}, {palette::kTruth, "true cube"}};
+  double x = at.x();
+  for (const auto& [rgb, meaning] : signs) {
+    draw_sign(list, Sign::square, to_imgui({x, at.y() + 8 * s}), rgb);
+    write(list, Font::small, {x + 13 * s, at.y() + s}, meaning, palette::kTextDim);
+    x += 38 * s + width_of(Font::small, meaning);
+    if (!truth) break;
+  }
+  return x - at.x();
 }
 
 cv::Size default_compare_size(Comparison inspections) {
-  const Grid cells = grid(inspections);
-  double aspect = 0.75;
-  if (!inspections.empty()) {
-    const Camera& camera = inspections.front()->recording->camera;
-    aspect = std::clamp(static_cast<double>(camera.height) / camera.width, 0.4, 1.5);
-  }
+  const Recording unknown;
+  return default_compare_size(static_cast<int>(inspections.size()),
+                              inspections.empty() ? unknown : *inspections.front()->recording);
+}
+
+cv::Size default_compare_size(int columns, const Recording& recording) {
+  const Grid cells = grid(columns);
+  const Camera& camera = recording.camera;
+  const double aspect =
+      camera.width > 0 ? std::clamp(static_cast<double>(camera.height) / camera.width, 0.4, 1.5)
+                       : 0.75;
   return {
       static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
       static_cast<int>(cells.rows * (kHeading + std::round(kColumn * aspect) + kCaption) + kTop)};

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -250,6 +251,15 @@ void draw_image_view(ImDrawList& list,
   if (inside && !inspection.initialization->ok)
     draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
   list.PopClipRect();
+}
+
+Inspection nothing_inspected(std::shared_ptr<const Recording> recording) {
+  Inspection nothing;
+  nothing.recording = std::move(recording);
+  nothing.tracks = std::make_shared<const Tracks>();
+  nothing.window = std::make_shared<const Window>();
+  nothing.initialization = std::make_shared<const Initialization>();
+  return nothing;
 }
 
 }  // namespace gpo

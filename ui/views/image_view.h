@@ -5,6 +5,8 @@
 #include "engine/inspection/inspection.h"
 #include "ui/views/image_geometry.h"
 
+#include <memory>
+
 struct ImDrawList;
 
 namespace gpo {
@@ -36,5 +38,8 @@ void draw_image_view(ImDrawList& list,
 
 /// Side of the virtual cube: as chosen, or the default where `chosen` is 0 [unit of the estimate].
 double cube_side(const Inspection& inspection, double chosen);
+
+/// For the views, while nothing has been computed: a recording with an empty window.
+Inspection nothing_inspected(std::shared_ptr<const Recording> recording);
 
 }  // namespace gpo

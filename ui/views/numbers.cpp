@@ -26,6 +26,13 @@ std::string milliseconds_text(double milliseconds) {
   return number_text(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
 }
 
+std::string difference_text(double value, double reference, std::string (*text)(double)) {
+  const double difference = value - reference;
+  const std::string size = text(std::abs(difference));
+  if (size.find_first_of("123456789") == std::string::npos) return "\u00b10";
+  return (difference < 0 ? "\u2212" : "+") + size;
+}
+
 std::string uncertain_text(double value, double sigma) {
   constexpr int kMost = 6;
   const int behind =

@@ -15,6 +15,10 @@ std::string length_text(double meters);
 std::string angle_text(double degrees);
 std::string milliseconds_text(double milliseconds);
 
+/// "+0.12°", "-1.3 mm": from a reference to a value, both in the unit of `text`; "±0" where the
+/// difference does not show.
+std::string difference_text(double value, double reference, std::string (*text)(double));
+
 /// "0.912 ±0.004": a value with as many digits as two of its standard deviation say, at most
 /// six behind the point.
 std::string uncertain_text(double value, double sigma);

@@ -4,6 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "ui/workbench/actions.h"
+#include "ui/workbench/compared.h"
 #include "ui/workbench/session_file.h"
 
 #include <algorithm>
@@ -54,12 +55,14 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
 }
 
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
-  constexpr int kLengthStep = 5;
   std::vector<Settings> wanted;
   const bool curves = state.panes.drawer == Drawer::curves;
   const bool now = curves || state.panes.compare || state.panes.drawer == Drawer::table ||
                    state.panes.side == SidePane::normals;
-  if (!state.recording || !now) return wanted;
+  if (!state.recording) return wanted;
+  const std::optional<std::string> other = flipped(state);
+  if (!now && other) wanted.push_back(apply(parse_configuration(*other), state.settings));
+  if (!now) return wanted;
   const auto want_each = [&](int frames) {
     for (const std::string& key : state.compared) {
       Settings settings = apply(parse_configuration(key), state.settings);
@@ -69,11 +72,8 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   };
   want_each(state.settings.frames);
   // The longest first: its tracks serve the others.
-  for (int frames = (state.settings.frames - 1) / kLengthStep * kLengthStep;
-       curves && frames >= kLengthStep;
-       frames -= kLengthStep) {
-    want_each(frames);
-  }
+  for (const int frames : curve_lengths(state.settings.frames))
+    if (curves && frames < state.settings.frames) want_each(frames);
   return wanted;
 }
 
@@ -89,13 +89,15 @@ void apply(WorkbenchState& state, const Command& command) {
   const auto cube = [&](const SetCubeSide& c) { state.cube_side = std::clamp(c.side, 0.0, 2.0); };
   const auto move = [&](const MoveCube& c) { state.cube_ray = c.ray; };
   const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
+  const auto zoom_all = [&](const ZoomCompare& c) { state.compare_zoom = c.zoom; };
   const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
   const auto fit = [&](const FitScene&) { state.orbit.reset(); };
   const auto open = [&](const OpenPath& c) { state.wishes.open = c.path; };
   const auto hover = [&](const HoverOver& c) { state.hover = c.hover; };
   const auto select = [&](const SelectTracks& c) { state.selection = c.selection; };
-  std::visit(Overloaded{run, change, go, cube, move, zoom, orbit, fit, open, hover, select},
-             command);
+  std::visit(
+      Overloaded{run, change, go, cube, move, zoom, zoom_all, orbit, fit, open, hover, select},
+      command);
 }
 
 namespace {
@@ -142,6 +144,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.playing = false;
   state.play_seconds = 0;
   state.picture_zoom = {};
+  state.compare_zoom.reset();
   state.orbit.reset();
   const Settings fitting = fit_window(state.settings, state.frame_count());
   state.message.clear();

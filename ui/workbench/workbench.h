@@ -22,6 +22,8 @@
 
 namespace gpo {
 
+struct Row;
+
 /// What is drawn into picture and scene.
 struct ViewToggles {
   bool tracks = true;
@@ -57,6 +59,12 @@ struct Screenshot {
   std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
 };
 
+/// A movie of the window's frames on its way to the disk.
+struct MovieWish {
+  std::filesystem::path file;  ///< .mp4
+  double rate_hz = 0;          ///< frames a second; 0: the recording's own
+};
+
 /// A frame that the user wants to find again.
 struct Bookmark {
   int frame = 0;     ///< counts in the recording
@@ -81,6 +89,7 @@ struct Wishes {
   bool open_example = false;
   std::optional<std::filesystem::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
+  std::optional<MovieWish> movie;
 };
 
 /// What the user has open, chosen and selected. A plain value; it changes in `apply`, `advance` and
@@ -104,6 +113,12 @@ struct WorkbenchState {
   ViewToggles view;
   Panes panes;
   std::vector<std::string> compared = {"gpo", "pnp_ba", "ba", "pba"};  ///< keys of Configurations
+  std::optional<PictureZoom> compare_zoom;  ///< of all columns; nothing: around the cubes
+  bool flip = false;  ///< the picture shows the first compared other result; see `flipped`
+  std::vector<std::string> hidden_curves;  ///< keys of Configurations
+  /// Of a results.csv, whose curves take the place of the survey's; null: none is open.
+  std::shared_ptr<const std::vector<Row>> experiment;
+  std::string experiment_name;              ///< of that file, for people
   double cube_side = 0;                     ///< in plane distances; 0: automatic
   std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera: where the cube stands on
                                             ///< the plane; nothing: where the inspection puts it
@@ -148,6 +163,10 @@ struct MoveCube {
 struct ZoomPicture {
   PictureZoom zoom;
 };
+/// All columns of the comparison; nothing: around the cubes.
+struct ZoomCompare {
+  std::optional<PictureZoom> zoom;
+};
 struct OrbitScene {
   OrbitCamera camera;
 };
@@ -170,6 +189,7 @@ using Command = std::variant<RunAction,
                              SetCubeSide,
                              MoveCube,
                              ZoomPicture,
+                             ZoomCompare,
                              OrbitScene,
                              FitScene,
                              OpenPath,

@@ -3,6 +3,7 @@
 #include "ui/workbench/worker_link.h"
 
 #include "engine/error.h"
+#include "engine/experiment/results_file.h"
 #include "ui/workbench/session_file.h"
 
 #include <utility>
@@ -44,9 +45,25 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   return opened;
 }
 
+/// Shows the figures of a results.csv.
+void open_results(WorkbenchState& state, const std::filesystem::path& file) {
+  try {
+    state.experiment = std::make_shared<const std::vector<Row>>(read_results(file));
+  } catch (const InputError& error) {
+    return say(state, error.what(), Severity::error);
+  }
+  state.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.panes.drawer = Drawer::curves;
+  say(state, std::to_string(state.experiment->size()) + " results in " + file.string());
+}
+
 /// A session's recording is opened first; one that has moved is asked for. Whether the worker has
 /// something to do.
 bool open_path(WorkbenchState& state, Worker& worker, const std::filesystem::path& path) {
+  if (is_results(path)) {
+    open_results(state, path);
+    return false;
+  }
   auto& waiting = state.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
   std::filesystem::path recording = path;

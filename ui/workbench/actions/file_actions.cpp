@@ -45,6 +45,22 @@ void take_screenshot(State& state, const Arguments& arguments) {
   state.wishes.screenshots.push_back(shot);
 }
 
+/// FILE [FPS]
+void export_video(State& state, const Arguments& arguments) {
+  expect_count("export-video", arguments, 1, 2);
+  MovieWish movie{arguments[0]};
+  if (movie.file.extension() != ".mp4")
+    throw InputError(fmt::format("export-video: '{}', expected a file name that ends in .mp4",
+                                 movie.file.string()));
+  if (arguments.size() > 1) movie.rate_hz = number_in("export-video", arguments, 1);
+  if (arguments.size() > 1 && !(movie.rate_hz >= 1 && movie.rate_hz <= 240))
+    throw InputError(
+        fmt::format("export-video: '{}', expected 1 to 240 frames a second", arguments[1]));
+  if (state.wishes.movie) throw InputError("export-video: another movie is being written");
+  check_writable(movie.file);
+  state.wishes.movie = movie;
+}
+
 /// A file of the current inspection.
 Action export_of(std::string what, std::string title, std::string (*text)(const Inspection&)) {
   Action action{"export " + what, std::move(title), "File", {}, ""};
@@ -63,7 +79,12 @@ Action export_of(std::string what, std::string title, std::string (*text)(const 
 std::string json_text(const Inspection& inspection) { return to_json(inspection).dump(2) + "\n"; }
 
 void add_open(std::vector<Action>& table) {
-  Action open{"open", "Open", "File", {}, "Opens a recording (a folder or a file), or a session"};
+  Action open{"open",
+              "Open",
+              "File",
+              {},
+              "Opens a recording (a folder or a file), a session, or "
+              "a results.csv of `evaluate`"};
   open.arguments = "PATH";
   open.needs_recording = false;
   open.run = [](State& state, const Arguments& arguments) {
@@ -143,6 +164,15 @@ void add_file_actions(std::vector<Action>& table) {
   screenshot.needs_recording = false;
   screenshot.run = take_screenshot;
   table.push_back(screenshot);
+  Action video{"export-video",
+               "Export a movie (MP4)",
+               "File",
+               {},
+               "Writes the window's frames with what is drawn over them, in the recording's own "
+               "size and rate; in compare mode the columns side by side"};
+  video.arguments = "FILE [FPS]";
+  video.run = export_video;
+  table.push_back(video);
   table.push_back(export_of("trajectory", "Export camera poses (TUM)", to_tum));
   table.push_back(export_of("points", "Export map points (PLY)", to_ply));
   table.push_back(export_of("result", "Export the whole result (JSON)", json_text));

@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -75,6 +76,34 @@ bool switched(const char* action, const Arguments& arguments, bool now) {
   if (arguments[0] == "on") return true;
   if (arguments[0] == "off") return false;
   throw InputError(fmt::format("{}: '{}', expected on or off", action, arguments[0]));
+}
+
+PictureZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera) {
+  expect_count(action, arguments, 1, 3);
+  PictureZoom wanted;
+  wanted.factor = std::clamp(number_in(action, arguments), 1.0, 64.0);
+  if (arguments.size() > 1)
+    wanted.center = Eigen::Vector2d(number_in(action, arguments, 1) / camera.width,
+                                    number_in(action, arguments, 2) / camera.height)
+                        .cwiseMax(0)
+                        .cwiseMin(1);
+  return wanted;
+}
+
+Action toggle(std::string name,
+              std::string title,
+              std::vector<Shortcut> shortcuts,
+              std::string tooltip,
+              std::function<bool&(WorkbenchState&)> flag) {
+  Action action{
+      std::move(name), std::move(title), "View", std::move(shortcuts), std::move(tooltip)};
+  action.arguments = "[on|off]";
+  action.run = [flag, name = action.name](WorkbenchState& s, const Arguments& arguments) {
+    flag(s) = switched(name.c_str(), arguments, flag(s));
+  };
+  action.checked = [flag](const WorkbenchState& s) { return flag(const_cast<WorkbenchState&>(s)); };
+  action.needs_recording = false;
+  return action;
 }
 
 }  // namespace gpo

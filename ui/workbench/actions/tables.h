@@ -13,6 +13,7 @@ namespace gpo {
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
+void add_compare_actions(std::vector<Action>& table);  ///< a part of the views'
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
@@ -45,5 +46,15 @@ void expect_count(const char* action,
                   std::size_t most);
 /// "on", "off", or nothing: the other of what it is. Throws InputError.
 bool switched(const char* action, const Arguments& arguments, bool now);
+
+/// FACTOR [X Y]: enlarged around a pixel, by default the middle. Throws InputError.
+PictureZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera);
+
+/// A switch of the state; alone it switches, "on" and "off" say how.
+Action toggle(std::string name,
+              std::string title,
+              std::vector<Shortcut> shortcuts,
+              std::string tooltip,
+              std::function<bool&(WorkbenchState&)> flag);
 
 }  // namespace gpo

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/configuration.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
@@ -25,24 +24,6 @@ void enlarge_uncertainty(ViewToggles& view) {
 std::string uncertainty_text(const ViewToggles& view) {
   if (view.uncertainty > 1) return "\u00d7" + std::to_string(view.uncertainty);
   return view.uncertainty == 1 ? "on" : "off";
-}
-
-/// A switch of the state; alone it switches, "on" and "off" say how.
-template <class Flag>
-Action toggle(std::string name,
-              std::string title,
-              std::vector<Shortcut> shortcuts,
-              std::string tooltip,
-              Flag flag) {
-  Action action{
-      std::move(name), std::move(title), "View", std::move(shortcuts), std::move(tooltip)};
-  action.arguments = "[on|off]";
-  action.run = [flag, name = action.name](State& s, const Arguments& arguments) {
-    flag(s) = switched(name.c_str(), arguments, flag(s));
-  };
-  action.checked = [flag](const State& s) { return flag(const_cast<State&>(s)); };
-  action.needs_recording = false;
-  return action;
 }
 
 Action view_toggle(std::string name,
@@ -148,29 +129,6 @@ void add_panes(std::vector<Action>& table) {
   table.push_back(shut);
 }
 
-void add_compare(std::vector<Action>& table) {
-  table.push_back(toggle("view compare",
-                         "Compare",
-                         {letter('C')},
-                         "The compared methods side by side on the same frame",
-                         [](State& s) -> bool& { return s.panes.compare; }));
-  Action compare{"compare",
-                 "Compare these",
-                 "View",
-                 {},
-                 "Chooses what is compared: methods with commas, each with settings that differ, "
-                 "as `evaluate --methods` reads them"};
-  compare.arguments = "METHODS";
-  compare.needs_recording = false;
-  compare.run = [](State& s, const Arguments& arguments) {
-    expect_count("compare", arguments, 1, 1);
-    s.compared.clear();
-    for (const Configuration& one : parse_configurations(arguments[0]))
-      s.compared.push_back(key_of(one));
-  };
-  table.push_back(compare);
-}
-
 void add_themes(std::vector<Action>& table) {
   for (const auto& [name, title, theme] : {std::tuple{"theme dark", "Dark theme", Theme::dark},
                                            {"theme light", "Light theme", Theme::light}}) {
@@ -194,21 +152,14 @@ void add_cameras(std::vector<Action>& table) {
                         "Shows all of the picture and all of the scene",
                         [](State& s) {
                           s.picture_zoom = {};
+                          s.compare_zoom.reset();
                           s.orbit.reset();
                         }));
   Action zoom{"zoom", "Zoom the picture", "View", {}, "Shows the picture enlarged around a point"};
   zoom.arguments = "FACTOR [X Y]";
   zoom.run = [](State& s, const Arguments& arguments) {
     expect_count("zoom", arguments, 1, 3);
-    PictureZoom wanted;
-    wanted.factor = std::clamp(number_in("zoom", arguments), 1.0, 64.0);
-    const Camera& camera = s.recording->camera;
-    if (arguments.size() > 1)
-      wanted.center = Eigen::Vector2d(number_in("zoom", arguments, 1) / camera.width,
-                                      number_in("zoom", arguments, 2) / camera.height)
-                          .cwiseMax(0)
-                          .cwiseMin(1);
-    s.picture_zoom = wanted;
+    s.picture_zoom = zoom_in("zoom", arguments, s.recording->camera);
   };
   table.push_back(zoom);
 }
@@ -218,7 +169,7 @@ void add_cameras(std::vector<Action>& table) {
 void add_view_actions(std::vector<Action>& table) {
   add_toggles(table);
   add_panes(table);
-  add_compare(table);
+  add_compare_actions(table);
   add_cameras(table);
   add_themes(table);
 }

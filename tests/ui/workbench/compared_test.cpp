@@ -1,0 +1,211 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/compared.h"
+
+#include "engine/error.h"
+#include "engine/initializers/methods.h"
+#include "tests/ui/made_inspection.h"
+#include "ui/workbench/actions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+void run(WorkbenchState& state, const std::string& line) { run_line(state, line); }
+
+std::string refusal(WorkbenchState& state, const std::string& line) {
+  try {
+    run_line(state, line);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// An inspection of `configuration`, in the survey of a state that has it open.
+std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
+                                     const std::string& configuration,
+                                     const MadeOptions& options = {}) {
+  auto inspection = std::make_shared<Inspection>(made_inspection(options));
+  if (!state.recording) {
+    state.settings = inspection->settings;
+    adopt(state, inspection->recording);
+  }
+  inspection->recording = state.recording;
+  inspection->settings = apply(parse_configuration(configuration), state.settings);
+  SurveyResults results = *state.surveyed;
+  results.push_back({inspection->settings, inspection, ""});
+  state.surveyed = std::make_shared<const SurveyResults>(std::move(results));
+  return inspection;
+}
+
+TEST(Compared, ListsAreChosenAddedToAndTakenFrom) {
+  WorkbenchState state;
+  EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  run(state, "compare gpo,ba");
+  run(state, "compare add gpo+no-ransac");
+  run(state, "compare add ba");          // is there already
+  run(state, "compare add gpo+ransac");  // only says what is so by default
+  EXPECT_THAT(state.compared, ElementsAre("gpo", "ba", "gpo+no-ransac"));
+  run(state, "compare remove ba");
+  EXPECT_THAT(state.compared, ElementsAre("gpo", "gpo+no-ransac"));
+  run(state, "compare paper");
+  EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  run(state, "compare all");
+  EXPECT_GT(state.compared.size(), methods().size());
+}
+
+TEST(Compared, RefusesWhatItDoesNotKnowAndKeepsTheLast) {
+  WorkbenchState state;
+  run(state, "compare gpo");
+  EXPECT_THAT(refusal(state, "compare add nonsense"), HasSubstr("unknown method 'nonsense'"));
+  EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not among"));
+  EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("the last one stays"));
+  EXPECT_THAT(refusal(state, "compare add"), HasSubstr("compare add"));
+  EXPECT_THAT(state.compared, ElementsAre("gpo"));
+}
+
+TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
+  for (const Configuration& one : parse_configurations("all"))
+    EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
+  Settings settings;
+  settings.ransac = true;  // as gpo does by default
+  EXPECT_EQ(key_of(configuration_of(settings)), "gpo");
+}
+
+TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
+  WorkbenchState state;
+  EXPECT_EQ(flipped(state), std::nullopt);
+  run(state, "flip on");
+  EXPECT_EQ(flipped(state), "pnp_ba");
+  state.settings.method = "ba";
+  EXPECT_EQ(flipped(state), "gpo");
+  run(state, "compare ba");
+  EXPECT_EQ(flipped(state), std::nullopt);
+  run(state, "compare ba,ba+ransac");
+  EXPECT_EQ(flipped(state), "ba+ransac");
+  run(state, "flip off");
+  EXPECT_EQ(flipped(state), std::nullopt);
+}
+
+TEST(Compared, FlipAsksForWhatItShows) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  EXPECT_THAT(wanted_inspections(state), IsEmpty());
+  run(state, "flip on");
+  const auto wanted = wanted_inspections(state);
+  ASSERT_EQ(wanted.size(), 1U);
+  EXPECT_EQ(wanted[0].method, "pnp_ba");
+  EXPECT_EQ(wanted[0].frames, state.settings.frames);
+}
+
+TEST(Compared, FlipIsHeldByItsKey) {
+  const Action* flip = action_of_key('X', false);
+  ASSERT_NE(flip, nullptr);
+  EXPECT_EQ(flip->name, "flip");
+  EXPECT_TRUE(flip->held);
+}
+
+TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run(state, "compare gpo,ba,pba");
+  SurveyResults results = *state.surveyed;
+  results.push_back({apply(parse_configuration("pba"), state.settings), nullptr, "no gyroscope"});
+  state.surveyed = std::make_shared<const SurveyResults>(results);
+  const auto all = compared_results(state);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_NE(all[0].inspection, nullptr);
+  EXPECT_EQ(all[1].inspection, nullptr);
+  EXPECT_EQ(all[1].error, "");
+  EXPECT_EQ(all[2].error, "no gyroscope");
+}
+
+TEST(Compared, FlipSwapsTheFirstTwoColumns) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run(state, "flip on");
+  const auto all = compared_results(state);
+  EXPECT_EQ(key_of(all[0].configuration), "pnp_ba");
+  EXPECT_EQ(key_of(all[1].configuration), "gpo");
+  EXPECT_EQ(key_of(all[2].configuration), "ba");
+}
+
+TEST(Compared, AllCubesStandOnOneRay) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  surveyed(state, "ba", {.estimate_error = 5});
+  run(state, "compare gpo,ba");
+  const auto angle_deg = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) * 180 / EIGEN_PI;
+  };
+  // Nobody moved it: where the first has it.
+  auto all = compared_results(state);
+  ASSERT_TRUE(all[0].inspection && all[1].inspection);
+  EXPECT_LT(angle_deg(all[0].inspection->cube->origin, all[1].inspection->cube->origin), 1e-5);
+  state.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
+  all = compared_results(state);
+  for (const Compared& one : all)
+    EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.cube_ray), 1e-5);
+}
+
+TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
+  WorkbenchState state;
+  state.inspection = surveyed(state, "gpo");
+  run(state, "compare ba");
+  state.settings = state.inspection->settings;
+  auto all = compared_with_current(state);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(key_of(all[0].configuration), "gpo");
+  EXPECT_NE(all[0].inspection, nullptr);
+  state.settings.ransac_threshold_px += 1;  // its result is of earlier settings now
+  EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
+  run(state, "compare ba,gpo");
+  all = compared_with_current(state);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(key_of(all[0].configuration), "ba");
+}
+
+TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run(state, "compare zoom 4 0 0");
+  ASSERT_TRUE(state.compare_zoom);
+  EXPECT_EQ(state.compare_zoom->factor, 4);
+  EXPECT_EQ(state.compare_zoom->center, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(state.picture_zoom.factor, 1);
+  run(state, "compare zoom");
+  EXPECT_FALSE(state.compare_zoom);
+  run(state, "compare zoom 2");
+  run(state, "fit");
+  EXPECT_FALSE(state.compare_zoom);
+  EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
+}
+
+TEST(Compared, CurvesAreSwitchedByName) {
+  WorkbenchState state;
+  run(state, "curve ba");
+  EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
+  run(state, "curve ba off");
+  EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
+  run(state, "curve ba");
+  EXPECT_THAT(state.hidden_curves, IsEmpty());
+  run(state, "curve gpo+ransac off");  // the same as gpo
+  EXPECT_THAT(state.hidden_curves, ElementsAre("gpo"));
+  EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
+}
+
+TEST(Compared, CurvesHaveTheWindowAndMultiplesOfFive) {
+  EXPECT_THAT(curve_lengths(12), ElementsAre(12, 10, 5));
+  EXPECT_THAT(curve_lengths(10), ElementsAre(10, 5));
+  EXPECT_THAT(curve_lengths(3), ElementsAre(3));
+}
+
+}  // namespace
+}  // namespace gpo

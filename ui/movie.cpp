@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/movie.h"
+
+#include "engine/recording/timestamps.h"
+#include "ui/views/compare_view.h"
+
+#include <algorithm>
+
+namespace gpo {
+namespace {
+
+double rate_of(const MovieWish& wish, const Recording& recording) {
+  constexpr double kUnknown_hz = 30;
+  if (wish.rate_hz > 0) return wish.rate_hz;
+  const double own = rate_hz(recording.timestamps_ns);
+  return own > 0 ? own : kUnknown_hz;
+}
+
+cv::Size size_of(const WorkbenchState& state) {
+  const Recording& recording = *state.recording;
+  if (!state.panes.compare) return even_size({recording.camera.width, recording.camera.height});
+  return even_size(default_compare_size(static_cast<int>(state.compared.size()), recording));
+}
+
+}  // namespace
+
+Movie::Movie(const MovieWish& wish, const WorkbenchState& state)
+    : state_(state),
+      view_(state.panes.compare ? "compare" : "picture"),
+      size_(size_of(state)),
+      first_(state.settings.start),
+      frames_(std::min(state.settings.frames, state.frame_count() - state.settings.start)),
+      video_(wish.file, rate_of(wish, *state.recording), size_) {}
+
+void Movie::step(const Draw& draw) {
+  if (finished()) return;
+  state_.frame = first_ + done_;
+  video_.add(draw(state_, view_, size_));
+  ++done_;
+  if (finished()) video_.finish();
+}
+
+}  // namespace gpo

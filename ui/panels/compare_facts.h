@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/compared.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// A number of the table: what is compared, and how.
+struct ComparedColumn {
+  const char* title;
+  const char* meaning;  ///< with the unit; for the header's tooltip
+};
+
+/// Of the table of compared results, from the left; what they are called stands before them.
+std::span<const ComparedColumn> compared_columns();
+
+/// A cell of the table.
+struct ComparedNumber {
+  std::string text;        ///< with its unit; a dash where it is not known
+  std::string difference;  ///< to the first row: "+0.12° +63 %"; empty: there is none to tell
+  /// How much better (to -1) or worse (to 1) than the first row: 1 where it is twice as large or
+  /// more, -1 half as large or less. 0: alike, or neither is better.
+  double worse = 0;
+  std::string why_not;  ///< known; empty: it is
+};
+
+struct ComparedRow {
+  Configuration configuration;
+  Settings settings;                    ///< that make it the current one
+  std::string status;                   ///< "ok", "failed", "computing"
+  std::string reason;                   ///< why there is no result; empty: there is
+  std::vector<ComparedNumber> numbers;  ///< one a column; empty while there is none
+};
+
+/// One row each, the first of which the others are compared to. Without `timings` the milliseconds
+/// are dashes.
+std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
+
+}  // namespace gpo

@@ -1,0 +1,165 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/error.h"
+#include "engine/experiment/configuration.h"
+#include "ui/workbench/actions/tables.h"
+
+#include <algorithm>
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+using State = WorkbenchState;
+
+constexpr const char* kOfThePaper = "gpo,pnp_ba,ba,pba";
+
+void compare_these(State& state, const std::string& list) {
+  std::vector<std::string> keys;
+  for (const Configuration& one : parse_configurations(list)) keys.push_back(key_of(one));
+  state.compared = std::move(keys);
+}
+
+void compare_also(State& state, const std::string& list) {
+  for (const Configuration& one : parse_configurations(list)) {
+    const std::string key = key_of(one);
+    if (std::ranges::find(state.compared, key) == state.compared.end())
+      state.compared.push_back(key);
+  }
+}
+
+void compare_no_longer(State& state, const std::string& text) {
+  const std::string key = key_of(parse_configuration(text));
+  const auto found = std::ranges::find(state.compared, key);
+  if (found == state.compared.end())
+    throw InputError(fmt::format("compare remove: '{}' is not among the compared ones: {}",
+                                 key,
+                                 fmt::join(state.compared, ", ")));
+  if (state.compared.size() == 1)
+    throw InputError("compare remove: the last one stays; `compare METHODS` chooses others");
+  state.compared.erase(found);
+}
+
+/// An action whose one argument is a list of configurations, or one.
+Action of_configurations(std::string name,
+                         std::string title,
+                         std::string tooltip,
+                         std::string arguments,
+                         void (*run)(State&, const std::string&)) {
+  Action action{std::move(name), std::move(title), "View", {}, std::move(tooltip)};
+  action.arguments = std::move(arguments);
+  action.needs_recording = false;
+  action.run = [run, name = action.name](State& s, const Arguments& arguments) {
+    expect_count(name.c_str(), arguments, 1, 1);
+    run(s, arguments[0]);
+  };
+  return action;
+}
+
+void add_choice(std::vector<Action>& table) {
+  table.push_back(of_configurations(
+      "compare",
+      "Compare these",
+      "Chooses what is compared: methods with commas, each with settings that differ, as "
+      "`evaluate --methods` reads them",
+      "METHODS",
+      compare_these));
+  table.push_back(of_configurations("compare add",
+                                    "Compare also",
+                                    "Puts methods, or settings of one, beside what is compared",
+                                    "METHODS",
+                                    compare_also));
+  table.push_back(of_configurations("compare remove",
+                                    "Compare no longer",
+                                    "Takes one away from what is compared",
+                                    "METHOD",
+                                    compare_no_longer));
+  struct Preset {
+    const char *name, *title, *tooltip, *list;
+  };
+  for (const Preset& preset : {Preset{"compare all",
+                                      "Compare all methods",
+                                      "Every method, and the paper's ablations, side by side",
+                                      "all"},
+                               Preset{"compare paper",
+                                      "Compare as the paper",
+                                      "The four methods of the paper's figure",
+                                      kOfThePaper}}) {
+    Action action = plain(
+        preset.name, preset.title, "View", {}, preset.tooltip, [list = preset.list](State& s) {
+          compare_these(s, list);
+        });
+    action.needs_recording = false;
+    table.push_back(action);
+  }
+}
+
+void add_looks(std::vector<Action>& table) {
+  Action zoom{"compare zoom",
+              "Zoom the comparison",
+              "View",
+              {},
+              "Shows all columns enlarged around a point; without numbers around the cubes"};
+  zoom.arguments = "[FACTOR [X Y]]";
+  zoom.run = [](State& s, const Arguments& arguments) {
+    s.compare_zoom.reset();
+    if (!arguments.empty())
+      s.compare_zoom = zoom_in("compare zoom", arguments, s.recording->camera);
+  };
+  table.push_back(zoom);
+  Action flip = toggle("flip",
+                       "Flip to the compared result",
+                       {key(GLFW_KEY_X, "X")},
+                       "While held: the picture shows the first compared other result, in place; "
+                       "side by side the first two change places",
+                       [](State& s) -> bool& { return s.flip; });
+  flip.held = true;
+  table.push_back(flip);
+}
+
+void switch_curve(State& state, const Arguments& arguments) {
+  expect_count("curve", arguments, 1, 2);
+  const std::string key = key_of(parse_configuration(arguments[0]));
+  const auto found = std::ranges::find(state.hidden_curves, key);
+  const bool shown = found == state.hidden_curves.end();
+  const bool show = switched("curve", {arguments.begin() + 1, arguments.end()}, shown);
+  if (show && !shown) state.hidden_curves.erase(found);
+  if (!show && shown) state.hidden_curves.push_back(key);
+}
+
+void add_curves(std::vector<Action>& table) {
+  Action curve{"curve", "A curve", "View", {}, "Shows or hides a method's curves"};
+  curve.arguments = "METHOD [on|off]";
+  curve.needs_recording = false;
+  curve.run = switch_curve;
+  table.push_back(curve);
+  Action close = plain("close-results",
+                       "Close the opened results",
+                       "View",
+                       {},
+                       "The curves show this recording again, no longer those of a results.csv",
+                       [](State& s) {
+                         s.experiment.reset();
+                         s.experiment_name.clear();
+                       });
+  close.needs_recording = false;
+  table.push_back(close);
+}
+
+}  // namespace
+
+void add_compare_actions(std::vector<Action>& table) {
+  table.push_back(toggle("view compare",
+                         "Compare",
+                         {letter('C')},
+                         "The compared methods side by side on the same frame",
+                         [](State& s) -> bool& { return s.panes.compare; }));
+  add_choice(table);
+  add_looks(table);
+  add_curves(table);
+}
+
+}  // namespace gpo

@@ -1,0 +1,105 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/compared.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gpo {
+namespace {
+
+Compared compared(const WorkbenchState& state, const Configuration& configuration) {
+  Compared one{configuration, apply(configuration, state.settings), nullptr, ""};
+  if (const Surveyed* found = find_surveyed(state.surveyed.get(), one.settings)) {
+    one.inspection = found->inspection;
+    one.error = found->error;
+  }
+  // The same settings, said in other words: "as by default" and what the default comes to.
+  if (!one.inspection && state.inspection &&
+      configuration_of(state.inspection->settings) == configuration &&
+      apply(configuration, state.inspection->settings) == one.settings)
+    one.inspection = state.inspection;
+  return one;
+}
+
+Compared current_result(const WorkbenchState& state) {
+  Compared one{configuration_of(state.settings), state.settings, nullptr, ""};
+  if (state.inspection && state.inspection->settings == state.settings)
+    one.inspection = state.inspection;
+  return one;
+}
+
+/// Through the reference camera, whose frame is the world.
+std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
+                                          const std::vector<Compared>& all) {
+  if (state.cube_ray) return state.cube_ray;
+  for (const Compared& one : all) {
+    if (!one.inspection || !one.inspection->cube) continue;
+    // On a board the corners' rays are the same for all.
+    if (one.inspection->cube->on_board) return std::nullopt;
+    return one.inspection->cube->origin;
+  }
+  return std::nullopt;
+}
+
+void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
+  const auto ray = common_ray(state, all);
+  if (!ray) return;
+  for (Compared& one : all) {
+    if (!one.inspection) continue;
+    Inspection moved = *one.inspection;
+    move_cubes(moved, *ray);
+    one.inspection = std::make_shared<const Inspection>(std::move(moved));
+  }
+}
+
+std::vector<Compared> unmoved_results(const WorkbenchState& state) {
+  std::vector<Compared> all;
+  for (const std::string& key : state.compared)
+    all.push_back(compared(state, parse_configuration(key)));
+  return all;
+}
+
+}  // namespace
+
+std::vector<Compared> compared_results(const WorkbenchState& state) {
+  std::vector<Compared> all = unmoved_results(state);
+  place_cubes_alike(state, all);
+  if (state.flip && all.size() > 1) std::swap(all[0], all[1]);
+  return all;
+}
+
+std::vector<Compared> compared_with_current(const WorkbenchState& state) {
+  std::vector<Compared> all = unmoved_results(state);
+  Compared current = current_result(state);
+  if (std::ranges::find(all, current.configuration, &Compared::configuration) == all.end())
+    all.insert(all.begin(), std::move(current));
+  return all;
+}
+
+std::optional<std::string> flipped(const WorkbenchState& state) {
+  if (!state.flip) return std::nullopt;
+  const std::string current = key_of(configuration_of(state.settings));
+  const auto other =
+      std::ranges::find_if(state.compared, [&](const auto& key) { return key != current; });
+  return other == state.compared.end() ? std::nullopt : std::optional(*other);
+}
+
+std::optional<Compared> flipped_result(const WorkbenchState& state) {
+  const auto key = flipped(state);
+  if (!key) return std::nullopt;
+  // Where the current one's cube is, if it has any.
+  std::vector<Compared> both = {current_result(state), compared(state, parse_configuration(*key))};
+  place_cubes_alike(state, both);
+  return both.back();
+}
+
+std::vector<int> curve_lengths(int frames) {
+  constexpr int kStep = 5;
+  std::vector<int> lengths = {frames};
+  for (int shorter = (frames - 1) / kStep * kStep; shorter >= kStep; shorter -= kStep)
+    lengths.push_back(shorter);
+  return lengths;
+}
+
+}  // namespace gpo

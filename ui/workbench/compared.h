@@ -1,0 +1,42 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/experiment/configuration.h"
+#include "ui/workbench/workbench.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// One of the compared configurations in the current window, and what is known of it.
+struct Compared {
+  Configuration configuration;
+  Settings settings;
+  std::shared_ptr<const Inspection> inspection;  ///< null: not there, yet
+  std::string error;  ///< why there will be none, one line; empty: it is being computed
+};
+
+/// Every configuration of `state.compared`, in that order; with `flip` the first two change places.
+/// The cubes of all stand where one ray of the reference camera meets their planes: where the user
+/// moved it, else where the first has it.
+std::vector<Compared> compared_results(const WorkbenchState& state);
+
+/// The same, and the current settings before the others where they are not among them.
+std::vector<Compared> compared_with_current(const WorkbenchState& state);
+
+/// The key of the configuration that the picture shows in place of the current one: the first
+/// compared one that is another. Nothing where `flip` is off or there is none.
+std::optional<std::string> flipped(const WorkbenchState& state);
+
+/// That configuration and what is known of it.
+std::optional<Compared> flipped_result(const WorkbenchState& state);
+
+/// The lengths of the windows whose results the curves show, the longest first: the window's own,
+/// then multiples of five frames.
+std::vector<int> curve_lengths(int frames);
+
+}  // namespace gpo
