@@ -70,6 +70,10 @@ unsigned render_to_texture(VtkWindow& window, int width, int height) {
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound));
   glUseProgram(0);
   glBindVertexArray(0);
+  return texture_of(window);
+}
+
+unsigned texture_of(VtkWindow& window) {
   auto* texture = window.GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0);
   return texture != nullptr ? texture->GetHandle() : 0;
 }

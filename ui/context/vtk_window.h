@@ -34,6 +34,9 @@ vtkSmartPointer<VtkWindow> make_vtk_window();
 /// is nothing to draw on. Fetch it anew after every call. The bound framebuffer stays bound.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
 
+/// The texture of the last picture; 0 before the first.
+unsigned texture_of(VtkWindow& window);
+
 /// While it lives, VTK's errors and warnings come here instead of the standard error stream.
 class VtkMessages {
  public:

@@ -5,12 +5,14 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/worker.h"
 #include "ui/context/window_picture.h"
+#include "ui/views/chart_view.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/scene_view.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
 
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -52,8 +54,9 @@ struct Views {
   std::string picture_error;  ///< why there is none
   SceneView scene;
   PaletteEntry palette;
-  std::array<Patch, 2> patches;  ///< of a track: in its first frame, in the current one
-  WindowPicture window;          ///< of which only the parts that change are drawn anew
+  std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
+  std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
+  WindowPicture window;                     ///< of which only the parts that change are drawn anew
 };
 
 /// Brings the picture of the current frame into `views`, where it is not there yet.

@@ -15,18 +15,19 @@ namespace gpo {
 
 enum class Dash { solid, dashed, dash_dot, dotted };
 
-/// How the curves of one name are drawn in all charts of a figure, and explained in its legend.
-struct CurveStyle {
-  std::string name;
-  std::uint32_t rgb = 0;  ///< dark enough for white paper
-  Dash dash = Dash::solid;
-  int marker = 0;       ///< vtkPlotPoints' marker; 0: none
-  bool hollow = false;  ///< the marker
-};
-
 // Sizes at scale 1 [px].
 constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9, kHollow_px = 5;
 constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of Dash::dotted
+
+/// How the curves of one name are drawn in all charts of a figure, and explained in its legend.
+struct CurveStyle {
+  std::string name;
+  std::uint32_t rgb = 0;  ///< on paper dark enough for white
+  Dash dash = Dash::solid;
+  int marker = 0;       ///< vtkPlotPoints' marker; 0: none
+  bool hollow = false;  ///< the marker
+  double marker_px = kMarkerSize_px;
+};
 
 /// Of Dash::dashed and dash_dot: dashes and gaps in turn [px].
 std::vector<double> dash_lengths(Dash dash, double scale);

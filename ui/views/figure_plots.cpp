@@ -4,13 +4,13 @@
 
 #include "ui/views/axis_ticks.h"
 #include "ui/views/dash_pattern.h"
-#include "ui/views/palette.h"
 #include "ui/views/vtk_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+#include <tuple>
 
 #include <vtkAxis.h>
 #include <vtkBrush.h>
@@ -29,7 +29,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kTickText_px = 14;
 constexpr double kBandOpacity = 0.18;
 
 void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(rgb), blue(rgb)); }
@@ -74,9 +73,9 @@ AxisTicks x_ticks(const Chart& chart, double width_px, double scale) {
 }
 
 /// Errors are drawn from zero on.
-AxisTicks y_ticks(const Chart& chart, double height_px, double scale) {
+AxisTicks y_ticks(const Chart& chart, double height_px, double spacing_px) {
   const Extent extent = y_extent(chart);
-  const int most = std::max(2, static_cast<int>(height_px / (36 * scale)));
+  const int most = std::max(2, static_cast<int>(height_px / spacing_px));
   if (chart.logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
   const double low = std::min(0.0, extent.low);
   const double room = 0.05 * (extent.high - low);
@@ -87,21 +86,12 @@ AxisTicks y_ticks(const Chart& chart, double height_px, double scale) {
 /// an SVG, its logarithmic ticks crowd, and its dashes depend on what draws them.
 struct Plot {
   vtkChartXY& vtk;
-  bool logarithmic;
-  AxisTicks x, y;
-  vtkRectf axes;
   double scale;
+  const ChartLook& look;
+  ChartMapping to;
 
-  double x_px(double value) const {
-    return axes.GetX() + axes.GetWidth() * (value - x.low) / (x.high - x.low);
-  }
-  double y_px(double value) const {
-    const double part = logarithmic ? std::log(value / y.low) / std::log(y.high / y.low)
-                                    : (value - y.low) / (y.high - y.low);
-    return axes.GetY() + axes.GetHeight() * part;
-  }
   bool good(double x_value, double y_value) const {
-    return std::isfinite(x_value) && drawable(y_value, logarithmic);
+    return std::isfinite(x_value) && drawable(y_value, to.logarithmic);
   }
 };
 
@@ -114,7 +104,7 @@ std::vector<Line> runs(const Plot& plot, std::span<const double> x, std::span<co
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool good = plot.good(x[i], y[i]);
     if (good && gap) result.emplace_back();
-    if (good) result.back().emplace_back(plot.x_px(x[i]), plot.y_px(y[i]));
+    if (good) result.back().push_back(plot.to.px(x[i], y[i]));
     gap = !good;
   }
   return result;
@@ -201,8 +191,9 @@ void add_curve(const Plot& plot, const Curve& curve, const CurveStyle& style) {
     add_line(plot, run, style.rgb, style.dash, kCurveWidth_px * plot.scale);
   }
   if (style.marker == vtkPlotPoints::NONE) return;
-  add_markers(plot, points, style.rgb, style.marker, kMarkerSize_px * plot.scale);
-  if (style.hollow) add_markers(plot, points, 0xFFFFFF, style.marker, kHollow_px * plot.scale);
+  add_markers(plot, points, style.rgb, style.marker, style.marker_px * plot.scale);
+  if (style.hollow)
+    add_markers(plot, points, plot.look.ground, style.marker, kHollow_px * plot.scale);
 }
 
 /// `range_px` and `places_px` along the axis.
@@ -210,11 +201,12 @@ void set_axis(vtkAxis& axis,
               std::pair<double, double> range_px,
               const std::vector<double>& places_px,
               const std::vector<std::string>& texts,
-              double scale) {
+              double scale,
+              const ChartLook& look) {
   axis.SetTitle("");
-  set_font(*axis.GetLabelProperties(), Weight::regular, kTickText_px * scale, palette::kInk);
-  set_color(*axis.GetPen(), palette::kPaperAxis);
-  set_color(*axis.GetGridPen(), palette::kPaperGrid);
+  set_font(*axis.GetLabelProperties(), Weight::regular, look.tick_text_px * scale, look.text);
+  set_color(*axis.GetPen(), look.axis);
+  set_color(*axis.GetGridPen(), look.grid);
   for (vtkPen* pen : {axis.GetPen(), axis.GetGridPen()}) pen->SetWidth(static_cast<float>(scale));
   axis.SetTickLength(static_cast<float>(5 * scale));
   axis.SetLabelOffset(static_cast<float>(8 * scale));
@@ -227,21 +219,23 @@ void set_axis(vtkAxis& axis,
   axis.SetCustomTickPositions(places, labels);
 }
 
-void set_axes(const Plot& plot) {
-  const vtkRectf& axes = plot.axes;
+void set_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ticks) {
+  const ChartMapping& to = plot.to;
   std::vector<double> x, y;
-  for (const double value : plot.x.values) x.push_back(plot.x_px(value));
-  for (const double value : plot.y.values) y.push_back(plot.y_px(value));
+  for (const double value : x_ticks.values) x.push_back(to.x_px(value));
+  for (const double value : y_ticks.values) y.push_back(to.y_px(value));
   set_axis(*plot.vtk.GetAxis(vtkAxis::BOTTOM),
-           {axes.GetX(), axes.GetX() + axes.GetWidth()},
+           {to.left, to.left + to.width},
            x,
-           plot.x.labels,
-           plot.scale);
+           x_ticks.labels,
+           plot.scale,
+           plot.look);
   set_axis(*plot.vtk.GetAxis(vtkAxis::LEFT),
-           {axes.GetY(), axes.GetY() + axes.GetHeight()},
+           {to.bottom, to.bottom + to.height},
            y,
-           plot.y.labels,
-           plot.scale);
+           y_ticks.labels,
+           plot.scale,
+           plot.look);
 }
 
 const CurveStyle& style_of(const Curve& curve, const std::vector<CurveStyle>& styles) {
@@ -252,29 +246,38 @@ const CurveStyle& style_of(const Curve& curve, const std::vector<CurveStyle>& st
 
 bool has_values(const Chart& chart) { return !x_extent(chart).empty() && !y_extent(chart).empty(); }
 
-void fill_chart(vtkChartXY& vtk,
-                const Chart& chart,
-                const std::vector<CurveStyle>& styles,
-                const vtkRectf& axes,
-                double scale) {
+ChartMapping fill_chart(vtkChartXY& vtk,
+                        const Chart& chart,
+                        const std::vector<CurveStyle>& styles,
+                        const vtkRectf& axes,
+                        double scale,
+                        const ChartLook& look) {
   vtk.SetLayoutStrategy(vtkChart::AXES_TO_RECT);
   vtk.SetSize(axes);
   vtk.SetAutoAxes(false);
   vtk.SetRenderEmpty(true);
   vtk.SetShowLegend(false);
   for (const int side : {vtkAxis::TOP, vtkAxis::RIGHT}) vtk.GetAxis(side)->SetVisible(false);
-  Plot plot{vtk, chart.logarithmic, {}, {}, axes, scale};
+  Plot plot{vtk, scale, look, {}};
+  ChartMapping& to = plot.to;
+  to.left = axes.GetX();
+  to.bottom = axes.GetY();
+  to.width = axes.GetWidth();
+  to.height = axes.GetHeight();
   if (!has_values(chart)) {
-    set_axes(plot);
-    return;
+    set_axes(plot, {}, {});
+    return to;
   }
-  plot.x = x_ticks(chart, axes.GetWidth(), scale);
-  plot.y = y_ticks(chart, axes.GetHeight(), scale);
-  set_axes(plot);
+  const AxisTicks x = x_ticks(chart, to.width, scale);
+  const AxisTicks y = y_ticks(chart, to.height, look.tick_spacing_px * scale);
+  to.logarithmic = chart.logarithmic;
+  std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);
+  set_axes(plot, x, y);
   for (const Curve& curve : chart.curves) add_band(plot, curve, style_of(curve, styles).rgb);
   for (const bool bounds : {true, false})
     for (const Curve& curve : chart.curves)
       if (curve.dotted == bounds) add_curve(plot, curve, style_of(curve, styles));
+  return to;
 }
 
 }  // namespace gpo

@@ -1,0 +1,38 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// Where the values of a chart are in its picture, or on the screen.
+struct ChartMapping {
+  bool logarithmic = false;  ///< the y axis
+  double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
+  double left = 0, bottom = 0;  ///< where the axes meet [px]
+  double width = 1;             ///< of the x axis [px]
+  double height = 1;            ///< of the y axis [px]; negative where y is down
+
+  double x_px(double value) const { return left + width * (value - x_low) / (x_high - x_low); }
+  double y_px(double value) const {
+    const double part = logarithmic ? std::log(value / y_low) / std::log(y_high / y_low)
+                                    : (value - y_low) / (y_high - y_low);
+    return bottom + height * part;
+  }
+  Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
+  double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
+  double y_value(double px) const {
+    const double part = (px - bottom) / height;
+    return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
+  }
+  /// Whether a point lies between the axes' ends.
+  bool inside(const Eigen::Vector2d& point_px) const {
+    const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+  }
+};
+
+}  // namespace gpo
