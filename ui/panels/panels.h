@@ -7,6 +7,7 @@
 #include "ui/context/window_picture.h"
 #include "ui/views/chart_view.h"
 #include "ui/views/picture_texture.h"
+#include "ui/views/residual_charts.h"
 #include "ui/views/scene_view.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
@@ -46,6 +47,12 @@ struct Patch {
   bool empty = true;  ///< there is no picture
 };
 
+/// Residuals of a window, and whose they are.
+struct Residuals {
+  std::shared_ptr<const Inspection> of;  ///< null: none yet
+  WindowResiduals px;
+};
+
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
@@ -54,7 +61,8 @@ struct Views {
   std::string picture_error;  ///< why there is none
   SceneView scene;
   PaletteEntry palette;
-  std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
+  std::array<Patch, 2> patches;  ///< of a track: in its first frame, in the current one
+  Residuals residuals;
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   WindowPicture window;                     ///< of which only the parts that change are drawn anew
 };

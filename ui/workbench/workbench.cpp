@@ -58,7 +58,8 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted;
   const bool curves = state.panes.drawer == Drawer::curves;
   const bool now = curves || state.panes.compare || state.panes.drawer == Drawer::table ||
-                   state.panes.side == SidePane::normals;
+                   state.panes.drawer == Drawer::timing || state.panes.side == SidePane::normals ||
+                   state.panes.side == SidePane::solver;
   if (!state.recording || !now) return wanted;
   const auto want_each = [&](int frames) {
     for (const std::string& key : state.compared) {
