@@ -201,6 +201,12 @@ void read_state(const Reader& read, WorkbenchState& state) {
   read_compared(read, state.compared);
   read("cube_side", state.cube_side, 0, 2);
   if (read.has("cube_ray")) read("cube_ray", state.cube_ray.emplace());
+  if (read.has("normals_zoom")) {
+    const Reader zoom = read.object("normals_zoom");
+    zoom("factor", state.normals_zoom.factor, 1, kLargestNormalsZoom);
+    zoom("center", state.normals_zoom.center);
+    state.normals_zoom = within_limits(state.normals_zoom);
+  }
   if (read.has("picture_zoom")) {
     const Reader zoom = read.object("picture_zoom");
     zoom("factor", state.picture_zoom.factor, 1, 64);
@@ -244,6 +250,8 @@ std::string session_text(const WorkbenchState& state) {
   json["compared"] = state.compared;
   json["cube_side"] = state.cube_side;
   json["cube_ray"] = state.cube_ray ? numbers(*state.cube_ray) : Json();
+  json["normals_zoom"] = {{"factor", state.normals_zoom.factor},
+                          {"center", numbers(state.normals_zoom.center)}};
   json["picture_zoom"] = {{"factor", state.picture_zoom.factor},
                           {"center", numbers(state.picture_zoom.center)}};
   json["orbit"] = orbit_json(state.orbit);
@@ -289,6 +297,7 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
   state.cube_side = saved.cube_side;
   state.cube_ray = saved.cube_ray;
   state.picture_zoom = saved.picture_zoom;
+  state.normals_zoom = saved.normals_zoom;
   state.orbit = saved.orbit;
   state.selection = saved.selection;
   state.bookmarks = saved.bookmarks;

@@ -90,13 +90,15 @@ void apply(WorkbenchState& state, const Command& command) {
   const auto cube = [&](const SetCubeSide& c) { state.cube_side = std::clamp(c.side, 0.0, 2.0); };
   const auto move = [&](const MoveCube& c) { state.cube_ray = c.ray; };
   const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
+  const auto normals = [&](const ZoomNormals& c) { state.normals_zoom = c.zoom; };
   const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
   const auto fit = [&](const FitScene&) { state.orbit.reset(); };
   const auto open = [&](const OpenPath& c) { state.wishes.open = c.path; };
   const auto hover = [&](const HoverOver& c) { state.hover = c.hover; };
   const auto select = [&](const SelectTracks& c) { state.selection = c.selection; };
-  std::visit(Overloaded{run, change, go, cube, move, zoom, orbit, fit, open, hover, select},
-             command);
+  std::visit(
+      Overloaded{run, change, go, cube, move, zoom, normals, orbit, fit, open, hover, select},
+      command);
 }
 
 namespace {
@@ -133,6 +135,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.recording = std::move(recording);
   state.inspection.reset();
   state.surveyed = std::make_shared<const SurveyResults>();
+  state.study.reset();
   state.selection = {};
   state.hover = {};
   state.cube_ray.reset();
@@ -143,6 +146,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.playing = false;
   state.play_seconds = 0;
   state.picture_zoom = {};
+  state.normals_zoom = {};
   state.orbit.reset();
   const Settings fitting = fit_window(state.settings, state.frame_count());
   state.message.clear();
