@@ -6,6 +6,7 @@
 #include "engine/inspection/worker.h"
 #include "ui/context/window_picture.h"
 #include "ui/views/chart_view.h"
+#include "ui/views/normals_view.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/residual_charts.h"
 #include "ui/views/scene_view.h"
@@ -63,6 +64,7 @@ struct Views {
   PaletteEntry palette;
   std::array<Patch, 2> patches;  ///< of a track: in its first frame, in the current one
   Residuals residuals;
+  NormalsMap normals;
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   WindowPicture window;                     ///< of which only the parts that change are drawn anew
 };
