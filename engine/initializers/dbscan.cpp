@@ -47,12 +47,10 @@ struct Candidates {
 
 /// The error of a decomposition's normal goes with 1/|tau|: weights are inverse variances, relative
 /// to the sum over frames.
-Candidates cluster_candidates(const Window& window) {
+Candidates cluster_candidates(const std::vector<std::vector<HomographyCandidate>>& frames) {
   Candidates c;
   double weights = 0;
-  for (int i = 1; i < window.frame_count(); ++i) {
-    std::vector<HomographyCandidate> of_frame = read_homography(window, i);
-    reject_worse_rotations(of_frame);
+  for (const std::vector<HomographyCandidate>& of_frame : frames) {
     const HomographyCandidate* best = best_of(of_frame);
     if (best != nullptr) weights += best->motion.tau.squaredNorm();
     c.all.insert(c.all.end(), of_frame.begin(), of_frame.end());
@@ -187,9 +185,33 @@ void reject_far_from(const Vector3d& normal, Candidates& candidates) {
 
 }  // namespace
 
+std::vector<NormalCluster> normal_clusters(
+    const std::vector<std::vector<HomographyCandidate>>& candidates) {
+  const Candidates c = cluster_candidates(candidates);
+  std::vector<NormalCluster> clusters;
+  for (std::size_t k = 0; k < c.label.size(); ++k) {
+    if (c.label[k] == kNoise) continue;
+    clusters.resize(std::max<std::size_t>(clusters.size(), c.label[k] + 1),
+                    {Vector3d::Zero(), 0, 0, 0});
+    NormalCluster& cluster = clusters[c.label[k]];
+    cluster.normal += c.on_sphere[k].weight * c.on_sphere[k].direction;
+    cluster.weight += c.on_sphere[k].weight;
+    ++cluster.members;
+  }
+  for (NormalCluster& cluster : clusters) cluster.normal.normalize();
+  for (std::size_t k = 0; k < c.label.size(); ++k) {
+    if (c.label[k] == kNoise) continue;
+    NormalCluster& cluster = clusters[c.label[k]];
+    cluster.radius_deg =
+        std::max(cluster.radius_deg, angle_deg(cluster.normal, c.on_sphere[k].direction));
+  }
+  return clusters;
+}
+
 Initialization initialize_dbscan(const Window& window, const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  Candidates candidates = cluster_candidates(window);
+  Candidates candidates = cluster_candidates(candidates_of_window(window, watch.stop));
+  if (watch.stop_requested()) return failed("stopped");
   const auto start = highest_member(candidates, [](const Vector3d&) { return true; });
   if (!start) {
     return failed_with(fmt::format("no plane: the {} possible normals of {} homographies gather "

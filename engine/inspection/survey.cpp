@@ -40,6 +40,7 @@ Survey::Survey(std::function<void()> changed)
 
 Survey::~Survey() {
   want({});
+  study(nullptr);
   thread_.request_stop();
   thread_.join();
 }
@@ -50,6 +51,8 @@ void Survey::open(std::shared_ptr<const Recording> recording) {
   running_.request_stop();
   recording_ = std::move(recording);
   wanted_.clear();
+  to_study_.reset();
+  study_.reset();
   results_ = std::make_shared<const SurveyResults>();
   wake_.notify_one();
 }
@@ -68,6 +71,17 @@ void Survey::add(std::shared_ptr<const Inspection> inspection) {
   if (inspection->recording != recording_) return;
   if (find_surveyed(results_.get(), inspection->settings) != nullptr) return;
   store({inspection->settings, inspection, ""});
+}
+
+void Survey::study(std::shared_ptr<const Inspection> inspection) {
+  const std::lock_guard lock(mutex_);
+  if (inspection &&
+      (inspection->recording != recording_ || (study_ && study_->window == inspection->window)))
+    inspection.reset();
+  if (inspection && to_study_ && to_study_->window == inspection->window) return;
+  if (studying_) running_.request_stop();
+  to_study_ = std::move(inspection);
+  wake_.notify_one();
 }
 
 void Survey::store(Surveyed result) {
@@ -98,7 +112,10 @@ SurveyStatus Survey::status() const {
   status.done = static_cast<int>(std::ranges::count_if(wanted_, [&](const Settings& settings) {
     return find_surveyed(results_.get(), settings) != nullptr;
   }));
-  if (const Settings* settings = next())
+  if (to_study_) {
+    ++status.of;
+    status.stage = "normals of the window";
+  } else if (const Settings* settings = next())
     status.stage = fmt::format("{}, {} frames", settings->method, settings->frames);
   return status;
 }
@@ -108,22 +125,44 @@ std::shared_ptr<const SurveyResults> Survey::results() const {
   return results_;
 }
 
+std::shared_ptr<const NormalStudy> Survey::latest_study() const {
+  const std::lock_guard lock(mutex_);
+  return study_;
+}
+
+void Survey::finish_study(const std::stop_token& request,
+                          std::shared_ptr<const NormalStudy> study) {
+  const std::lock_guard lock(mutex_);
+  studying_ = false;
+  if (request.stop_requested()) return;
+  study_ = std::move(study);
+  to_study_.reset();
+}
+
 void Survey::run(const std::stop_token& stop) {
   std::shared_ptr<const Recording> inspected;
   std::unique_ptr<Inspector> inspector;  // keeps the tracks from one setting to the next
   while (true) {
     std::stop_token request;
+    std::shared_ptr<const Inspection> studied;  // null: one of the list is inspected
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return next() != nullptr; })) return;
-      running_settings_ = *next();
+      if (!wake_.wait(lock, stop, [this] { return to_study_ || next() != nullptr; })) return;
       running_ = std::stop_source();
       request = running_.get_token();
-      active_ = true;
+      studied = to_study_;
+      studying_ = studied != nullptr;
+      active_ = !studying_;
+      if (active_) running_settings_ = *next();
       if (inspected != recording_) {
         inspected = recording_;
         inspector = std::make_unique<Inspector>(inspected);
       }
+    }
+    if (studied) {
+      finish_study(request, study_normals(*studied, request));
+      if (changed_) changed_();
+      continue;
     }
     Surveyed result = inspect(*inspector, running_settings_, request);
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/normal_study.h"
 
 #include <condition_variable>
 #include <functional>
@@ -38,8 +39,8 @@ struct SurveyStatus {
 };
 
 /// Many inspections of one recording, computed one after another by a thread of its own beside the
-/// worker's: other methods, other lengths. What was computed once is kept. All functions may be
-/// called from any thread and return at once.
+/// worker's: other methods, other lengths, and studies of a window. What was computed once is kept.
+/// All functions may be called from any thread and return at once.
 class Survey {
  public:
   /// `changed` is called on the survey's thread after each result.
@@ -56,13 +57,19 @@ class Survey {
   /// Somebody else's result.
   void add(std::shared_ptr<const Inspection> inspection);
 
+  /// The window whose normals are to be studied, before all that is wanted; null: none. One
+  /// that was studied last is not studied again.
+  void study(std::shared_ptr<const Inspection> inspection);
+
   SurveyStatus status() const;
-  std::shared_ptr<const SurveyResults> results() const;  ///< never null
+  std::shared_ptr<const SurveyResults> results() const;     ///< never null
+  std::shared_ptr<const NormalStudy> latest_study() const;  ///< null: none yet
 
  private:
   void run(const std::stop_token& stop);
   void store(Surveyed result);
   const Settings* next() const;  ///< the first wanted without a result; null: none
+  void finish_study(const std::stop_token& request, std::shared_ptr<const NormalStudy> study);
 
   std::function<void()> changed_;
   mutable std::mutex mutex_;
@@ -71,7 +78,10 @@ class Survey {
   std::vector<Settings> wanted_;
   std::shared_ptr<const SurveyResults> results_ = std::make_shared<const SurveyResults>();
   Settings running_settings_;
-  bool active_ = false;  ///< `running_settings_` are being computed
+  bool active_ = false;                         ///< `running_settings_` are being computed
+  std::shared_ptr<const Inspection> to_study_;  ///< null: nothing, or it is done
+  std::shared_ptr<const NormalStudy> study_;
+  bool studying_ = false;  ///< `to_study_` is being studied
   std::stop_source running_;
   std::jthread thread_;  ///< last: it starts when all the others exist
 };

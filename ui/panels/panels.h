@@ -7,7 +7,9 @@
 #include "ui/context/window_picture.h"
 #include "ui/panels/curve_facts.h"
 #include "ui/views/chart_view.h"
+#include "ui/views/normals_view.h"
 #include "ui/views/picture_texture.h"
+#include "ui/views/residual_charts.h"
 #include "ui/views/scene_view.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/workbench.h"
@@ -49,6 +51,12 @@ struct Patch {
   bool empty = true;  ///< there is no picture
 };
 
+/// Residuals of a window, and whose they are.
+struct Residuals {
+  std::shared_ptr<const Inspection> of;  ///< null: none yet
+  WindowResiduals px;
+};
+
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
@@ -60,7 +68,9 @@ struct Views {
   std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   KeptCurveFacts curves;                    ///< of the drawer
-  WindowPicture window;                     ///< of which only the parts that change are drawn anew
+  Residuals residuals;
+  NormalsMap normals;
+  WindowPicture window;  ///< of which only the parts that change are drawn anew
 };
 
 /// Brings the picture of the current frame into `views`, where it is not there yet.

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -266,8 +268,10 @@ std::string chart_values_at(const Chart& chart, double x) {
       if (!nearest || distance(other) < distance(*nearest)) nearest = other;
   if (!nearest) return values;
   for (const Curve& curve : chart.curves) {
-    const auto at = std::ranges::find(curve.x, *nearest);
-    if (at == curve.x.end()) continue;
+    // Where a curve steps there are two points at one x: the one on the side that is asked for.
+    const auto [first, end] = std::ranges::equal_range(curve.x, *nearest);
+    if (first == end) continue;
+    const auto at = x < *nearest ? first : std::prev(end);
     const double y = curve.y[at - curve.x.begin()];
     if (std::isfinite(y)) values += fmt::format("\n{}: {:.4g}", curve.name, y);
   }

@@ -28,6 +28,8 @@ constexpr std::uint32_t kSelected = 0xFFFFFF;   ///< rings around what is picked
 constexpr std::uint32_t kPointedAt = 0x56B4E9;  ///< ... and around what the mouse rests on
 constexpr std::uint32_t kRotation = 0xCC79A7;   ///< reddish purple: how fast the camera turns
 constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
+/// Stages of an inspection: tracking, RANSAC, rotations, initialization, its optimization.
+constexpr std::array<std::uint32_t, 5> kStages = {0x56B4E9, 0xE69F00, 0xCC79A7, 0x009E73, 0xF0E442};
 
 // Surfaces and text, dark to light. Each color stands once: a theme tells them apart by it.
 constexpr std::uint32_t kSceneBottom = 0x15181D;

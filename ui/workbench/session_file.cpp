@@ -218,6 +218,12 @@ void read_state(const Reader& read, WorkbenchState& state) {
   if (read.has("compare_zoom"))
     read_zoom(read.object("compare_zoom"), state.compare_zoom.emplace());
   read("hidden_curves", state.hidden_curves);
+  if (read.has("normals_zoom")) {
+    const Reader zoom = read.object("normals_zoom");
+    zoom("factor", state.normals_zoom.factor, 1, kLargestNormalsZoom);
+    zoom("center", state.normals_zoom.center);
+    state.normals_zoom = within_limits(state.normals_zoom);
+  }
   if (read.has("orbit")) state.orbit = read_orbit(read.object("orbit"));
   if (read.has("selection")) read_selection(read.object("selection"), state.selection);
   if (read.has("bookmarks")) state.bookmarks = read_bookmarks(read);
@@ -260,6 +266,8 @@ std::string session_text(const WorkbenchState& state) {
   json["cube_side"] = state.cube_side;
   json["cube_ray"] = state.cube_ray ? numbers(*state.cube_ray) : Json();
   json["picture_zoom"] = zoom_json(state.picture_zoom);
+  json["normals_zoom"] = {{"factor", state.normals_zoom.factor},
+                          {"center", numbers(state.normals_zoom.center)}};
   json["orbit"] = orbit_json(state.orbit);
   json["selection"] = selection_json(state.selection);
   json["bookmarks"] = bookmarks_json(state.bookmarks);
@@ -306,6 +314,7 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
   state.cube_side = saved.cube_side;
   state.cube_ray = saved.cube_ray;
   state.picture_zoom = saved.picture_zoom;
+  state.normals_zoom = saved.normals_zoom;
   state.orbit = saved.orbit;
   state.selection = saved.selection;
   state.bookmarks = saved.bookmarks;

@@ -58,7 +58,8 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted;
   const bool curves = state.panes.drawer == Drawer::curves;
   const bool now = curves || state.panes.compare || state.panes.drawer == Drawer::table ||
-                   state.panes.side == SidePane::normals;
+                   state.panes.drawer == Drawer::timing || state.panes.side == SidePane::normals ||
+                   state.panes.side == SidePane::solver;
   if (!state.recording) return wanted;
   const std::optional<std::string> other = flipped(state);
   if (!now && other) wanted.push_back(apply(parse_configuration(*other), state.settings));
@@ -90,13 +91,15 @@ void apply(WorkbenchState& state, const Command& command) {
   const auto move = [&](const MoveCube& c) { state.cube_ray = c.ray; };
   const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
   const auto zoom_all = [&](const ZoomCompare& c) { state.compare_zoom = c.zoom; };
+  const auto normals = [&](const ZoomNormals& c) { state.normals_zoom = c.zoom; };
   const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
   const auto fit = [&](const FitScene&) { state.orbit.reset(); };
   const auto open = [&](const OpenPath& c) { state.wishes.open = c.path; };
   const auto hover = [&](const HoverOver& c) { state.hover = c.hover; };
   const auto select = [&](const SelectTracks& c) { state.selection = c.selection; };
   std::visit(
-      Overloaded{run, change, go, cube, move, zoom, zoom_all, orbit, fit, open, hover, select},
+      Overloaded{
+          run, change, go, cube, move, zoom, zoom_all, normals, orbit, fit, open, hover, select},
       command);
 }
 
@@ -134,6 +137,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.recording = std::move(recording);
   state.inspection.reset();
   state.surveyed = std::make_shared<const SurveyResults>();
+  state.study.reset();
   state.selection = {};
   state.hover = {};
   state.cube_ray.reset();
@@ -145,6 +149,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.play_seconds = 0;
   state.picture_zoom = {};
   state.compare_zoom.reset();
+  state.normals_zoom = {};
   state.orbit.reset();
   const Settings fitting = fit_window(state.settings, state.frame_count());
   state.message.clear();

@@ -6,6 +6,7 @@
 #include "engine/inspection/survey.h"
 #include "engine/recording/recording.h"
 #include "ui/views/image_geometry.h"
+#include "ui/views/normals_disc.h"
 #include "ui/views/orbit_camera.h"
 #include "ui/views/palette.h"
 #include "ui/workbench/panes.h"
@@ -98,6 +99,7 @@ struct WorkbenchState {
   std::shared_ptr<const Recording> recording;    ///< null: nothing is open
   std::shared_ptr<const Inspection> inspection;  ///< the last one of it; null: none yet
   std::shared_ptr<const SurveyResults> surveyed = std::make_shared<const SurveyResults>();
+  std::shared_ptr<const NormalStudy> study;  ///< the last one, maybe of another window; null: none
 
   Settings settings;
   std::vector<Settings> undo, redo;  ///< earlier settings, and those that were undone; last first
@@ -123,6 +125,7 @@ struct WorkbenchState {
   std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera: where the cube stands on
                                             ///< the plane; nothing: where the inspection puts it
   PictureZoom picture_zoom;                 ///< of the picture
+  NormalsZoom normals_zoom;                 ///< of the disc of normals
   std::optional<OrbitCamera> orbit;         ///< of the scene; nothing: everything in view
   Selection selection;
   Hover hover;
@@ -167,6 +170,9 @@ struct ZoomPicture {
 struct ZoomCompare {
   std::optional<PictureZoom> zoom;
 };
+struct ZoomNormals {
+  NormalsZoom zoom;
+};
 struct OrbitScene {
   OrbitCamera camera;
 };
@@ -190,6 +196,7 @@ using Command = std::variant<RunAction,
                              MoveCube,
                              ZoomPicture,
                              ZoomCompare,
+                             ZoomNormals,
                              OrbitScene,
                              FitScene,
                              OpenPath,

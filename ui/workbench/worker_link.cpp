@@ -38,11 +38,19 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.published = published.inspection;
   link.cube_ray = state.cube_ray;
   state.surveyed = survey.results();
+  state.study = survey.latest_study();
   if (link.worker.error != link.error) {
     link.error = link.worker.error;
     if (!link.error.empty()) say(state, link.error, Severity::error);
   }
   return opened;
+}
+
+/// Whose normals the open pane shows; null: none does.
+std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
+  const Panes& panes = state.panes;
+  const bool open = panes.side == SidePane::normals || panes.side == SidePane::candidates;
+  return open && !panes.compare ? state.inspection : nullptr;
 }
 
 /// Shows the figures of a results.csv.
@@ -113,6 +121,7 @@ void synchronize(WorkbenchState& state,
   }
   if (compute) link.survey_canceled = false;
   survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
+  survey.study(link.survey_canceled ? nullptr : to_study(state));
   link.survey = survey.status();
   // Busy until the next call has seen what became of it.
   if (open_example || opening || compute) link.worker = {true, "", 0, 0, ""};

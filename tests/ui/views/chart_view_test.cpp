@@ -155,6 +155,9 @@ TEST(ChartValues, AreThoseOfTheNearestPoint) {
   EXPECT_EQ(chart_values_at(chart, 2.2), "frame: 2\nerror [px]\ngpo: 5");
   EXPECT_EQ(chart_values_at(chart, 9), "frame: 3\nerror [px]\nba: 8");
   EXPECT_EQ(chart_values_at(chart_of({}, {}), 1), "");
+  const Chart steps = chart_of({0, 1, 1, 2}, {4, 4, 5, 5});
+  EXPECT_EQ(chart_values_at(steps, 0.9), "frame: 1\nerror [px]\ngpo: 4");
+  EXPECT_EQ(chart_values_at(steps, 1.1), "frame: 1\nerror [px]\ngpo: 5");
 }
 
 }  // namespace

@@ -149,10 +149,11 @@ void add_cameras(std::vector<Action>& table) {
                         "Fit view",
                         "View",
                         {letter('F')},
-                        "Shows all of the picture and all of the scene",
+                        "Shows all of the picture, of the scene and of the normals",
                         [](State& s) {
                           s.picture_zoom = {};
                           s.compare_zoom.reset();
+                          s.normals_zoom = {};
                           s.orbit.reset();
                         }));
   Action zoom{"zoom", "Zoom the picture", "View", {}, "Shows the picture enlarged around a point"};
@@ -162,6 +163,23 @@ void add_cameras(std::vector<Action>& table) {
     s.picture_zoom = zoom_in("zoom", arguments, s.recording->camera);
   };
   table.push_back(zoom);
+  Action normals{"zoom-normals",
+                 "Zoom the normals",
+                 "View",
+                 {},
+                 "Shows the disc of normals enlarged around one of so much tilt to the right and "
+                 "down [deg]"};
+  normals.arguments = "FACTOR [RIGHT DOWN]";
+  normals.run = [](State& s, const Arguments& arguments) {
+    expect_count("zoom-normals", arguments, 1, 3);
+    NormalsZoom wanted;
+    wanted.factor = number_in("zoom-normals", arguments);
+    if (arguments.size() > 1)
+      wanted.center = {number_in("zoom-normals", arguments, 1) / 90,
+                       number_in("zoom-normals", arguments, 2) / 90};
+    s.normals_zoom = within_limits(wanted);
+  };
+  table.push_back(normals);
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/initializers/dbscan.h"
+#include "engine/initializers/normal_landscape.h"
+#include "engine/inspection/inspection.h"
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+namespace gpo {
+
+/// What a window says about the plane's normal, whatever a method makes of it. Immutable.
+struct NormalStudy {
+  std::shared_ptr<const Window> window;
+  NormalLandscape landscape;
+  std::vector<std::vector<HomographyCandidate>> candidates;  ///< one a frame of the window
+  std::vector<NormalCluster> clusters;                       ///< of the whole window's candidates
+};
+
+/// Null where it was stopped.
+std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
+                                                 const std::stop_token& stop = {});
+
+/// The true normal in the reference camera, towards it; nothing where it is unknown.
+std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
+
+}  // namespace gpo
