@@ -123,6 +123,8 @@ int view_command(const ViewArguments& arguments) {
   Session session;
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
+  session.host.state.recent = recent_files();
+  session.host.state.has_last_session = std::filesystem::exists(last_session_file());
   session.host.state.settings = settings;
   session.host.state.wishes.open = session_file ? session_file : recording;
   const float scale = session.gui.scale();

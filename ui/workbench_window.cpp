@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "ui/context/framebuffer.h"
+#include "ui/context/gui_style.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/panels/view_options.h"
 #include "ui/views/palette.h"
@@ -21,6 +22,7 @@ constexpr int kFramesToSettle = 3;
 
 void clear(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
+  rgb = themed(rgb);
   glClearColor(static_cast<float>(red(rgb)),
                static_cast<float>(green(rgb)),
                static_cast<float>(blue(rgb)),
@@ -40,6 +42,14 @@ void draw_views(const PanelInput& input,
     side_tabs(input, layout.side_tabs, commands);
     side_pane(input, layout.side, views, commands);
   }
+}
+
+/// Everything has another color now, also what nobody draws anew.
+void use_theme(const PanelInput& input, Views& views) {
+  if (current_theme() == input.state.theme) return;
+  set_theme(input.state.theme);
+  apply_style(input.scale);
+  views.window = WindowPicture();
 }
 
 /// Nothing is lit up any more when the mouse leaves the views.
@@ -64,7 +74,7 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
   status_line(input, layout.status);
   forget_hover(input, layout.views, commands);
   if (input.state.show_help) help_overlay(input, window, commands);
-  if (input.state.show_palette)
+  if (input.state.palette)
     palette_overlay(input, window, views, commands);
   else
     views.palette = {};
@@ -145,9 +155,10 @@ cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size win
 Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
+  use_theme(input, views);
   gui.begin_frame(size.width, size.height, 1, delta_seconds);
   draw_panels(input, size, views, commands);
-  gui.end_frame(views.window, palette::kBorder);
+  gui.end_frame(views.window, themed(palette::kBorder));
   return commands;
 }
 
@@ -160,6 +171,7 @@ cv::Mat draw_view(const std::string& view,
   const cv::Size size = wanted.value_or(own_size(view, input, window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
+  use_theme(input, views);
   for (int i = 0; i < kFramesToSettle; ++i) {
     if (view == "window") {
       draw_workbench(input, size, gui, views);

@@ -325,6 +325,7 @@ void Inspector::Stages::initialize(const Settings& settings,
   if (!rotations.value.R_wc.empty()) {
     growth.update(*rotations.key, [&]() { return std::optional(verdicts_of(grow(window, stop))); });
     inspection.growth = growth.value;
+    inspection.motion = frame_motion(window);
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
     if (!initialization.verdict && static_cast<int>(growth.value.size()) == settings.frames - 1)
       initialization.verdict = growth.value.back();

@@ -6,6 +6,7 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/inspection/cube.h"
+#include "engine/inspection/motion.h"
 #include "engine/inspection/settings.h"
 #include "engine/recording/recording.h"
 
@@ -36,6 +37,7 @@ struct Inspection {
   std::shared_ptr<const Initialization> initialization;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
+  std::vector<FrameMotion> motion;  ///< one a frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
   std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
   std::optional<CubeAnchor>

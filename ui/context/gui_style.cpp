@@ -17,6 +17,7 @@ namespace gpo {
 namespace {
 
 ImVec4 color(std::uint32_t rgb, double alpha = 1) {
+  rgb = themed(rgb);
   return {static_cast<float>(red(rgb)),
           static_cast<float>(green(rgb)),
           static_cast<float>(blue(rgb)),

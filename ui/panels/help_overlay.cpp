@@ -21,7 +21,7 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
   std::vector<KeyRow> rows;
   for (const Action& action : actions()) {
     if (action.shortcuts.empty()) continue;
-    const bool method = action.menu == "Method" && action.name.starts_with("method-");
+    const bool method = action.menu == "Method" && action.name.starts_with("method ");
     KeyRow row{"", (method ? "Method " : "") + action.title, "", action.tooltip};
     for (const Shortcut& shortcut : action.shortcuts) {
       row.keys += (row.keys.empty() ? "" : " or ") + shortcut.label;

@@ -13,8 +13,10 @@ namespace {
 void menu_item(const Action& action, const PanelInput& input, Commands& commands) {
   const bool checked = action.checked && action.checked(input.state);
   const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
-  if (ImGui::MenuItem(action.title.c_str(), keys.c_str(), checked, enabled(action, input.state))) {
-    push(commands, RunAction{action.name});
+  const std::string title = action.title + (action.complete() ? "" : " ...");
+  if (ImGui::MenuItem(title.c_str(), keys.c_str(), checked, enabled(action, input.state))) {
+    // What needs more than a click is typed.
+    push(commands, RunAction{action.complete() ? action.name : "palette " + action.name});
   }
   tooltip(action.tooltip);
 }

@@ -58,6 +58,13 @@ void move_choice(PaletteEntry& entry, int rows) {
   entry.chosen = std::clamp(entry.chosen, 0, std::max(0, rows - 1));
 }
 
+/// As if somebody had typed it.
+void type_out(PaletteEntry& entry, const std::string& text) {
+  entry.text.fill('\0');
+  text.copy(entry.text.data(), entry.text.size() - 1);
+  entry.typed_out = true;
+}
+
 /// Runs what was typed where that is a whole command, else what is chosen; one that needs more is
 /// typed out as far as it is known.
 void accept(PaletteEntry& entry, const Action* chosen, Commands& commands) {
@@ -69,10 +76,7 @@ void accept(PaletteEntry& entry, const Action* chosen, Commands& commands) {
     push(commands, RunAction{"palette"});
     push(commands, RunAction{chosen->name});
   } else if (chosen != nullptr) {
-    const std::string begun = chosen->name + " ";
-    begun.copy(entry.text.data(), entry.text.size() - 1);
-    entry.text[std::min(begun.size(), entry.text.size() - 1)] = '\0';
-    entry.typed_out = true;
+    type_out(entry, chosen->name + " ");
   }
 }
 
@@ -92,6 +96,8 @@ void palette_overlay(const PanelInput& input,
                      Commands& commands) {
   const float s = input.scale;
   PaletteEntry& entry = views.palette;
+  if (!entry.open && !input.state.palette->empty()) type_out(entry, *input.state.palette + " ");
+  entry.open = true;
   ImGui::SetNextWindowFocus();
   const float width = std::min(640 * s, window.width - 16 * s);
   ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * s)});

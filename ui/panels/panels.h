@@ -36,6 +36,7 @@ struct PanelInput {
 struct PaletteEntry {
   std::array<char, 256> text{};
   int chosen = 0;          ///< of the actions that it finds
+  bool open = false;       ///< in the last frame
   bool typed_out = false;  ///< by us: the cursor is to go to its end
 };
 

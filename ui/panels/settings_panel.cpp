@@ -6,6 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/palette.h"
+#include "ui/workbench/setting_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,7 @@ bool is_advanced(const SettingInfo& info) {
 /// the reason, where it changes nothing. `changed` tells whether the user changed one.
 struct SettingRows {
   const PanelInput& input;
+  Commands& commands;
   float label_width;
   bool advanced = false;  ///< which of the settings are shown
   bool changed = false;
@@ -39,15 +41,26 @@ struct SettingRows {
   void operator()(const SettingInfo& info, Value& value) {
     if (is_advanced(info) != advanced) return;
     idle = why_idle(input.state.settings, info.key);
+    const std::string normal = setting_text(Settings{}, info.key);
+    const bool other = setting_text(input.state.settings, info.key) != normal;
     ImGui::BeginDisabled(!idle.empty());
-    label(info.title, idle.empty() ? info.help : idle.c_str());
+    ImGui::PushID(info.key);
+    label(info.title, idle.empty() ? info.help : idle.c_str(), other);
     widget(info, value);
+    ImGui::PopID();
     ImGui::EndDisabled();
+    if (other && ImGui::IsItemClicked(ImGuiMouseButton_Right))
+      push(commands, RunAction{std::string("reset ") + info.key});
   }
 
   /// Of the item drawn last.
   void explain(const SettingInfo& info, const char* how = "") const {
-    tooltip(idle.empty() ? std::string(info.help) + how : idle);
+    const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
+    const std::string normal = setting_text(Settings{}, info.key);
+    tooltip(
+        idle.empty()
+            ? fmt::format("{}{}{}\nDefault: {}; right click resets", info.help, unit, how, normal)
+            : idle);
   }
 
   bool begin_combo(const SettingInfo& info, const char* title) const {
@@ -56,9 +69,12 @@ struct SettingRows {
     return false;
   }
 
-  void label(const char* title, const char* help) const {
+  /// In the color of what was chosen, where it is `other` than the default.
+  void label(const char* title, const char* help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(other ? palette::kAccent : palette::kText));
     ImGui::TextUnformatted(title);
+    ImGui::PopStyleColor();
     tooltip(help);
     ImGui::SameLine(label_width);
     ImGui::SetNextItemWidth(-1);
@@ -210,6 +226,20 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
   tooltip(help);
 }
 
+/// At the right of the heading, where there is something to reset.
+void reset_button(const PanelInput& input, Commands& commands) {
+  const Settings& settings = input.state.settings;
+  if (settings == with_defaults(settings)) return;
+  const char* title = "reset";
+  ImGui::PushFont(font(Font::small));
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
+                       ImGui::CalcTextSize(title).x - 8 * input.scale);
+  if (ImGui::SmallButton(title)) push(commands, RunAction{"reset"});
+  ImGui::PopFont();
+  tooltip("All settings but the window and the method to their defaults; Ctrl+Z takes it back");
+}
+
 }  // namespace
 
 void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
@@ -218,7 +248,8 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * s, 3 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
   heading("SETTINGS");
-  SettingRows rows{input, std::round(104 * s)};
+  reset_button(input, commands);
+  SettingRows rows{input, commands, std::round(104 * s)};
   Settings settings = input.state.settings;
   visit_settings(settings, rows);
   cube_row(rows, input, commands);

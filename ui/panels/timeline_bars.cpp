@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 namespace gpo {
@@ -66,7 +67,62 @@ void draw_verdict_signs(
   }
 }
 
-void draw_verdict_legend(ImDrawList& list, float left, float top, float scale) {
+namespace {
+
+/// What a line over the bars shows.
+struct MotionLine {
+  const char* name;
+  const char* unit;
+  std::uint32_t rgb;
+  double FrameMotion::*value;
+};
+constexpr MotionLine kMotionLines[] = {
+    {"parallax", " px", palette::kText, &FrameMotion::parallax_px},
+    {"rotation", "\u00b0/s", palette::kRotation, &FrameMotion::rotation_rate_deg_s}};
+
+double largest(const Inspection& inspection, const MotionLine& line) {
+  double most = 0;
+  for (const FrameMotion& motion : inspection.motion)
+    if (std::isfinite(motion.*line.value)) most = std::max(most, motion.*line.value);
+  return most;
+}
+
+}  // namespace
+
+void draw_motion(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
+  const int start = inspection.window->start;
+  for (const MotionLine& line : kMotionLines) {
+    const double most = largest(inspection, line);
+    if (most <= 0) continue;
+    std::vector<ImVec2> points;
+    for (int i = 0; i < static_cast<int>(inspection.motion.size()); ++i) {
+      const double value = inspection.motion[i].*line.value;
+      if (std::isfinite(value))
+        points.emplace_back(slot_middle(axis, start + i),
+                            bottom - static_cast<float>(value / most) * (bottom - top));
+    }
+    const auto count = static_cast<int>(points.size());
+    list.AddPolyline(points.data(), count, imgui_color(palette::kBackground, 0.7), 0, 3);
+    list.AddPolyline(points.data(), count, imgui_color(line.rgb), 0, 1.4F);
+  }
+}
+
+void draw_bookmarks(ImDrawList& list,
+                    std::span<const Bookmark> bookmarks,
+                    const TimeAxis& axis,
+                    float top,
+                    float scale) {
+  for (const Bookmark& bookmark : bookmarks) {
+    const float x = std::round(slot_middle(axis, bookmark.frame));
+    const ImU32 color = imgui_color(palette::kWarning);
+    list.AddLine({x, top - 6 * scale}, {x, top + 10 * scale}, color, std::round(1.5F * scale));
+    list.AddRectFilled({x, top - 6 * scale}, {x + 8 * scale, top}, color);
+  }
+}
+
+void draw_verdict_legend(
+    ImDrawList& list, const Inspection& inspection, float left, float top, float scale) {
   const ImFont* f = font(Font::small);
   const auto write = [&](const char* text, std::uint32_t rgb) {
     list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);
@@ -81,6 +137,15 @@ void draw_verdict_legend(ImDrawList& list, float left, float top, float scale) {
   }
   left += 16 * scale;
   write("height: tracks; gray: outliers", kTextDim);
+  for (const MotionLine& line : kMotionLines) {
+    if (inspection.motion.empty()) return;
+    left += 16 * scale;
+    const float y = std::round(top + f->FontSize / 2);
+    list.AddLine({left, y}, {left + 14 * scale, y}, imgui_color(line.rgb), 1.4F * scale);
+    left += 18 * scale;
+    write(fmt::format("{} to {:.0f}{}", line.name, largest(inspection, line), line.unit).c_str(),
+          kTextDim);
+  }
 }
 
 }  // namespace gpo

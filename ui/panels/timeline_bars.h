@@ -4,6 +4,9 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/panels/time_axis.h"
+#include "ui/workbench/workbench.h"
+
+#include <span>
 
 struct ImDrawList;
 
@@ -21,6 +24,18 @@ void draw_verdict_signs(
     ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale);
 
 /// One line that says what the bars mean.
-void draw_verdict_legend(ImDrawList& list, float left, float top, float scale);
+void draw_verdict_legend(
+    ImDrawList& list, const Inspection& inspection, float left, float top, float scale);
+
+/// Thin lines over the bars: parallax, and the rate of rotation, each to its own largest value.
+void draw_motion(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom);
+
+/// Small flags at the upper edge.
+void draw_bookmarks(ImDrawList& list,
+                    std::span<const Bookmark> bookmarks,
+                    const TimeAxis& axis,
+                    float top,
+                    float scale);
 
 }  // namespace gpo

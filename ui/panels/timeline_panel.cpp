@@ -108,6 +108,39 @@ void draw_cursor(ImDrawList& list, float x, float top, float bottom, float scale
       {x - head, top - head}, {x + head, top - head}, {x, top + head * 0.4F}, color);
 }
 
+/// Of the bookmark at a frame, as a line; empty where there is none.
+std::string note_at(const std::vector<Bookmark>& bookmarks, int frame) {
+  const auto found = std::ranges::find(bookmarks, frame, &Bookmark::frame);
+  if (found == bookmarks.end()) return "";
+  return (found->note.empty() ? "bookmark" : found->note) + "\n";
+}
+
+/// Either end of the window can be taken hold of and moved.
+void drag_window_ends(const PanelInput& input,
+                      const TimeAxis& axis,
+                      const Rectangle& bar,
+                      Commands& commands) {
+  const Settings& settings = input.state.settings;
+  const float reach = 5 * input.scale;
+  const float x = ImGui::GetIO().MousePos.x;
+  const auto handle = [&](const char* name, int frame, auto moved) {
+    const float at = slot_begin(axis, frame);
+    ImGui::SetCursorScreenPos({at - reach, bar.y});
+    ImGui::InvisibleButton(name, {2 * reach, bar.height});
+    if (ImGui::IsItemHovered() || ImGui::IsItemActive())
+      ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    tooltip("Drag: moves this end of the window");
+    if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
+      push(commands, ChangeSettings{moved(), true});
+  };
+  const int count = axis.frames;
+  handle(
+      "start", settings.start, [&] { return start_window_at(settings, frame_at(axis, x), count); });
+  handle("end", std::min(count, settings.start + settings.frames), [&] {
+    return end_window_at(settings, frame_at(axis, x), count);
+  });
+}
+
 void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
   const WorkbenchState& state = input.state;
   const TimeAxis axis{bar.x, bar.right(), state.frame_count()};
@@ -116,6 +149,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   if (axis.frames < 1) return;
   const Inspection* shown =
       input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
+  drag_window_ends(input, axis, bar, commands);
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
   if (ImGui::IsItemActive()) {
@@ -126,18 +160,38 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
     // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
     const float share = x / ImGui::GetIO().DisplaySize.x;
     ImGui::SetNextWindowPos({x, bar.y - 8 * input.scale}, 0, {share, 1});
-    tooltip(shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame));
+    const std::string text = shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
+    tooltip(note_at(state.bookmarks, frame) + text);
   }
   draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
   if (shown) {
     draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
+    draw_motion(list, *shown, axis, bar.y + 4 * input.scale, bar.bottom() - 2 * input.scale);
     draw_verdict_signs(list, *shown, axis, bar.bottom() - 9 * input.scale, input.scale);
   }
+  draw_bookmarks(list, state.bookmarks, axis, bar.y, input.scale);
   draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);
 }
 
+/// How playing goes: its speed and whether it repeats the window.
+void draw_playing(const PanelInput& input, Commands& commands) {
+  const WorkbenchState& state = input.state;
+  const float gap = 6 * input.scale;
+  ImGui::PushFont(font(Font::small));
+  ImGui::SameLine(0, gap);
+  if (ImGui::SmallButton(fmt::format("{:g}\u00d7", state.speed).c_str()))
+    push(commands, RunAction{state.speed >= 8 ? "speed 0.125" : "faster"});
+  tooltip("Speed of playing; click: twice as fast (+), from 8\u00d7 on again at 1/8. - halves it");
+  ImGui::SameLine(0, gap);
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(state.loop ? kAccent : kTextDim));
+  if (ImGui::SmallButton("loop")) push(commands, RunAction{"loop"});
+  ImGui::PopStyleColor();
+  tooltip("Playing repeats the window (L)");
+  ImGui::PopFont();
+}
+
 /// "frame 29 / 59" over "0.967 s": counted from 0, as everywhere.
-void draw_numbers(const PanelInput& input, float left, float top) {
+void draw_numbers(const PanelInput& input, float left, float top, Commands& commands) {
   const WorkbenchState& state = input.state;
   if (!state.recording) return;
   const auto& times = state.recording->timestamps_ns;
@@ -152,6 +206,7 @@ void draw_numbers(const PanelInput& input, float left, float top) {
   ImGui::PopStyleColor();
   tooltip(
       fmt::format("The window spans frames {} to {}", start, start + state.settings.frames - 1));
+  draw_playing(input, commands);
 }
 
 }  // namespace
@@ -172,7 +227,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
     icon_button(icon, name, side, input, commands);
     ImGui::SameLine();
   }
-  const float numbers = std::round(124 * s);
+  const float numbers = std::round(136 * s);
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;
@@ -181,10 +236,13 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
                       place.right() - numbers - 24 * s - left,
                       place.height - std::round(legend ? 34 * s : 22 * s)};
   draw_axis(input, bar, commands);
-  if (legend) draw_verdict_legend(*ImGui::GetWindowDrawList(), bar.x, bar.bottom() + 4 * s, s);
+  if (legend)
+    draw_verdict_legend(
+        *ImGui::GetWindowDrawList(), *input.inspection(), bar.x, bar.bottom() + 4 * s, s);
   draw_numbers(input,
                place.right() - numbers - 8 * s,
-               place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s));
+               place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s),
+               commands);
   ImGui::PopStyleVar();
 }
 

@@ -126,6 +126,12 @@ std::string bar_text(const Inspection& inspection, int frame) {
   std::string text = fmt::format("frame {}", frame);
   if (in_window < 0 || in_window >= window.frame_count()) return text;
   text += fmt::format(": {} inliers", window.inlier_count(in_window));
+  if (in_window < static_cast<int>(inspection.motion.size())) {
+    const FrameMotion& motion = inspection.motion[in_window];
+    text += fmt::format("\nparallax {:.1f} px, turns at {:.0f}\u00b0/s",
+                        motion.parallax_px,
+                        motion.rotation_rate_deg_s);
+  }
   if (in_window == 0) return text + ". The window starts here: its reference frame";
   const auto& growth = inspection.growth;
   if (in_window > static_cast<int>(growth.size())) return text;

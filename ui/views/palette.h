@@ -26,9 +26,10 @@ constexpr std::uint32_t kUncertain = 0xFFF3D6;  ///< warm white
 constexpr std::uint32_t kPoint = 0xC9D2DC;      ///< map points
 constexpr std::uint32_t kSelected = 0xFFFFFF;   ///< rings around what is picked out
 constexpr std::uint32_t kPointedAt = 0x56B4E9;  ///< ... and around what the mouse rests on
+constexpr std::uint32_t kRotation = 0xCC79A7;   ///< reddish purple: how fast the camera turns
 constexpr std::array<std::uint32_t, 3> kAxes = {0xEF5B50, 0x4CC26B, 0x4A90F0};  ///< x, y, z
 
-// Surfaces and text, dark to light.
+// Surfaces and text, dark to light. Each color stands once: a theme tells them apart by it.
 constexpr std::uint32_t kSceneBottom = 0x15181D;
 constexpr std::uint32_t kSceneTop = 0x262B33;
 constexpr std::uint32_t kBackground = 0x14171B;
@@ -39,12 +40,12 @@ constexpr std::uint32_t kActive = 0x3F4958;
 constexpr std::uint32_t kBorder = 0x323944;
 constexpr std::uint32_t kTextDim = 0x98A2B0;
 constexpr std::uint32_t kText = 0xE6EAF0;
-constexpr std::uint32_t kAccent = 0x56B4E9;  ///< sky blue: what is chosen or can be dragged
-constexpr std::uint32_t kGood = 0x1FCB93;
-constexpr std::uint32_t kWarning = 0xE69F00;
-constexpr std::uint32_t kBad = 0xF0503C;
+constexpr std::uint32_t kAccent = 0x5AB6EA;  ///< sky blue: what is chosen or can be dragged
+constexpr std::uint32_t kGood = 0x1FCB94;
+constexpr std::uint32_t kWarning = 0xE69F01;
+constexpr std::uint32_t kBad = 0xF0503D;
 
-// Figures for print, on white.
+// Figures for print, on white; the same in every theme.
 constexpr std::uint32_t kInk = 0x1A1D21;
 constexpr std::uint32_t kPaperAxis = 0x6B727C;
 constexpr std::uint32_t kPaperGrid = 0xE4E7EB;
@@ -55,8 +56,19 @@ constexpr double red(std::uint32_t rgb) { return ((rgb >> 16) & 0xFF) / 255.0; }
 constexpr double green(std::uint32_t rgb) { return ((rgb >> 8) & 0xFF) / 255.0; }
 constexpr double blue(std::uint32_t rgb) { return (rgb & 0xFF) / 255.0; }
 
+/// Of the window: its surfaces, its text, and the data that is drawn light on dark.
+enum class Theme { dark, light };
+/// What `themed` answers from now on, everywhere: there is one window.
+void set_theme(Theme theme);
+Theme current_theme();
+/// The colors above are those of the dark theme; this is the one that stands for it in the current
+/// theme. Colors of methods and most data are the same in both.
+std::uint32_t themed(std::uint32_t rgb);
+
 /// Between two colors, 0..1: thin things are drawn dim and opaque, so that depth is right.
 inline std::uint32_t mixed_rgb(std::uint32_t a, std::uint32_t b, double share) {
+  a = themed(a);
+  b = themed(b);
   const auto channel = [&](int shift) {
     const double x = (a >> shift) & 0xFF, y = (b >> shift) & 0xFF;
     return static_cast<std::uint32_t>(std::lround(x + share * (y - x))) << shift;
@@ -64,8 +76,9 @@ inline std::uint32_t mixed_rgb(std::uint32_t a, std::uint32_t b, double share) {
   return channel(16) | channel(8) | channel(0);
 }
 
-/// As Dear ImGui packs a color (IM_COL32). `alpha` in 0..1.
-constexpr std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {
+/// As Dear ImGui packs a color (IM_COL32), in the current theme. `alpha` in 0..1.
+inline std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {
+  rgb = themed(rgb);
   return static_cast<std::uint32_t>(alpha * 255.999) << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) |
          ((rgb >> 16) & 0xFF);
 }

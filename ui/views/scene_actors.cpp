@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene_actors.h"
 
+#include "ui/views/palette.h"
+
 #include <cmath>
 
 #include <vtkCellData.h>
@@ -23,6 +25,7 @@ vtkIdType Shapes::add(const Vector3d& point) {
 }
 
 void Shapes::color(std::uint32_t rgb, double alpha) {
+  rgb = themed(rgb);
   const auto byte = [](std::uint32_t value) { return static_cast<unsigned char>(value & 0xFF); };
   const std::array<unsigned char, 4> rgba = {
       byte(rgb >> 16), byte(rgb >> 8), byte(rgb), byte(std::lround(255 * alpha))};

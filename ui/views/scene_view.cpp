@@ -208,6 +208,12 @@ bool same(const OrbitCamera& a, const OrbitCamera& b) {
          a.view_angle_deg == b.view_angle_deg;
 }
 
+void set_background(vtkRenderer& renderer) {
+  const std::uint32_t bottom = themed(palette::kSceneBottom), top = themed(palette::kSceneTop);
+  renderer.SetBackground(red(bottom), green(bottom), blue(bottom));
+  renderer.SetBackground2(red(top), green(top), blue(top));
+}
+
 }  // namespace
 
 bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options) {
@@ -225,6 +231,7 @@ struct SceneView::Pipeline {
   SceneViewOptions options;
   cv::Size size;
   double scale = 0;
+  Theme theme = Theme::dark;
   unsigned texture = 0;
   std::size_t renders = 0;
 
@@ -236,10 +243,6 @@ struct SceneView::Pipeline {
 
 SceneView::SceneView() : pipeline_(std::make_unique<Pipeline>()) {
   vtkRenderer& renderer = *pipeline_->renderer;
-  renderer.SetBackground(
-      red(palette::kSceneBottom), green(palette::kSceneBottom), blue(palette::kSceneBottom));
-  renderer.SetBackground2(
-      red(palette::kSceneTop), green(palette::kSceneTop), blue(palette::kSceneTop));
   renderer.SetGradientBackground(true);
   renderer.SetBackgroundAlpha(1);
   pipeline_->window->AddRenderer(&renderer);
@@ -255,13 +258,16 @@ unsigned SceneView::render(const Inspection& inspection,
   Pipeline& now = *pipeline_;
   const double scale = overlay_scale();
   if (now.texture != 0 && now.shows(inspection) && same(now.camera, camera) &&
-      now.options == options && now.size == cv::Size(width, height) && now.scale == scale)
+      now.options == options && now.size == cv::Size(width, height) && now.scale == scale &&
+      now.theme == current_theme())
     return now.texture;
   now.inspection = inspection;
   now.camera = camera;
   now.options = options;
   now.size = {width, height};
   now.scale = scale;
+  now.theme = current_theme();
+  set_background(*now.renderer);
   build({*now.renderer, inspection, options, scale}, camera);
   set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);
   now.renderer->ResetCameraClippingRange();

@@ -196,6 +196,10 @@ void read_state(const Reader& read, WorkbenchState& state) {
   read("frame", state.frame, 0, 1'000'000'000);
   read("speed", state.speed, 0.01, 100);
   read("loop", state.loop);
+  std::string theme = "dark";
+  read("theme", theme);
+  if (theme != "dark" && theme != "light") read.refuse("theme");
+  state.theme = theme == "light" ? Theme::light : Theme::dark;
   if (read.has("view")) read_view(read.object("view"), state.view);
   if (read.has("panes")) read_panes(read.object("panes"), state.panes);
   read_compared(read, state.compared);
@@ -239,6 +243,7 @@ std::string session_text(const WorkbenchState& state) {
   json["frame"] = state.frame;
   json["speed"] = state.speed;
   json["loop"] = state.loop;
+  json["theme"] = state.theme == Theme::light ? "light" : "dark";
   json["view"] = view_json(state.view);
   json["panes"] = panes_json(state.panes);
   json["compared"] = state.compared;
@@ -283,6 +288,7 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
   state.frame = std::clamp(saved.frame, 0, std::max(0, state.frame_count() - 1));
   state.speed = saved.speed;
   state.loop = saved.loop;
+  state.theme = saved.theme;
   state.view = saved.view;
   state.panes = saved.panes;
   state.compared = saved.compared;

@@ -7,6 +7,7 @@
 #include "engine/recording/recording.h"
 #include "ui/views/image_geometry.h"
 #include "ui/views/orbit_camera.h"
+#include "ui/views/palette.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 
@@ -108,6 +109,7 @@ struct WorkbenchState {
   bool loop = false;                ///< playing repeats the window
   std::vector<Bookmark> bookmarks;  ///< by frame
 
+  Theme theme = Theme::dark;
   ViewToggles view;
   Panes panes;
   std::vector<std::string> compared = {"gpo", "pnp_ba", "ba", "pba"};  ///< keys of Configurations
@@ -125,7 +127,10 @@ struct WorkbenchState {
   Selection selection;
   Hover hover;
   bool show_help = false;
-  bool show_palette = false;
+  std::optional<std::string> palette;  ///< open, with this typed already; nothing: shut
+
+  std::vector<std::filesystem::path> recent;  ///< opened before, the last one first
+  bool has_last_session = false;              ///< `continue` has something to open
 
   std::string message;  ///< the last one, one line
   std::vector<LogLine> log;

@@ -74,8 +74,9 @@ TEST(WindowLayout, PictureAndSceneAreTheLargest) {
     if (size.width >= 1280 * size.scale && size.height >= 720 * size.scale) {
       ASSERT_GT(views, others);
     }
-    ASSERT_GE(area(layout.picture) / area(layout.side), 0.98);
-    ASSERT_LE(area(layout.picture) / area(layout.side), 1.4);
+    const float beside = area(layout.side) + area(layout.side_tabs);
+    ASSERT_GE(area(layout.picture) / beside, 0.98);
+    ASSERT_LE(area(layout.picture) / beside, 1.4);
     if (size.width < 800 * size.scale) continue;
     for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
       ASSERT_GT(area(layout.picture), area(part));
@@ -90,7 +91,7 @@ TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
     EXPECT_EQ(part.width, 1280);
   }
   EXPECT_EQ(layout.status.bottom(), 720);
-  EXPECT_EQ(layout.picture.y, layout.side.y);  // side by side
+  EXPECT_EQ(layout.picture.y, layout.side_tabs.y);  // side by side
   EXPECT_LE(layout.picture.right(), layout.side.x);
 }
 

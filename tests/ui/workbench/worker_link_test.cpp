@@ -117,10 +117,11 @@ TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
 }
 
 TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
-  state_.wishes.quit = state_.wishes.save_picture = state_.wishes.compute = true;
+  state_.wishes.quit = state_.wishes.compute = true;
+  state_.wishes.screenshots.push_back({});
   synchronize();
   EXPECT_TRUE(state_.wishes.quit);
-  EXPECT_TRUE(state_.wishes.save_picture);
+  EXPECT_EQ(state_.wishes.screenshots.size(), 1U);
   EXPECT_FALSE(state_.wishes.compute);
 }
 

@@ -3,6 +3,8 @@
 #include "ui/workbench/actions/tables.h"
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -10,8 +12,8 @@ namespace {
 using State = WorkbenchState;
 
 void escape(State& state) {
-  if (state.show_palette) {
-    state.show_palette = false;
+  if (state.palette) {
+    state.palette.reset();
   } else if (state.show_help) {
     state.show_help = false;
   } else {
@@ -22,13 +24,19 @@ void escape(State& state) {
 }  // namespace
 
 void add_help_actions(std::vector<Action>& table) {
-  Action palette = plain("palette",
-                         "All commands",
-                         "Help",
-                         {control('P')},
-                         "Finds a command by a part of its name and runs it",
-                         [](State& s) { s.show_palette = !s.show_palette; });
-  palette.checked = [](const State& s) { return s.show_palette; };
+  Action palette{"palette",
+                 "All commands",
+                 "Help",
+                 {control('P')},
+                 "Finds a command by a part of its name and runs it"};
+  palette.arguments = "[TEXT]";
+  palette.run = [](State& s, const Arguments& arguments) {
+    if (s.palette && arguments.empty())
+      s.palette.reset();
+    else
+      s.palette = fmt::format("{}", fmt::join(arguments, " "));
+  };
+  palette.checked = [](const State& s) { return s.palette.has_value(); };
   palette.needs_recording = false;
   table.push_back(palette);
   Action help = plain("help",

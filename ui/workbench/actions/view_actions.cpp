@@ -3,6 +3,7 @@
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -128,6 +129,21 @@ void add_panes(std::vector<Action>& table) {
   table.push_back(shut);
 }
 
+void add_themes(std::vector<Action>& table) {
+  for (const auto& [name, title, theme] : {std::tuple{"theme dark", "Dark theme", Theme::dark},
+                                           {"theme light", "Light theme", Theme::light}}) {
+    Action action = plain(name,
+                          title,
+                          "View",
+                          {},
+                          "Colors of the window; those of methods and data stay",
+                          [theme](State& s) { s.theme = theme; });
+    action.checked = [theme](const State& s) { return s.theme == theme; };
+    action.needs_recording = false;
+    table.push_back(action);
+  }
+}
+
 void add_cameras(std::vector<Action>& table) {
   table.push_back(plain("fit",
                         "Fit view",
@@ -155,6 +171,7 @@ void add_view_actions(std::vector<Action>& table) {
   add_panes(table);
   add_compare_actions(table);
   add_cameras(table);
+  add_themes(table);
 }
 
 }  // namespace gpo

@@ -1,0 +1,153 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/recording.h"
+#include "tests/ui/gl_test.h"
+#include "ui/workbench/actions.h"
+#include "ui/workbench_host.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+
+#include <GL/glew.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+const std::filesystem::path kFolder = GPO_TEST_OUTPUT_DIR "/monkey";
+
+int from_environment(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+/// Somebody who does anything at all, but the same for the same seed.
+class Monkey {
+ public:
+  explicit Monkey(unsigned seed) : random_(seed) {}
+
+  int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
+  double between(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  template <class T>
+  const T& one_of(const std::vector<T>& all) {
+    return all[static_cast<std::size_t>(below(static_cast<int>(all.size())))];
+  }
+
+  /// An action's name with arguments that may or may not make sense.
+  std::string line() {
+    const auto table = actions();
+    const Action& action = table[static_cast<std::size_t>(below(static_cast<int>(table.size())))];
+    if (leaves(action.name)) return "next";
+    std::string line = action.name;
+    const int words = action.complete() ? below(2) : 1 + below(4);
+    for (int i = 0; i < words && !action.arguments.empty(); ++i)
+      line = fmt::format("{} {}", line, argument());
+    return line;
+  }
+
+ private:
+  /// What would end the run, or write where the monkey has no business.
+  static bool leaves(const std::string& name) {
+    return name == "quit" || name == "open" || name == "continue" ||
+           name.find("save") != std::string::npos || name.find("export") != std::string::npos ||
+           name.find("screenshot") != std::string::npos;
+  }
+  std::string argument() {
+    static const std::vector<std::string> words = {
+        "on",     "off",       "0",       "1",          "17",
+        "-3",     "1e9",       "nan",     "gpo",        "pba",
+        "ba",     "pnp_ba",    "x",       "\"a b\"",    "frames",
+        "method", "seed",      "exclude", "none",       "default",
+        "gyro",   "averaging", "ransac",  "consistent", "gpo+no-ransac",
+        "all",    "20",        "40",      "0.5",        "\xff"};
+    return below(3) == 0 ? fmt::format("{:.2f}", between(-100, 800)) : one_of(words);
+  }
+
+  std::mt19937 random_;
+};
+
+class MonkeyTest : public DrawingTest {
+ protected:
+  void draw() {
+    context_.bind();
+    for (const Command& command : host_.draw()) apply(host_.state, command);
+    ASSERT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  }
+
+  void use_mouse(Monkey& monkey) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = {static_cast<float>(monkey.between(-10, host_.size.width + 10)),
+                   static_cast<float>(monkey.between(-10, host_.size.height + 10))};
+    for (int button = 0; button < 3; ++button)
+      if (monkey.below(4) == 0) io.MouseDown[button] = !io.MouseDown[button];
+    io.KeyShift = monkey.below(6) == 0;
+    io.KeyCtrl = monkey.below(6) == 0;
+    if (monkey.below(5) == 0) io.MouseWheel = static_cast<float>(monkey.below(5) - 2);
+    if (monkey.below(8) == 0) io.AddInputCharacter('a' + static_cast<unsigned>(monkey.below(26)));
+  }
+
+  void resize(Monkey& monkey) {
+    static const std::vector<cv::Size> sizes = {
+        {1280, 720}, {1024, 640}, {800, 500}, {1600, 900}, {640, 480}, {320, 200}};
+    host_.size = monkey.one_of(sizes);
+  }
+
+  OffscreenContext context_{1600, 900};
+  Gui gui_;
+  WorkbenchHost host_{gui_, Worker::open_with_inspector, GPO_SOURCE_DIR "/sequences/desk"};
+};
+
+double resident_megabytes() {
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * 4096 / 1e6;
+}
+
+/// GPO_MONKEY_TURNS and GPO_MONKEY_SEED make it longer and other.
+TEST_F(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
+  if (!std::filesystem::exists(GPO_SOURCE_DIR "/sequences/desk"))
+    GTEST_SKIP() << "no bundled recording";
+  std::filesystem::create_directories(kFolder);
+  setenv("XDG_STATE_HOME", (kFolder / "state").c_str(), 1);
+  const int turns = from_environment("GPO_MONKEY_TURNS", 400);
+  const auto seed = static_cast<unsigned>(from_environment("GPO_MONKEY_SEED", 1));
+  Monkey monkey(seed);
+  run_action(host_.state, "open-example");
+  host_.settle();
+  double settled_megabytes = 0;
+  for (int turn = 0; turn < turns; ++turn) {
+    std::string line;
+    if (monkey.below(3) > 0) {
+      line = monkey.line();
+      run_action(host_.state, line);
+    }
+    SCOPED_TRACE(fmt::format("seed {}, turn {}: {}", seed, turn, line));
+    if (monkey.below(2) == 0) use_mouse(monkey);
+    if (monkey.below(40) == 0) resize(monkey);
+    if (monkey.below(25) == 0) host_.settle();
+    host_.synchronize();
+    draw();
+    if (HasFatalFailure()) return;
+    advance(host_.state, 0.02);
+    ASSERT_GE(host_.state.frame, 0);
+    ASSERT_LT(host_.state.frame, host_.state.frame_count());
+    ASSERT_LE(host_.state.settings.start + host_.state.settings.frames, host_.state.frame_count());
+    if (turn == turns / 2) settled_megabytes = resident_megabytes();
+  }
+  host_.settle();
+  const double grown = resident_megabytes() - settled_megabytes;
+  RecordProperty("grown_megabytes", std::to_string(grown));
+  // The survey keeps some results, and VTK some shaders; a leak a turn would be more.
+  EXPECT_LT(grown, 300);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,193 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/ui/gl_test.h"
+#include "tests/ui/made_inspection.h"
+#include "ui/panels/view_options.h"
+#include "ui/views/image_view.h"
+#include "ui/views/scene_geometry.h"
+#include "ui/workbench/layout.h"
+#include "ui/workbench_window.h"
+
+#include <gmock/gmock.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using testing::ElementsAre;
+
+/// A window with a mouse; what the user does is applied.
+class LinkedSelection : public DrawingTest {
+ protected:
+  static constexpr int kWidth = 1280, kHeight = 720;
+
+  LinkedSelection() {
+    state_.settings = inspection_->settings;
+    adopt(state_, inspection_->recording);
+    state_.inspection = inspection_;
+    apply(state_, GoToFrame{kFrame});
+    for (int i = 0; i < 3; ++i) draw();
+  }
+  void draw() {
+    context_.bind();
+    for (const Command& command :
+         draw_workbench({state_, idle_, no_survey_}, {kWidth, kHeight}, gui_, views_))
+      apply(state_, command);
+  }
+  void point_at(const Vector2d& at) {
+    ImGui::GetIO().MousePos = {static_cast<float>(at.x()), static_cast<float>(at.y())};
+    draw();
+    draw();
+  }
+  void press(int button, bool down) {
+    ImGui::GetIO().MouseDown[button] = down;
+    draw();
+  }
+  void click(const Vector2d& at, int button = 0) {
+    point_at(at);
+    press(button, true);
+    press(button, false);
+    for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
+  }
+
+  ScreenRect picture() const { return screen_rect(layout_.picture); }
+  /// Where the picture shows a track.
+  Vector2d track_on_screen(int column) const {
+    const PictureMapping mapping =
+        map_picture(state_.recording->camera, picture(), state_.picture_zoom);
+    return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
+  }
+  OrbitCamera camera() const {
+    return default_scene_camera(
+        *inspection_, cube_side(*inspection_, 0), layout_.side.width / layout_.side.height);
+  }
+  Vector2d on_scene(const Eigen::Vector3d& point) const {
+    const ScreenRect rect = screen_rect(layout_.side);
+    return rect.min + *view_pixel(camera(), point, rect.size);
+  }
+  /// A track with a point that no other is near to, in the picture and in the scene.
+  int lonely_track() const {
+    const auto distance = [&](int a, int b, const auto& place) {
+      return (place(a) - place(b)).norm();
+    };
+    const auto& points = inspection_->initialization->points;
+    for (const MapPoint& one : points) {
+      if (!inspection_->tracks->seen(kFrame - kStart, one.track)) continue;
+      bool alone = true;
+      for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
+        alone = other == one.track || !inspection_->tracks->seen(kFrame - kStart, other) ||
+                distance(one.track, other, [&](int k) { return track_on_screen(k); }) > 25;
+      for (const MapPoint& other : points)
+        alone = alone && (other.track == one.track ||
+                          (on_scene(one.position) - on_scene(other.position)).norm() > 16);
+      if (alone) return one.track;
+    }
+    return -1;
+  }
+
+  /// On the plane, beside the cube, with no point and no camera near it in the scene.
+  Eigen::Vector3d free_place() const {
+    const CubeAnchor& cube = *inspection_->cube;
+    for (double along = 0.1; along < 0.4; along += 0.003) {
+      const Eigen::Vector3d to = cube.origin + along * cube.axes.col(0) + 0.2 * cube.axes.col(1);
+      const auto near = [&](const Eigen::Vector3d& other) {
+        return (on_scene(to) - on_scene(other)).norm() < 14;
+      };
+      const Initialization& result = *inspection_->initialization;
+      if (std::ranges::none_of(result.points, near, &MapPoint::position) &&
+          std::ranges::none_of(result.cameras, near, &Pose::p_wc))
+        return to;
+    }
+    return cube.origin;
+  }
+
+  static constexpr int kStart = 5, kFrame = 20;
+  OffscreenContext context_{kWidth, kHeight};
+  Gui gui_;
+  Views views_;
+  WorkbenchState state_;
+  WorkerStatus idle_;
+  SurveyStatus no_survey_;
+  std::shared_ptr<const Inspection> inspection_ =
+      std::make_shared<const Inspection>(made_inspection());
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
+};
+
+TEST_F(LinkedSelection, TrackLightsUpWhereTheMouseIsAndIsForgottenElsewhere) {
+  const int column = lonely_track();
+  ASSERT_GE(column, 0);
+  point_at(track_on_screen(column));
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+  const Highlight highlight = highlight_of(state_);
+  EXPECT_EQ(highlight.hovered, column);
+  point_at({100, 300});
+  EXPECT_EQ(state_.hover, Hover{});
+}
+
+TEST_F(LinkedSelection, ClickPicksAndControlClickAddsAndTakesAway) {
+  const int column = lonely_track();
+  const std::int64_t id = inspection_->tracks->ids[column];
+  click(track_on_screen(column));
+  EXPECT_THAT(state_.selection.tracks, ElementsAre(id));
+  EXPECT_EQ(state_.selection.focus, id);
+  ImGui::GetIO().KeyCtrl = true;
+  click(track_on_screen(column));
+  ImGui::GetIO().KeyCtrl = false;
+  EXPECT_EQ(state_.selection, Selection{});
+}
+
+TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
+  ImGui::GetIO().KeyShift = true;
+  const Vector2d middle = picture().min + picture().size / 2;
+  point_at(middle - Vector2d(120, 90));
+  press(0, true);
+  point_at(middle + Vector2d(120, 90));
+  press(0, false);
+  ImGui::GetIO().KeyShift = false;
+  EXPECT_GT(state_.selection.tracks.size(), 3U);
+  EXPECT_EQ(state_.picture_zoom.factor, 1);
+  EXPECT_EQ(state_.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
+}
+
+TEST_F(LinkedSelection, PointOfTheSceneIsTheSameTrack) {
+  const int column = lonely_track();
+  for (const MapPoint& point : inspection_->initialization->points)
+    if (point.track == column) click(on_scene(point.position));
+  EXPECT_EQ(state_.selection.focus, inspection_->tracks->ids[column]);
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+}
+
+TEST_F(LinkedSelection, CameraOfTheSceneGoesToItsFrame) {
+  click(on_scene(inspection_->initialization->cameras[3].p_wc));
+  EXPECT_EQ(state_.frame, kStart + 3);
+  EXPECT_TRUE(state_.selection.tracks.empty());
+}
+
+TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
+  const Plane& plane = inspection_->initialization->plane;
+  const Eigen::Vector3d from = inspection_->cube->origin;
+  const Eigen::Vector3d to =
+      from + 0.031 * inspection_->cube->axes.col(0) + 0.17 * inspection_->cube->axes.col(1);
+  click(on_scene(to));
+  ASSERT_TRUE(state_.cube_ray.has_value());
+  const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.cube_ray);
+  EXPECT_LT((there - to).norm(), 0.01);
+  Inspection moved = *inspection_;
+  move_cubes(moved, *state_.cube_ray);
+  EXPECT_LT((moved.cube->origin - to).norm(), 0.01);
+  EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
+}
+
+TEST_F(LinkedSelection, RightClickInThePictureBringsTheCubeThere) {
+  const Vector2d at = (picture().min + 0.6 * picture().size).array().floor();
+  click(at, 1);
+  ASSERT_TRUE(state_.cube_ray.has_value());
+  const PictureMapping mapping =
+      map_picture(state_.recording->camera, picture(), state_.picture_zoom);
+  const auto ray = reference_ray(*inspection_, kFrame, to_picture(mapping, at));
+  EXPECT_LT((*ray - *state_.cube_ray).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace gpo
