@@ -226,7 +226,11 @@ void draw_error(
   write(
       list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
   if (!error.value || !error.first) return;
-  const std::string difference = difference_text(*error.value, *error.first, error.text);
+  std::string difference = difference_text(*error.value, *error.first, error.text);
+  const auto unit = value.find(' '), same = difference.find(' ');
+  const bool repeats = unit != std::string::npos && same != std::string::npos &&
+                       value.substr(unit) == difference.substr(same);
+  if (tight && repeats) difference.resize(same);
   const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
   write(list,
         Font::small,
