@@ -144,12 +144,12 @@ Initialization deliver(const Window& window, const RobustBundle& adjusted) {
 
 Initialization refine_bundle(const Window& window,
                              const Initialization& start,
-                             const std::stop_token& stop) {
+                             const Watch& watch) {
   const RobustBundle adjusted = adjust_bundle_robustly(window.K,
                                                        start_bundle(window, start),
                                                        observations_of(window),
                                                        homography_error_px(window),
-                                                       stop);
+                                                       watch);
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
   if (solver.termination != "convergence") {
@@ -163,8 +163,8 @@ Initialization refine_bundle(const Window& window,
   return result;
 }
 
-Initialization initialize_ba(const Window& window, const std::stop_token& stop) {
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, stop);
+Initialization initialize_ba(const Window& window, const Watch& watch) {
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, watch);
 }
 
 }  // namespace gpo

@@ -4,19 +4,16 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
 /// Bundle adjustment: minimizes the reprojection error over all poses and points,
 /// started from `start`; of all tracks where the window says so, else of its inliers. The plane is
 /// that of the adjusted inlier points, which are delivered as they are, on the plane or off it.
-Initialization refine_bundle(const Window& window,
-                             const Initialization& start,
-                             const std::stop_token& stop);
+Initialization refine_bundle(const Window& window, const Initialization& start, const Watch& watch);
 
 /// The adjustment started from `initialize_dbscan` (the paper's BA).
-Initialization initialize_ba(const Window& window, const std::stop_token& stop);
+Initialization initialize_ba(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -136,7 +136,7 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
-                             const std::stop_token& stop) {
+                             const Watch& watch) {
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
@@ -154,7 +154,7 @@ AdjustedBundle adjust_bundle(const Matrix3d& K,
                              point);
     ordering->AddElementToGroup(point, 0);
   }
-  result.solver = solve_by_schur(problem, std::move(ordering), options.tolerances, stop);
+  result.solver = solve_by_schur(problem, std::move(ordering), options.tolerances, watch);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
   return result;
 }
@@ -163,7 +163,7 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    const std::stop_token& stop) {
+                                    const Watch& watch) {
   std::vector<Observation> usable;
   const std::vector<double> errors = reprojection_errors_px(K, start, observations);
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -172,11 +172,11 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   const double sigma_px = std::max(kLeastNoisePx, error_px / kMedianLength);
   const double huber_px = kHuberAtSigmas * sigma_px;
   const AdjustedBundle robust =
-      adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, stop);
+      adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, watch);
   RobustBundle result{
       robust.bundle, without_outliers(K, robust.bundle, usable, sigma_px), robust.solver};
   if (robust.solver.termination == "failure") return result;
-  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, stop);
+  AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, watch);
   result.bundle = std::move(final_round.bundle);
   result.solver = std::move(final_round.solver);
   result.solver.iterations += robust.solver.iterations;

@@ -5,9 +5,9 @@
 #include "engine/geometry/pose.h"
 #include "engine/initializers/ceres_solver.h"
 #include "engine/initializers/initialization.h"
+#include "engine/initializers/watch.h"
 
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -57,7 +57,7 @@ AdjustedBundle adjust_bundle(const Eigen::Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
                              const AdjustmentOptions& options,
-                             const std::stop_token& stop);
+                             const Watch& watch);
 
 struct RobustBundle {
   Bundle bundle;
@@ -74,6 +74,6 @@ RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
-                                    const std::stop_token& stop);
+                                    const Watch& watch);
 
 }  // namespace gpo

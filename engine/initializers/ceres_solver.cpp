@@ -15,8 +15,7 @@ using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 /// Follows the iterations and ends them where asked to.
 class Follower : public ceres::IterationCallback {
  public:
-  Follower(std::stop_token stop, const ReadNormal& normal)
-      : stop_(std::move(stop)), normal_(normal) {}
+  Follower(const Watch& watch, const ReadNormal& normal) : watch_(watch), normal_(normal) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     // Of a refused step, Ceres tells the cost where it would have led.
@@ -26,13 +25,14 @@ class Follower : public ceres::IterationCallback {
     step.step = moved && !trace_.empty() ? iteration.step_norm : 0;
     if (normal_) step.normal = normal_();
     trace_.push_back(step);
-    return stop_.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    watch_.tell(static_cast<int>(trace_.size()) - 1, step.cost);
+    return watch_.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
   }
 
   std::vector<SolverStep> trace() && { return std::move(trace_); }
 
  private:
-  std::stop_token stop_;
+  const Watch& watch_;
   const ReadNormal& normal_;
   std::vector<SolverStep> trace_;
 };
@@ -84,9 +84,9 @@ bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            const std::stop_token& stop,
+                            const Watch& watch,
                             const ReadNormal& normal) {
-  Follower follower(stop, normal);
+  Follower follower(watch, normal);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.linear_solver_type = ceres::DENSE_SCHUR;

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "engine/initializers/initialization.h"
+#include "engine/initializers/watch.h"
 
 #include <functional>
 #include <memory>
-#include <stop_token>
 
 #include <ceres/ceres.h>
 
@@ -38,7 +38,7 @@ using ReadNormal = std::function<Eigen::Vector3d()>;
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,
-                            const std::stop_token& stop,
+                            const Watch& watch,
                             const ReadNormal& normal = {});
 
 }  // namespace gpo

@@ -46,7 +46,7 @@ std::optional<PlaneMotion> closed_form_motion(const Window& window) {
   return facing(window, std::move(motion));
 }
 
-Initialization initialize_closed_form(const Window& window, const std::stop_token& /*stop*/) {
+Initialization initialize_closed_form(const Window& window, const Watch& /*watch*/) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   auto motion = closed_form_motion(window);
   if (!motion) return failed("a frame has no homography");

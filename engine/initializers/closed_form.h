@@ -5,9 +5,9 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/plane_motion.h"
+#include "engine/initializers/watch.h"
 
 #include <optional>
-#include <stop_token>
 
 namespace gpo {
 
@@ -23,6 +23,6 @@ Eigen::Matrix3d translation_times_normal(const Window& window, int frame);
 std::optional<PlaneMotion> closed_form_motion(const Window& window);
 
 /// The closed form's normal, with translations by linear least squares over the inliers.
-Initialization initialize_closed_form(const Window& window, const std::stop_token& stop);
+Initialization initialize_closed_form(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -187,7 +187,7 @@ void reject_far_from(const Vector3d& normal, Candidates& candidates) {
 
 }  // namespace
 
-Initialization initialize_dbscan(const Window& window, const std::stop_token& stop) {
+Initialization initialize_dbscan(const Window& window, const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Candidates candidates = cluster_candidates(window);
   const auto start = highest_member(candidates, [](const Vector3d&) { return true; });
@@ -207,7 +207,7 @@ Initialization initialize_dbscan(const Window& window, const std::stop_token& st
   result.plane = {normal, 1};
   result.cameras.push_back({});
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (stop.stop_requested()) return failed("stopped");
+    if (watch.stop_requested()) return failed("stopped");
     result.cameras.push_back({window.R_wc[i], -translation_given_normal(window, i, normal)});
   }
   if (auto reason = reason_to_distrust(window, result.plane, result.cameras))

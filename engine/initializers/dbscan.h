@@ -4,8 +4,7 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
@@ -13,6 +12,6 @@ namespace gpo {
 /// normals on the unit sphere by density (DBSCAN, Ester et al. 1996) and takes the normal where the
 /// density peaks; translations by linear least squares given it. The window's rotations tell true
 /// readings from false ones and are delivered as they are. Nothing is optimized.
-Initialization initialize_dbscan(const Window& window, const std::stop_token& stop);
+Initialization initialize_dbscan(const Window& window, const Watch& watch);
 
 }  // namespace gpo

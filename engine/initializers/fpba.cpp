@@ -8,12 +8,11 @@
 
 namespace gpo {
 
-Initialization initialize_fpba(const Window& window, const std::stop_token& stop) {
-  const Refinement refine =
-      [](const Window& w, const Initialization& start, const std::stop_token& s) {
-        return refine_on_plane(w, start, PlaneNormal::held, s);
-      };
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
+Initialization initialize_fpba(const Window& window, const Watch& watch) {
+  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
+    return refine_on_plane(w, start, PlaneNormal::held, s);
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
 }
 
 }  // namespace gpo

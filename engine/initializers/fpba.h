@@ -4,12 +4,11 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
 /// Plane bundle adjustment with the normal held as `initialize_dbscan` found it (the paper's FPBA).
-Initialization initialize_fpba(const Window& window, const std::stop_token& stop);
+Initialization initialize_fpba(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -13,23 +13,23 @@ namespace gpo {
 
 PlaneSolution solve_gpo(const Window& window,
                         const InitializerOptions& options,
-                        const std::stop_token& stop) {
+                        const Watch& watch) {
   if (options.solver == Solver::ceres)
-    return solve_plane_with_ceres(window, resting(window), {}, stop);
+    return solve_plane_with_ceres(window, resting(window), {}, watch);
   const PlaneObservations observations = plane_observations(window);
   const auto closed = closed_form_motion(window);
   if (closed) {
-    PlaneSolution solution = solve_plane(window, observations, *closed, {}, stop);
+    PlaneSolution solution = solve_plane(window, observations, *closed, {}, watch);
     if (solution.solver.termination != "failure") return solution;
   }
-  return solve_plane(window, observations, resting(window), {}, stop);
+  return solve_plane(window, observations, resting(window), {}, watch);
 }
 
 Initialization initialize_gpo(const Window& window,
                               const InitializerOptions& options,
-                              const std::stop_token& stop) {
+                              const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const auto [motion, solver] = solve_gpo(window, options, stop);
+  const auto [motion, solver] = solve_gpo(window, options, watch);
   if (solver.termination != "convergence") {
     return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
   }

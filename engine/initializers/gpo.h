@@ -6,15 +6,14 @@
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/initializer_options.h"
 #include "engine/initializers/plane_solver.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
 /// The minimum of `initialize_gpo`, not yet judged: the sign is arbitrary.
 PlaneSolution solve_gpo(const Window& window,
                         const InitializerOptions& options,
-                        const std::stop_token& stop);
+                        const Watch& watch);
 
 /// Global plane optimization (Du et al. 2020): minimizes over the plane's normal and the scaled
 /// translations of all frames the summed squared transfer error of the inliers, the window's
@@ -22,6 +21,6 @@ PlaneSolution solve_gpo(const Window& window,
 /// Ceres starts from rest as in the paper, our own solver from the closed form.
 Initialization initialize_gpo(const Window& window,
                               const InitializerOptions& options,
-                              const std::stop_token& stop);
+                              const Watch& watch);
 
 }  // namespace gpo

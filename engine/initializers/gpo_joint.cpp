@@ -43,7 +43,7 @@ struct Task {
   const Window& window;
   const InitializerOptions& options;
   double sigma_px;
-  const std::stop_token& stop;
+  const Watch& watch;
 };
 
 PlaneSolution solve(const Task& task,
@@ -53,12 +53,12 @@ PlaneSolution solve(const Task& task,
   const bool offset = task.options.time_offset && rotations == RotationModel::bias;
   const PlaneUnknowns unknowns{rotations, offset, task.sigma_px};
   if (task.options.solver == Solver::ceres)
-    return solve_plane_with_ceres(window, start, unknowns, task.stop);
+    return solve_plane_with_ceres(window, start, unknowns, task.watch);
   PlaneObservations observations = plane_observations(window);
-  PlaneSolution solution = solve_plane(window, observations, start, unknowns, task.stop);
+  PlaneSolution solution = solve_plane(window, observations, start, unknowns, task.watch);
   for (int round = 0; is_weighted(task.options) && round < kWeightRounds; ++round) {
     reweigh(solution.motion, task.options, task.sigma_px, observations);
-    PlaneSolution next = solve_plane(window, observations, solution.motion, unknowns, task.stop);
+    PlaneSolution next = solve_plane(window, observations, solution.motion, unknowns, task.watch);
     next.solver.iterations += solution.solver.iterations;
     next.solver.milliseconds += solution.solver.milliseconds;
     continue_trace(solution.solver, next.solver);
@@ -95,7 +95,7 @@ Fit with_estimated_shutter(const Task& task, const Fit& global) {
   double step_s = kTriedRowDelay_s;
   double milliseconds = global.solution.solver.milliseconds;
   int iterations = global.solution.solver.iterations;
-  for (int round = 0; round < kShutterRounds && !task.stop.stop_requested(); ++round) {
+  for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
     const Fit less = refit(task, best, best.row_delay_s - step_s);
     const Fit more = refit(task, best, best.row_delay_s + step_s);
     const double bend = more.cost() - 2 * best.cost() + less.cost();
@@ -151,10 +151,10 @@ std::string why_wrong(const Window& window, const PlaneMotion& motion) {
 
 Initialization initialize_gpo_joint(const Window& window,
                                     const InitializerOptions& options,
-                                    const std::stop_token& stop) {
+                                    const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, stop};
-  const PlaneSolution start = solve_gpo(window, {}, stop);
+  const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
+  const PlaneSolution start = solve_gpo(window, {}, watch);
   Fit fit = best_fit(task, facing(window, start.motion));
   SolverReport& solver = fit.solution.solver;
   solver.milliseconds += start.solver.milliseconds;

@@ -5,8 +5,7 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/initializer_options.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
@@ -16,6 +15,6 @@ namespace gpo {
 /// rest, and says so where it ends in a wrong minimum.
 Initialization initialize_gpo_joint(const Window& window,
                                     const InitializerOptions& options,
-                                    const std::stop_token& stop);
+                                    const Watch& watch);
 
 }  // namespace gpo

@@ -39,11 +39,11 @@ void continue_trace(const SolverReport& before, SolverReport& next) {
 namespace {
 
 /// Of a method that leaves its user no choice.
-template <Initialization (*initialize)(const Window&, const std::stop_token&)>
+template <Initialization (*initialize)(const Window&, const Watch&)>
 Initialization plain(const Window& window,
                      const InitializerOptions& /*options*/,
-                     const std::stop_token& stop) {
-  return initialize(window, stop);
+                     const Watch& watch) {
+  return initialize(window, watch);
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/initializer_options.h"
+#include "engine/initializers/watch.h"
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 
 namespace gpo {
@@ -32,7 +32,7 @@ struct Method {
   std::optional<RotationModel> rotations;
   Initialization (*initialize)(const Window& window,
                                const InitializerOptions& options,
-                               const std::stop_token& stop);
+                               const Watch& watch);
 };
 
 std::span<const Method> methods();

@@ -47,10 +47,10 @@ Initialization deliver(const Window& window, const AdjustedPlaneBundle& adjusted
 Initialization refine_on_plane(const Window& window,
                                const Initialization& start,
                                PlaneNormal normal,
-                               const std::stop_token& stop) {
+                               const Watch& watch) {
   const PlaneBundle bundle{start.cameras, start.plane.normal, window.points_px[0]};
   const AdjustedPlaneBundle adjusted =
-      adjust_plane_bundle(window.K, bundle, inlier_observations(window), normal, stop);
+      adjust_plane_bundle(window.K, bundle, inlier_observations(window), normal, watch);
   const SolverReport& solver = adjusted.solver;
   if (solver.termination != "convergence") {
     return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
@@ -62,12 +62,11 @@ Initialization refine_on_plane(const Window& window,
   return result;
 }
 
-Initialization initialize_pba(const Window& window, const std::stop_token& stop) {
-  const Refinement refine =
-      [](const Window& w, const Initialization& start, const std::stop_token& s) {
-        return refine_on_plane(w, start, PlaneNormal::free, s);
-      };
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, stop);
+Initialization initialize_pba(const Window& window, const Watch& watch) {
+  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
+    return refine_on_plane(w, start, PlaneNormal::free, s);
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
 }
 
 }  // namespace gpo

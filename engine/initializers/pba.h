@@ -5,8 +5,7 @@
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/plane_adjustment.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
@@ -15,9 +14,9 @@ namespace gpo {
 Initialization refine_on_plane(const Window& window,
                                const Initialization& start,
                                PlaneNormal normal,
-                               const std::stop_token& stop);
+                               const Watch& watch);
 
 /// The adjustment with a free normal, started from `initialize_dbscan` (the paper's PBA).
-Initialization initialize_pba(const Window& window, const std::stop_token& stop);
+Initialization initialize_pba(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -68,7 +68,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
                                         const PlaneBundle& start,
                                         std::span<const Observation> observations,
                                         PlaneNormal normal,
-                                        const std::stop_token& stop) {
+                                        const Watch& watch) {
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedPlaneBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
@@ -92,7 +92,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
     return normal == PlaneNormal::free ? direction(q_normal).normalized() : start.normal;
   };
   result.solver =
-      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, stop, normal_now);
+      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, watch, normal_now);
   for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
   if (normal == PlaneNormal::free) result.bundle.normal = normal_now();
   return result;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/initializers/bundle_adjustment.h"
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
@@ -31,6 +32,6 @@ AdjustedPlaneBundle adjust_plane_bundle(const Eigen::Matrix3d& K,
                                         const PlaneBundle& start,
                                         std::span<const Observation> observations,
                                         PlaneNormal normal,
-                                        const std::stop_token& stop);
+                                        const Watch& watch);
 
 }  // namespace gpo

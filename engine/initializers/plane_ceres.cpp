@@ -183,7 +183,7 @@ PlaneMotion motion_of(const Window& window,
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneMotion& start,
                                      const PlaneUnknowns& unknowns,
-                                     const std::stop_token& stop,
+                                     const Watch& watch,
                                      double cost_tolerance) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
   Blocks blocks = blocks_of(start);
@@ -213,7 +213,7 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
       ordering->AddElementToGroup(blocks.phi[i].data(), 1);
   }
   const SolverReport solver = solve_by_schur(
-      problem, std::move(ordering), {.cost = cost_tolerance}, stop, [&blocks]() -> Vector3d {
+      problem, std::move(ordering), {.cost = cost_tolerance}, watch, [&blocks]() -> Vector3d {
         return direction(blocks.normal).normalized();
       });
   return {motion_of(window, unknowns, start, blocks), solver};

@@ -247,7 +247,7 @@ class PlaneProblem {
 template <class S>
 PlaneSolution minimize(const PlaneProblem<S>& problem,
                        const PlaneMotion& start,
-                       const std::stop_token& stop) {
+                       const Watch& watch) {
   PlaneSolution solution{start, {}};
   SolverReport& report = solution.solver;
   report.unknowns = problem.unknown_count();
@@ -260,7 +260,7 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
   double damping = 0;
   int hidden_steps = 0;
   while (report.termination == "no_convergence" && report.iterations < kMostIterations &&
-         !stop.stop_requested()) {
+         !watch.stop_requested()) {
     ++report.iterations;
     const auto step = problem.step(at, solution.motion, damping);
     const PlaneMotion moved = problem.moved(solution.motion, step);
@@ -280,6 +280,7 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
       report.trace.push_back(report.trace.back());
       report.trace.back().step = 0;
     }
+    watch.tell(report.iterations, at.cost);
     if (settled) report.termination = "convergence";
     if (!(damping < kMostDamping)) report.termination = "failure";
   }
@@ -292,8 +293,8 @@ PlaneSolution solve_split(const Window& window,
                           const PlaneObservations& observations,
                           const PlaneMotion& start,
                           const PlaneUnknowns& unknowns,
-                          const std::stop_token& stop) {
-  return minimize(PlaneProblem<S>(window, observations, unknowns), start, stop);
+                          const Watch& watch) {
+  return minimize(PlaneProblem<S>(window, observations, unknowns), start, watch);
 }
 
 }  // namespace
@@ -302,13 +303,13 @@ PlaneSolution solve_plane(const Window& window,
                           const PlaneObservations& observations,
                           const PlaneMotion& start,
                           const PlaneUnknowns& unknowns,
-                          const std::stop_token& stop) {
+                          const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
   const auto solve = unknowns.rotations == RotationModel::known  ? solve_split<KnownRotations>
                      : unknowns.rotations == RotationModel::free ? solve_split<FreeRotations>
                      : unknowns.time_offset                      ? solve_split<UnknownBiasOffset>
                                                                  : solve_split<UnknownBias>;
-  PlaneSolution solution = solve(window, observations, start, unknowns, stop);
+  PlaneSolution solution = solve(window, observations, start, unknowns, watch);
   solution.solver.residuals = 2 * observations.count();
   solution.solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

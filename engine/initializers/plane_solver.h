@@ -6,8 +6,8 @@
 #include "engine/initializers/initialization.h"
 #include "engine/initializers/plane_motion.h"
 #include "engine/initializers/plane_observations.h"
+#include "engine/initializers/watch.h"
 
-#include <stop_token>
 #include <vector>
 
 namespace gpo {
@@ -36,14 +36,14 @@ PlaneSolution solve_plane(const Window& window,
                           const PlaneObservations& observations,
                           const PlaneMotion& start,
                           const PlaneUnknowns& unknowns,
-                          const std::stop_token& stop);
+                          const Watch& watch);
 
 /// The same minimum by Ceres, as the paper does it (dogleg, dense Schur, one analytic block a
 /// frame); every weight one. It ends where the cost changes relatively less than the tolerance.
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneMotion& start,
                                      const PlaneUnknowns& unknowns,
-                                     const std::stop_token& stop,
+                                     const Watch& watch,
                                      double cost_tolerance = 1e-12);
 
 }  // namespace gpo

@@ -217,10 +217,10 @@ std::optional<Pose> resect_frame(const Window& window, const Reconstruction& sce
 
 /// Adds all other frames in order; why it could not, or nothing.
 std::optional<std::string> add_frames(const Window& window,
-                                      const std::stop_token& stop,
+                                      const Watch& watch,
                                       Reconstruction& scene) {
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (stop.stop_requested()) return "stopped";
+    if (watch.stop_requested()) return "stopped";
     if (scene.cameras[i]) continue;
     scene.cameras[i] = resect_frame(window, scene, i);
     if (!scene.cameras[i])
@@ -254,12 +254,12 @@ Initialization deliver(const Window& window, const Reconstruction& scene) {
 
 }  // namespace
 
-Initialization initialize_pnp(const Window& window, const std::stop_token& stop) {
+Initialization initialize_pnp(const Window& window, const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Pair pair = find_pair(window);
   const auto begin = std::chrono::steady_clock::now();
-  auto reason =
-      pair.reason ? "no pair to start from: " + *pair.reason : add_frames(window, stop, pair.scene);
+  auto reason = pair.reason ? "no pair to start from: " + *pair.reason
+                            : add_frames(window, watch, pair.scene);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin;
   Initialization result = reason ? failed(*reason) : deliver(window, pair.scene);

@@ -4,8 +4,7 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
@@ -14,6 +13,6 @@ namespace gpo {
 /// perspective-n-point and triangulation (Lepetit et al. 2009). The window's rotations only tell
 /// the true reading of the pair from its twin. Delivers the triangulated inlier tracks as they are;
 /// gauge and normal are those of the plane through them.
-Initialization initialize_pnp(const Window& window, const std::stop_token& stop);
+Initialization initialize_pnp(const Window& window, const Watch& watch);
 
 }  // namespace gpo

@@ -8,8 +8,8 @@
 
 namespace gpo {
 
-Initialization initialize_pnp_ba(const Window& window, const std::stop_token& stop) {
-  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, stop);
+Initialization initialize_pnp_ba(const Window& window, const Watch& watch) {
+  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, watch);
 }
 
 }  // namespace gpo

@@ -4,13 +4,12 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
-
-#include <stop_token>
+#include "engine/initializers/watch.h"
 
 namespace gpo {
 
 /// Bundle adjustment started from `initialize_pnp` (the paper's "BA with PnP", the vision part of
 /// VINS' start).
-Initialization initialize_pnp_ba(const Window& window, const std::stop_token& stop);
+Initialization initialize_pnp_ba(const Window& window, const Watch& watch);
 
 }  // namespace gpo

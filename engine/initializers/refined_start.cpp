@@ -11,11 +11,11 @@ namespace gpo {
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             const std::stop_token& stop) {
+                             const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const Initialization started = start.initialize(window, stop);
+  const Initialization started = start.initialize(window, watch);
   Initialization result = started.ok
-                              ? refine(window, started, stop)
+                              ? refine(window, started, watch)
                               : failed(fmt::format("start by {}: {}", start.title, started.reason));
   result.candidates = started.candidates;
   return result;

@@ -4,8 +4,8 @@
 
 #include "engine/frontend/window.h"
 #include "engine/initializers/initialization.h"
+#include "engine/initializers/watch.h"
 
-#include <stop_token>
 #include <string>
 
 namespace gpo {
@@ -13,18 +13,18 @@ namespace gpo {
 /// The method whose result another one improves.
 struct StartMethod {
   std::string title;  ///< for people
-  Initialization (*initialize)(const Window& window, const std::stop_token& stop);
+  Initialization (*initialize)(const Window& window, const Watch& watch);
 };
 
 /// Improves `start`, which is `ok`.
 using Refinement = Initialization (*)(const Window& window,
                                       const Initialization& start,
-                                      const std::stop_token& stop);
+                                      const Watch& watch);
 
 /// The start refined; where there is none, why, and which start it was.
 Initialization refined_start(const Window& window,
                              const StartMethod& start,
                              Refinement refine,
-                             const std::stop_token& stop);
+                             const Watch& watch);
 
 }  // namespace gpo

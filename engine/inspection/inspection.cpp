@@ -179,6 +179,20 @@ std::optional<Plane> plane_of_board(const Recording& recording,
   return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
 }
 
+/// Tells people of an optimization, not more often than they can read it.
+Watch told_by(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
+  if (!progress) return {stop};
+  constexpr double kPause_ms = 40;
+  const std::string title = find_method(settings.method).title;
+  return {stop, [=, last = Clock::now()](int iteration, double cost) mutable {
+            if (milliseconds_since(last) < kPause_ms) return;
+            last = Clock::now();
+            progress(fmt::format("{}: iteration {}, cost {:.4g} px\u00b2", title, iteration, cost),
+                     0,
+                     0);
+          }};
+}
+
 }  // namespace
 
 bool uses_ransac(const Settings& settings) {
@@ -217,7 +231,10 @@ struct Inspector::Stages {
                                                    int frames,
                                                    const std::stop_token& stop,
                                                    const Progress& progress) const;
-  void initialize(const Settings& settings, const std::stop_token& stop, Inspection& inspection);
+  void initialize(const Settings& settings,
+                  const std::stop_token& stop,
+                  const Progress& progress,
+                  Inspection& inspection);
   bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
 };
 
@@ -302,6 +319,7 @@ bool Inspector::Stages::update_window(const Settings& settings,
 
 void Inspector::Stages::initialize(const Settings& settings,
                                    const std::stop_token& stop,
+                                   const Progress& progress,
                                    Inspection& inspection) {
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
@@ -313,7 +331,8 @@ void Inspector::Stages::initialize(const Settings& settings,
   Initialization initialization =
       rotations.value.R_wc.empty()
           ? failed(rotations.value.reason)
-          : find_method(settings.method).initialize(window, settings.initializer, stop);
+          : find_method(settings.method)
+                .initialize(window, settings.initializer, told_by(settings, stop, progress));
   Timing& t = inspection.timing;
   t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
                 .value.milliseconds[settings.frames - 1];
@@ -358,7 +377,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                         stages.update_window(settings, inspection.rotations_used, stop);
   if (!prepared) return nullptr;
   if (progress) progress("initializing", 0, 0);
-  stages.initialize(settings, stop, inspection);
+  stages.initialize(settings, stop, progress, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
     if (inspection.truth) {

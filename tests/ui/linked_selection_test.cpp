@@ -89,16 +89,19 @@ class LinkedSelection : public DrawingTest {
   /// On the plane, beside the cube, with no point and no camera near it in the scene.
   Eigen::Vector3d free_place() const {
     const CubeAnchor& cube = *inspection_->cube;
-    for (double along = 0.1; along < 0.4; along += 0.003) {
-      const Eigen::Vector3d to = cube.origin + along * cube.axes.col(0) + 0.2 * cube.axes.col(1);
-      const auto near = [&](const Eigen::Vector3d& other) {
-        return (on_scene(to) - on_scene(other)).norm() < 14;
-      };
-      const Initialization& result = *inspection_->initialization;
-      if (std::ranges::none_of(result.points, near, &MapPoint::position) &&
-          std::ranges::none_of(result.cameras, near, &Pose::p_wc))
-        return to;
+    const Initialization& result = *inspection_->initialization;
+    for (double x = -0.4; x < 0.4; x += 0.01) {
+      for (double y = -0.4; y < 0.4; y += 0.01) {
+        const Eigen::Vector3d to = cube.origin + x * cube.axes.col(0) + y * cube.axes.col(1);
+        const auto near = [&](const Eigen::Vector3d& other) {
+          return (on_scene(to) - on_scene(other)).norm() < 11;
+        };
+        if (std::ranges::none_of(result.points, near, &MapPoint::position) &&
+            std::ranges::none_of(result.cameras, near, &Pose::p_wc))
+          return to;
+      }
     }
+    ADD_FAILURE() << "points everywhere";
     return cube.origin;
   }
 
@@ -166,9 +169,10 @@ TEST_F(LinkedSelection, CameraOfTheSceneGoesToItsFrame) {
 
 TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   const Plane& plane = inspection_->initialization->plane;
-  const Eigen::Vector3d from = inspection_->cube->origin;
-  const Eigen::Vector3d to =
-      from + 0.031 * inspection_->cube->axes.col(0) + 0.17 * inspection_->cube->axes.col(1);
+  const Eigen::Vector3d to = free_place();
+  const ScreenRect side = screen_rect(layout_.side);
+  ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
+      << on_scene(to).transpose();
   click(on_scene(to));
   ASSERT_TRUE(state_.cube_ray.has_value());
   const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.cube_ray);

@@ -50,6 +50,10 @@ Json panes_json(const Panes& panes) {
   return json;
 }
 
+Json zoom_json(const PictureZoom& zoom) {
+  return {{"factor", zoom.factor}, {"center", numbers(zoom.center)}};
+}
+
 Json orbit_json(const std::optional<OrbitCamera>& orbit) {
   if (!orbit) return nullptr;
   return {{"target", numbers(orbit->target)},
@@ -191,6 +195,11 @@ void read_compared(const Reader& read, std::vector<std::string>& compared) {
   for (std::string& one : compared) one = key_of(parse_configuration(one));
 }
 
+void read_zoom(const Reader& read, PictureZoom& zoom) {
+  read("factor", zoom.factor, 1, 64);
+  read("center", zoom.center);
+}
+
 void read_state(const Reader& read, WorkbenchState& state) {
   if (read.has("settings")) read_settings(read.object("settings"), state.settings);
   read("frame", state.frame, 0, 1'000'000'000);
@@ -205,11 +214,10 @@ void read_state(const Reader& read, WorkbenchState& state) {
   read_compared(read, state.compared);
   read("cube_side", state.cube_side, 0, 2);
   if (read.has("cube_ray")) read("cube_ray", state.cube_ray.emplace());
-  if (read.has("picture_zoom")) {
-    const Reader zoom = read.object("picture_zoom");
-    zoom("factor", state.picture_zoom.factor, 1, 64);
-    zoom("center", state.picture_zoom.center);
-  }
+  if (read.has("picture_zoom")) read_zoom(read.object("picture_zoom"), state.picture_zoom);
+  if (read.has("compare_zoom"))
+    read_zoom(read.object("compare_zoom"), state.compare_zoom.emplace());
+  read("hidden_curves", state.hidden_curves);
   if (read.has("orbit")) state.orbit = read_orbit(read.object("orbit"));
   if (read.has("selection")) read_selection(read.object("selection"), state.selection);
   if (read.has("bookmarks")) state.bookmarks = read_bookmarks(read);
@@ -247,10 +255,11 @@ std::string session_text(const WorkbenchState& state) {
   json["view"] = view_json(state.view);
   json["panes"] = panes_json(state.panes);
   json["compared"] = state.compared;
+  json["hidden_curves"] = state.hidden_curves;
+  json["compare_zoom"] = state.compare_zoom ? zoom_json(*state.compare_zoom) : Json();
   json["cube_side"] = state.cube_side;
   json["cube_ray"] = state.cube_ray ? numbers(*state.cube_ray) : Json();
-  json["picture_zoom"] = {{"factor", state.picture_zoom.factor},
-                          {"center", numbers(state.picture_zoom.center)}};
+  json["picture_zoom"] = zoom_json(state.picture_zoom);
   json["orbit"] = orbit_json(state.orbit);
   json["selection"] = selection_json(state.selection);
   json["bookmarks"] = bookmarks_json(state.bookmarks);
@@ -292,6 +301,8 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
   state.view = saved.view;
   state.panes = saved.panes;
   state.compared = saved.compared;
+  state.compare_zoom = saved.compare_zoom;
+  state.hidden_curves = saved.hidden_curves;
   state.cube_side = saved.cube_side;
   state.cube_ray = saved.cube_ray;
   state.picture_zoom = saved.picture_zoom;

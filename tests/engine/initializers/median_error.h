@@ -14,8 +14,7 @@ namespace gpo::test {
 
 /// Median over seeds of the normal's error [deg], on default windows with homographies as fitted to
 /// noisy tracks. A window that is refused is a failure of the test.
-inline double median_normal_error_deg(Initialization (*initialize)(const Window&,
-                                                                   const std::stop_token&),
+inline double median_normal_error_deg(Initialization (*initialize)(const Window&, const Watch&),
                                       Motion motion,
                                       std::uint64_t seeds) {
   std::vector<double> errors;

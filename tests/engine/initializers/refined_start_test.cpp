@@ -12,13 +12,13 @@ namespace {
 using test::Motion;
 using test::simulate;
 
-Initialization no_start(const Window& /*unused*/, const std::stop_token& /*unused*/) {
+Initialization no_start(const Window& /*unused*/, const Watch& /*unused*/) {
   Initialization result = failed("the moon is full");
   result.candidates.resize(3);
   return result;
 }
 
-Initialization some_start(const Window& /*unused*/, const std::stop_token& /*unused*/) {
+Initialization some_start(const Window& /*unused*/, const Watch& /*unused*/) {
   Initialization result;
   result.ok = true;
   result.candidates.resize(2);
@@ -27,7 +27,7 @@ Initialization some_start(const Window& /*unused*/, const std::stop_token& /*unu
 
 Initialization refine(const Window& /*unused*/,
                       const Initialization& start,
-                      const std::stop_token& /*unused*/) {
+                      const Watch& /*unused*/) {
   Initialization result;
   result.ok = start.ok;
   result.rms_px = 0.5;
