@@ -183,7 +183,7 @@ void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn&
 }
 
 std::string why_no_metrics(const Inspection& inspection) {
-  if (!inspection.truth) return "no ground truth";
+  if (!inspection.truth) return "no truth";
   const Alignment alignment = inspection.evaluation->alignment;
   if (alignment == Alignment::point) return "the true path is a point: no scale";
   return "the ground truth does not cover the reference frame or the plane";
@@ -191,12 +191,13 @@ std::string why_no_metrics(const Inspection& inspection) {
 
 /// What stands below the errors.
 std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
-  std::string least = fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
-  if (!e.pne_deg || !e.ate_m) least += " · " + why_no_metrics(inspection);
+  const std::string least =
+      fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
   std::string more = least;
   if (const auto& uncertainty = inspection.initialization->uncertainty)
     more += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
   std::string most = more;
+  if (!e.pne_deg || !e.ate_m) most += " · " + why_no_metrics(inspection);
   if (e.pne_bound_deg) most += fmt::format(" · PNE bound {}", angle_text(*e.pne_bound_deg));
   return fitting(Font::small, {most, more, least}, width);
 }
@@ -226,7 +227,11 @@ void draw_error(
   write(
       list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
   if (!error.value || !error.first) return;
-  const std::string difference = difference_text(*error.value, *error.first, error.text);
+  std::string difference = difference_text(*error.value, *error.first, error.text);
+  const auto unit = value.find(' '), same = difference.find(' ');
+  const bool repeats = unit != std::string::npos && same != std::string::npos &&
+                       value.substr(unit) == difference.substr(same);
+  if (tight && repeats) difference.resize(same);
   const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
   write(list,
         Font::small,

@@ -152,8 +152,10 @@ TEST_F(CompareWindow, FlipSwapsTheColumnsInPlace) {
   state_.flip = true;
   const cv::Mat after = view("compare");
   const cv::Rect first(12, 92, 430, 300), second(12 + 444, 92, 430, 300);
-  EXPECT_GT(cv::norm(before(first), after(first), cv::NORM_L1), 0);
-  EXPECT_TRUE(same_bytes(before(first), after(second)));
+  // Elsewhere on the screen the rims of lines are rounded otherwise.
+  const double moved = cv::norm(before(first), after(second), cv::NORM_L1);
+  EXPECT_LT(10 * moved, cv::norm(before(first), after(first), cv::NORM_L1));
+  EXPECT_LT(10 * moved, cv::norm(before(second), after(second), cv::NORM_L1));
 }
 
 TEST_F(CompareWindow, FlipShowsTheOtherResultInThePictureAndSaysWhose) {
