@@ -7,8 +7,6 @@
 #include "ui/views/overlay.h"
 #include "ui/views/palette.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace gpo {
@@ -19,23 +17,19 @@ struct ColumnText {
 };
 constexpr ColumnText kColumns[] = {
     {"algorithm", "Which decomposition of the homography gives this reading"},
+    {"verdict", "Taken, or why not"},
     {"normal (x, y, z)", "Of the plane, in the reference camera; unit length"},
     {"tilt [\u00b0]",
      "Angle between the normal and the optical axis; 0: the plane faces the camera"},
     {"rotation [\u00b0]", "Angle by which the camera turned since the reference frame"},
     {"|tau| [d]", "How far the camera moved, in distances of the plane"},
     {"score [\u00b0]", "Angle between this rotation and the window's given one; less is better"},
-    {"behind", "Inliers that this reading puts behind a camera, of all"},
-    {"verdict", "Taken, or why not"}};
-constexpr int kVerdict = static_cast<int>(std::size(kColumns)) - 1;
+    {"behind", "Inliers that this reading puts behind a camera, of all"}};
 
 void header() {
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (int i = 0; i <= kVerdict; ++i)
-    ImGui::TableSetupColumn(
-        kColumns[i].title,
-        i == kVerdict ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed);
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const ColumnText& column : kColumns) ImGui::TableSetupColumn(column.title);
+  ImGui::TableNextRow();
   for (const ColumnText& column : kColumns) {
     ImGui::TableNextColumn();
     ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
@@ -45,15 +39,8 @@ void header() {
   }
 }
 
-void draw_row(const HomographyCandidate& candidate, float scale) {
-  ImGui::TableNextRow();
+void draw_verdict(const HomographyCandidate& candidate, float scale) {
   const bool taken = candidate.rejected.empty();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? palette::kText : palette::kTextDim));
-  for (const std::string& text : candidate_cells(candidate)) {
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(text.c_str());
-  }
-  ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float half = ImGui::GetTextLineHeight() / 2;
   draw_sign(*ImGui::GetWindowDrawList(),
@@ -61,19 +48,30 @@ void draw_row(const HomographyCandidate& candidate, float scale) {
             {at.x + half, at.y + half},
             taken ? palette::kInlier : palette::kOutlier);
   ImGui::SetCursorScreenPos({at.x + 20 * scale, at.y});
-  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(taken ? "taken" : candidate.rejected.c_str());
-  ImGui::PopTextWrapPos();
+}
+
+void draw_row(const HomographyCandidate& candidate, float scale) {
+  ImGui::TableNextRow();
+  const bool taken = candidate.rejected.empty();
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? palette::kText : palette::kTextDim));
+  const std::vector<std::string> cells = candidate_cells(candidate);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(cells[i].c_str());
+    if (i > 0) continue;
+    ImGui::TableNextColumn();
+    draw_verdict(candidate, scale);
+  }
   ImGui::PopStyleColor();
 }
 
+/// Narrow panes scroll sideways.
 void draw_table(const std::vector<HomographyCandidate>& candidates, ImVec2 size, float scale) {
-  // Narrow panes scroll sideways rather than break the reasons into single words.
-  const float inner = std::max(size.x, 840 * scale);
   const auto flags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                      ImGuiTableFlags_SizingFixedFit;
   ImGui::PushFont(font(Font::small));
-  if (ImGui::BeginTable("readings", kVerdict + 1, flags, size, inner)) {
+  if (ImGui::BeginTable("readings", static_cast<int>(std::size(kColumns)), flags, size)) {
     header();
     for (const HomographyCandidate& candidate : candidates) draw_row(candidate, scale);
     ImGui::EndTable();
