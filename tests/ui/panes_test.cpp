@@ -6,10 +6,12 @@
 #include "ui/workbench_window.h"
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -200,6 +202,8 @@ TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
     inspection.timing = {100, 20, 3, 40, 30, 163};
     open(inspection);
     const cv::Mat first = drawer_picture();
+    std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
+    cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/timing.png", first);
     inspection.timing = {10, 220, 33, 4, 3, 270};
     open(inspection);
     EXPECT_EQ(same_bytes(first, drawer_picture()), !timings);

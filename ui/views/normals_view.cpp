@@ -215,7 +215,7 @@ void draw_color_bar(const Stage& stage, const ScreenRect& rect, const NormalsMap
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(
-      map.low_px(), map.high_px(), std::max(2, static_cast<int>((right - left) / (44 * s))));
+      map.low_px(), map.high_px(), std::max(3, static_cast<int>((right - left) / (26 * s))));
   for (std::size_t i = 0; i < ticks.values.size(); ++i) {
     const double share = (std::log(ticks.values[i]) - low) / (high - low);
     if (share < -1e-6 || share > 1 + 1e-6) continue;
