@@ -43,8 +43,8 @@ struct RunArguments {
 struct SnapshotArguments {
   InspectArguments inspect;
   std::optional<std::filesystem::path> script;  ///< commands of the window, instead of one view
-  std::string view;                             ///< image | scene | compare | curves | window
-  std::filesystem::path output;                 ///< .png
+  std::string view;                 ///< image | scene | normals | compare | curves | window
+  std::filesystem::path output;     ///< .png
   std::optional<int> frame;         ///< counts in the recording; default: the window's last
   std::optional<std::string> size;  ///< "WxH" [px]
   std::optional<std::filesystem::path> baseline;

@@ -106,7 +106,7 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   CLI::Option* script = command->add_option(
       "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->check(CLI::IsMember({"image", "scene", "compare", "curves", "window"}))
+      ->check(CLI::IsMember({"image", "scene", "normals", "compare", "curves", "window"}))
       ->excludes(script);
   command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(

@@ -92,6 +92,8 @@ Drawn draw_one(const SnapshotArguments& arguments, const std::optional<cv::Size>
   if (arguments.view == "image") return {snapshot_image(*inspection, frame, size), result.ok};
   if (arguments.view == "scene")
     return {snapshot_scene(*inspection, frame, size.value_or(cv::Size(960, 720))), result.ok};
+  if (arguments.view == "normals")
+    return {snapshot_normals(inspection, frame, size.value_or(cv::Size(720, 760))), result.ok};
   return {snapshot_window(inspection, frame, size.value_or(cv::Size(1280, 720))), result.ok};
 }
 

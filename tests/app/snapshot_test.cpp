@@ -40,7 +40,9 @@ TEST_P(SnapshotOf, AgreesWithItsBaseline) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
-INSTANTIATE_TEST_SUITE_P(Views, SnapshotOf, ::testing::Values("image", "scene", "window"));
+INSTANTIATE_TEST_SUITE_P(Views,
+                         SnapshotOf,
+                         ::testing::Values("image", "scene", "normals", "window"));
 
 /// The same configurations whatever the table of methods holds.
 constexpr const char* kVariants = "--methods gpo,gpo+no-ransac,gpo+truth ";

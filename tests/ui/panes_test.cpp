@@ -5,10 +5,13 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench_window.h"
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -105,6 +108,92 @@ TEST_F(PanesTest, ComputesResidualsAndChartsOnceAnInspection) {
   EXPECT_EQ(views_->residuals.of, state_.inspection);
 }
 
+/// Candidates and clusters of a simple kind, and a landscape whose valley is at the estimate.
+std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
+  NormalStudy study;
+  study.window = inspection.window;
+  const int frames = inspection.window->frame_count();
+  const Eigen::Vector3d normal = inspection.initialization->plane.normal;
+  study.landscape.side = 16;
+  study.landscape.observations.assign(frames, 100);
+  study.landscape.cost_px2.assign(frames, std::vector<float>(256));
+  for (int i = 0; i < frames; ++i)
+    for (int k = 0; k < 256; ++k) {
+      const Eigen::Vector2d disc = disc_of_cell(16, k / 16, k % 16);
+      const double away = (disc - disc_from_normal(normal)).norm();
+      study.landscape.cost_px2[i][k] =
+          disc.norm() < 0.9 ? static_cast<float>((i + 1) * (1 + 400 * away * away)) : NAN;
+    }
+  study.candidates.resize(frames);
+  for (int i = 1; i < frames; ++i)
+    study.candidates[i] = {
+        {i, Decomposition::zhang, {{}, {0.1, 0, 0}, normal}, 0.5, "", 0, 100},
+        {i, Decomposition::zhang, {{}, {0.1, 0, 0}, {0.6, 0, -0.8}}, 9, "behind"}};
+  study.clusters = {{normal, 1, frames - 1, 2}};
+  return std::make_shared<const NormalStudy>(study);
+}
+
+TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  open(inspection);
+  state_.panes.side = SidePane::normals;
+  state_.study = made_study(inspection);
+  const Rectangle place = layout().side;
+  const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
+  ImGui::GetIO().MousePos = {x, y};
+  draw();
+  EXPECT_TRUE(draw().empty()) << "resting on it only tells";
+  ImGui::GetIO().MouseWheel = 2;
+  const Commands zoomed = draw();
+  ASSERT_EQ(zoomed.size(), 1U);
+  ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
+  apply(state_, zoomed[0]);
+  EXPECT_NEAR(state_.normals_zoom.factor, 1.5625, 1e-9);
+  ImGui::GetIO().MouseDown[0] = true;
+  draw();
+  ImGui::GetIO().MousePos = {x + 30, y};
+  const Commands moved = draw();
+  ImGui::GetIO().MouseDown[0] = false;
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_LT(std::get<ZoomNormals>(moved[0]).zoom.center.x(), state_.normals_zoom.center.x());
+}
+
+TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  open(inspection);
+  state_.panes.side = SidePane::normals;
+  state_.study = made_study(inspection);
+  apply(state_, GoToFrame{34});
+  draw();
+  const std::size_t drawn = views_->normals.texture().revision();
+  EXPECT_GT(drawn, 0U);
+  draw();
+  EXPECT_EQ(views_->normals.texture().revision(), drawn);
+  const float all = views_->normals.rms_at({0, 0});
+  apply(state_, GoToFrame{12});
+  draw();
+  EXPECT_EQ(views_->normals.texture().revision(), drawn + 1);
+  EXPECT_LT(views_->normals.rms_at({0, 0}), all);
+  EXPECT_TRUE(std::isnan(views_->normals.rms_at({0.96, 0.05})));
+  EXPECT_FALSE(views_->normals.contours().empty());
+  state_.panes.side = SidePane::candidates;
+  for (const int frame : {0, 5, 20}) {
+    apply(state_, GoToFrame{frame});
+    EXPECT_TRUE(draw().empty());
+  }
+}
+
+TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  open(inspection);
+  state_.panes.side = SidePane::normals;
+  NormalStudy other = *made_study(inspection);
+  other.window = std::make_shared<const Window>(*inspection.window);
+  state_.study = std::make_shared<const NormalStudy>(other);
+  draw();
+  EXPECT_EQ(views_->normals.texture().revision(), 0U);
+}
+
 TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
   Inspection inspection = made_inspection();
   state_.panes.drawer = Drawer::timing;
@@ -113,6 +202,8 @@ TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
     inspection.timing = {100, 20, 3, 40, 30, 163};
     open(inspection);
     const cv::Mat first = drawer_picture();
+    std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
+    cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/timing.png", first);
     inspection.timing = {10, 220, 33, 4, 3, 270};
     open(inspection);
     EXPECT_EQ(same_bytes(first, drawer_picture()), !timings);

@@ -105,7 +105,7 @@ std::string why_no_trace(const ShownResult& current) {
   const Initialization& made = *current.inspection->initialization;
   if (!made.solver.trace.empty()) return "";
   if (!made.ok) return fmt::format("{} failed before it optimized: {}", current.name, made.reason);
-  return current.name + " computes its answer directly: nothing is optimized, nothing iterates";
+  return current.name + " computes its answer directly: nothing is optimized";
 }
 
 /// One below the other where there is height for it, else side by side.

@@ -12,7 +12,6 @@
 #include "ui/views/scene_geometry.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -75,6 +74,13 @@ void small_text(const Stage& stage, const ImVec2& middle, const std::string& tex
 void draw_map(const Stage& stage, const NormalsMap& map) {
   mark_content(stage.list, map.texture().revision());
   stage.list.AddImage(map.texture().id(), stage.at(Vector2d(-1, -1)), stage.at(Vector2d(1, 1)));
+  const ImVec2 low = stage.list.GetClipRectMin(), high = stage.list.GetClipRectMax();
+  for (const auto& [from, to] : map.contours()) {
+    const ImVec2 a = stage.at(from), b = stage.at(to);
+    const bool outside = std::max(a.x, b.x) < low.x || std::min(a.x, b.x) > high.x ||
+                         std::max(a.y, b.y) < low.y || std::min(a.y, b.y) > high.y;
+    if (!outside) stage.list.AddLine(a, b, imgui_color(palette::kBackground, 0.55), stage.s);
+  }
 }
 
 /// Tilts, and what it means for a plane to lie there.
@@ -91,11 +97,12 @@ void draw_rings(const Stage& stage) {
   const float arm = 4 * stage.s;
   stage.list.AddLine({middle.x - arm, middle.y}, {middle.x + arm, middle.y}, color, stage.s);
   stage.list.AddLine({middle.x, middle.y - arm}, {middle.x, middle.y + arm}, color, stage.s);
-  const double out = 1 + 11 * stage.s / stage.to.radius;
+  const double out = 1 + 11 * stage.s / stage.to.radius;  // of the rim
+  const double inwards = 20 * stage.s / stage.to.radius;
   small_text(stage, stage.at(Vector2d(0, -out)), "up: floor");
   small_text(stage, stage.at(Vector2d(0, out)), "down: ceiling");
-  small_text(stage, stage.at(Vector2d(-out, -0.06)), "left");
-  small_text(stage, stage.at(Vector2d(out, -0.06)), "right");
+  small_text(stage, stage.at(Vector2d(-1 + inwards, 0)), "left");
+  small_text(stage, stage.at(Vector2d(1 - inwards, 0)), "right");
 }
 
 void draw_candidates(const Stage& stage) {
@@ -148,23 +155,19 @@ void draw_answer(const Stage& stage, const NormalAnswer& answer) {
     stage.list.AddCircle(
         at, r + 1.2F * stage.s, imgui_color(palette::kSelected), 24, 1.4F * stage.s);
   } else {
-    const std::array<ImVec2, 4> corners = {ImVec2(at.x, at.y - r),
-                                           ImVec2(at.x + r, at.y),
-                                           ImVec2(at.x, at.y + r),
-                                           ImVec2(at.x - r, at.y)};
-    stage.list.AddConvexPolyFilled(corners.data(), 4, color);
-    stage.list.AddPolyline(corners.data(), 4, rim, ImDrawFlags_Closed, 1.6F * stage.s);
+    stage.list.AddRect({at.x - r, at.y - r}, {at.x + r, at.y + r}, rim, 0, 0, 4 * stage.s);
+    draw_sign(stage.list, Sign::square, at, answer.rgb);
   }
 }
 
 void draw_truth(const Stage& stage) {
   if (const auto normal = true_normal(stage.content.inspection)) {
     const ImVec2 c = stage.at(*normal);
-    const float r = 9 * stage.s;
+    const float r = 8 * stage.s;
     for (const auto& [rgb, width] :
          {std::pair{palette::kBackground, 4.0F}, std::pair{palette::kTruth, 2.0F}}) {
-      stage.list.AddLine({c.x - r, c.y}, {c.x + r, c.y}, imgui_color(rgb), width * stage.s);
-      stage.list.AddLine({c.x, c.y - r}, {c.x, c.y + r}, imgui_color(rgb), width * stage.s);
+      stage.list.AddLine({c.x - r, c.y - r}, {c.x + r, c.y + r}, imgui_color(rgb), width * stage.s);
+      stage.list.AddLine({c.x - r, c.y + r}, {c.x + r, c.y - r}, imgui_color(rgb), width * stage.s);
     }
   }
 }
@@ -212,7 +215,7 @@ void draw_color_bar(const Stage& stage, const ScreenRect& rect, const NormalsMap
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(
-      map.low_px(), map.high_px(), std::max(2, static_cast<int>((right - left) / (44 * s))));
+      map.low_px(), map.high_px(), std::max(3, static_cast<int>((right - left) / (26 * s))));
   for (std::size_t i = 0; i < ticks.values.size(); ++i) {
     const double share = (std::log(ticks.values[i]) - low) / (high - low);
     if (share < -1e-6 || share > 1 + 1e-6) continue;

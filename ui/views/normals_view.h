@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct ImDrawList;
@@ -25,6 +26,9 @@ struct NormalAnswer {
   const Eigen::Vector3d& normal() const { return inspection->initialization->plane.normal; }
 };
 
+/// Pieces of lines on the disc.
+using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
+
 /// The map of a study up to a frame, in the graphics memory. Needs its context.
 class NormalsMap {
  public:
@@ -32,6 +36,8 @@ class NormalsMap {
   void update(const std::shared_ptr<const NormalStudy>& study, int frames);
 
   const PictureTexture& texture() const { return texture_; }
+  /// Lines of the same RMS: 1, 2 and 5 times powers of ten [px].
+  const Contours& contours() const { return contours_; }
   /// RMS that a plane of the normal at this place of the disc leaves [px]; NaN where there is none.
   float rms_at(const Eigen::Vector2d& disc) const;
   /// The colors' range [px]: that of the whole window, so that frames compare.
@@ -42,6 +48,7 @@ class NormalsMap {
   std::shared_ptr<const NormalStudy> study_;
   int frames_ = 0;
   std::vector<float> rms_px_;
+  Contours contours_;
   float low_px_ = 0.1F, high_px_ = 1;
   PictureTexture texture_;
 };

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
+#include "engine/initializers/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
+#include "ui/views/normals_view.h"
 #include "ui/views/picture_texture.h"
 #include "ui/views/scene_geometry.h"
 
@@ -64,6 +66,19 @@ cv::Mat snapshot_scene(const Inspection& inspection,
   return snapshot<SceneView>(
       size, text_scale(size), [&](SceneView& view, ImDrawList& list, const ScreenRect& rect) {
         draw_scene_view(list, rect, view, inspection, frame, camera, options);
+      });
+}
+
+cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
+                         int frame,
+                         cv::Size size) {
+  NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
+  const Method& method = find_method(inspection->settings.method);
+  if (inspection->initialization->ok)
+    content.answers.push_back({method.title, method.rgb, inspection, true});
+  return snapshot<NormalsMap>(
+      size, text_scale(size), [&](NormalsMap& map, ImDrawList& list, const ScreenRect& rect) {
+        draw_normals_view(list, rect, map, content, {});
       });
 }
 

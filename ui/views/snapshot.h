@@ -7,6 +7,7 @@
 #include "ui/views/image_view.h"
 #include "ui/views/scene_view.h"
 
+#include <memory>
 #include <optional>
 
 #include <opencv2/core.hpp>
@@ -27,6 +28,11 @@ cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        cv::Size size = {960, 720},
                        const SceneViewOptions& options = {});
+
+/// The disc of normals; studies the window for it.
+cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
+                         int frame,
+                         cv::Size size = {720, 760});
 
 /// At the size of `default_compare_size` where none is given.
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size = {});

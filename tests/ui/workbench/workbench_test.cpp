@@ -247,6 +247,18 @@ TEST(Workbench, FitShowsAllOfPictureAndScene) {
   EXPECT_FALSE(state.orbit.has_value());
 }
 
+TEST(Workbench, NormalsAreZoomedByTheirTiltAndFitted) {
+  WorkbenchState state = opened();
+  run(state, "zoom-normals 10 9 -45");
+  EXPECT_EQ(state.normals_zoom.factor, 10);
+  EXPECT_EQ(state.normals_zoom.center, Eigen::Vector2d(0.1, -0.5));
+  run(state, "zoom-normals 1e9 900 0");
+  EXPECT_EQ(state.normals_zoom.factor, kLargestNormalsZoom);
+  EXPECT_EQ(state.normals_zoom.center, Eigen::Vector2d(1, 0));
+  run(state, "fit");
+  EXPECT_EQ(state.normals_zoom.factor, 1);
+}
+
 TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
   WorkbenchState state = opened();
   run(state, "help");

@@ -1,0 +1,22 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/normal_study.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// What is seen in the readings of a frame's homography, one sentence; there is at least one.
+std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
+
+/// Why a frame (counts in the window, may be outside of it) has no readings; empty where it has.
+std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
+
+/// Algorithm, normal, tilt, rotation, |tau|, score, points behind.
+std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
+
+}  // namespace gpo
