@@ -4,6 +4,7 @@
 #include "engine/inspection/track_life.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_picture.h"
+#include "ui/panels/chart_item.h"
 #include "ui/panels/panes.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay.h"
@@ -11,6 +12,7 @@
 #include "ui/workbench/tracks_in_view.h"
 
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -86,6 +88,35 @@ void draw_table(const TrackLife& life, int frame, float width, float height, Com
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       draw_row(life.frames[i], life.frames[i].frame == frame, commands);
   ImGui::EndTable();
+}
+
+/// Its errors frame by frame.
+Chart life_chart(const TrackLife& life) {
+  Chart chart{"", "frame", "error [px]", false, {}};
+  const auto add = [&](const char* name, std::uint32_t rgb, auto TrackFrame::*value) {
+    Curve curve{name, rgb, false, {}, {}, {}, {}};
+    for (const TrackFrame& frame : life.frames) {
+      curve.x.push_back(frame.frame);
+      curve.y.push_back((frame.*value).value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    chart.curves.push_back(std::move(curve));
+  };
+  add("transfer", palette::kInlier, &TrackFrame::transfer_px);
+  add("residual", palette::kResidual, &TrackFrame::residual_px);
+  add("fwd-bwd", palette::kRotation, &TrackFrame::forward_backward_px);
+  return chart;
+}
+
+void draw_plot(const PanelInput& input,
+               const Rectangle& place,
+               const TrackLife& life,
+               Views& views,
+               Commands& commands) {
+  const ChartItem item = chart_item("track life", place, views, life_chart(life));
+  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, input.state.frame, palette::kAccent);
+  if (!item.held || !item.hovered) return;
+  const int frame = static_cast<int>(std::lround(*item.hovered));
+  if (frame != input.state.frame) push(commands, GoToFrame{frame});
 }
 
 /// The surroundings of a place of a picture, enlarged; its middle is the place, to a part of a
@@ -174,12 +205,19 @@ void track_drawer(const PanelInput& input,
   ImGui::PopFont();
   ImGui::SameLine();
   clipped_text(life.verdict, place.width - 120 * s, palette::kTextDim);
-  const float patches = (2 * kPatch_px * kMagnification + 28) * s;
   const float top = ImGui::GetCursorPosY();
-  draw_table(life, input.state.frame, place.width - patches - 24 * s, place.height - top, commands);
+  const float patches = (2 * kPatch_px * kMagnification + 20) * s;
+  const float rest = place.width - patches - 24 * s;
+  const float table = std::round(std::max(0.55F * rest, std::min(rest, 420 * s)));
+  draw_table(life, input.state.frame, table, place.height - top, commands);
   ImGui::EndGroup();
-  ImGui::SameLine(0, 12 * s);
-  ImGui::SetCursorPosY(top);
+  if (rest - table > 160 * s)
+    draw_plot(input,
+              {place.x + 12 * s + table, place.y + top, rest - table, place.height - top},
+              life,
+              views,
+              commands);
+  ImGui::SetCursorPos({place.width - patches, top});
   draw_patches(input, life, views);
 }
 

@@ -27,8 +27,15 @@
 namespace gpo {
 namespace {
 
-constexpr ChartLook kScreenLook{
-    palette::kPanel, palette::kTextDim, palette::kBorder, palette::kRaised, 12, 26};
+/// In the colors of the current theme.
+ChartLook screen_look() {
+  return {themed(palette::kPanel),
+          themed(palette::kTextDim),
+          themed(palette::kBorder),
+          themed(palette::kRaised),
+          12,
+          26};
+}
 
 // Around the axes, at scale 1 [px].
 constexpr double kLeft = 54, kRight = 14, kBottom = 38, kTop = 24;
@@ -152,10 +159,9 @@ struct ChartView::Pipeline {
   double scale = 0, top_px = 0;
   ChartMapping mapping;
   std::size_t revision = 0;
+  Theme theme = Theme::dark;
 
   Pipeline() {
-    renderer->SetBackground(
-        red(kScreenLook.ground), green(kScreenLook.ground), blue(kScreenLook.ground));
     renderer->SetBackgroundAlpha(1);
     window->AddRenderer(renderer);
     renderer->AddActor(actor);
@@ -166,12 +172,15 @@ struct ChartView::Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   bool changed(const Chart& other, int w, int h, double s, double top) const {
-    return revision == 0 || w != width || h != height || s != scale || top != top_px ||
-           !same(chart, other);
+    return revision == 0 || theme != current_theme() || w != width || h != height || s != scale ||
+           top != top_px || !same(chart, other);
   }
 
   void fill() {
     const double s = scale;
+    const ChartLook look = screen_look();
+    theme = current_theme();
+    renderer->SetBackground(red(look.ground), green(look.ground), blue(look.ground));
     const vtkRectf axes(
         static_cast<float>(std::round(kLeft * s)),
         static_cast<float>(std::round(kBottom * s)),
@@ -180,7 +189,7 @@ struct ChartView::Pipeline {
     vtkContextScene& scene = *actor->GetScene();
     scene.ClearItems();
     vtkNew<vtkChartXY> plots;
-    mapping = fill_chart(*plots, chart, screen_styles(chart), axes, s, kScreenLook);
+    mapping = fill_chart(*plots, chart, screen_styles(chart), axes, s, look);
     scene.AddItem(plots);
     // VTK's y is up.
     mapping.bottom = height - mapping.bottom;

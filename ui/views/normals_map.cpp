@@ -35,6 +35,7 @@ cv::Vec3b shaded(const cv::Vec3b& bgr, double share) {
 }
 
 cv::Vec3b bgr_of(std::uint32_t rgb) {
+  rgb = themed(rgb);
   return {static_cast<uchar>(rgb), static_cast<uchar>(rgb >> 8), static_cast<uchar>(rgb >> 16)};
 }
 
@@ -130,11 +131,12 @@ cv::Mat picture_of(const LogField& field, float low, float high) {
 }  // namespace
 
 void NormalsMap::update(const std::shared_ptr<const NormalStudy>& study, int frames) {
-  if (study == study_ && frames == frames_) return;
+  if (study == study_ && frames == frames_ && theme_ == current_theme()) return;
   if (study != study_)
     std::tie(low_px_, high_px_) =
         range_of(gpo::rms_px(study->landscape, static_cast<int>(study->landscape.cost_px2.size())));
   study_ = study;
+  theme_ = current_theme();
   frames_ = frames;
   rms_px_ = gpo::rms_px(study->landscape, frames);
   const LogField field = log_field(rms_px_, study->landscape.side);

@@ -97,10 +97,10 @@ void draw_rings(const Stage& stage) {
   const float arm = 4 * stage.s;
   stage.list.AddLine({middle.x - arm, middle.y}, {middle.x + arm, middle.y}, color, stage.s);
   stage.list.AddLine({middle.x, middle.y - arm}, {middle.x, middle.y + arm}, color, stage.s);
-  const double out = 1 + 11 * stage.s / stage.to.radius;  // of the rim
-  const double inwards = 20 * stage.s / stage.to.radius;
-  small_text(stage, stage.at(Vector2d(0, -out)), "up: floor");
-  small_text(stage, stage.at(Vector2d(0, out)), "down: ceiling");
+  const double inwards = 20 * stage.s / stage.to.radius;  // of the rim
+  const double below = 10 * stage.s / stage.to.radius;
+  small_text(stage, stage.at(Vector2d(0, below - 1)), "up: floor");
+  small_text(stage, stage.at(Vector2d(0, 1 - below)), "down: ceiling");
   small_text(stage, stage.at(Vector2d(-1 + inwards, 0)), "left");
   small_text(stage, stage.at(Vector2d(1 - inwards, 0)), "right");
 }

@@ -4,6 +4,7 @@
 
 #include "engine/inspection/normal_study.h"
 #include "ui/views/normals_disc.h"
+#include "ui/views/palette.h"
 #include "ui/views/picture_texture.h"
 
 #include <cstdint>
@@ -47,6 +48,7 @@ class NormalsMap {
  private:
   std::shared_ptr<const NormalStudy> study_;
   int frames_ = 0;
+  Theme theme_ = Theme::dark;
   std::vector<float> rms_px_;
   Contours contours_;
   float low_px_ = 0.1F, high_px_ = 1;
