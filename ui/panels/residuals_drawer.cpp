@@ -11,8 +11,10 @@
 namespace gpo {
 namespace {
 
+/// The one that the mouse rests on, wherever, else the one that was picked last.
 std::optional<TrackLife> focused_track(const PanelInput& input) {
-  const auto& focus = input.state.selection.focus;
+  const WorkbenchState& state = input.state;
+  const auto& focus = state.hover.track ? state.hover.track : state.selection.focus;
   if (!focus) return std::nullopt;
   const auto column = column_of(*input.inspection()->tracks, *focus);
   if (!column) return std::nullopt;

@@ -81,12 +81,14 @@ void draw_table(const TrackLife& life, int frame, float width, float height, Com
       ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
   if (!ImGui::BeginTable("life", static_cast<int>(std::size(kColumns)), flags, {width, height}))
     return;
+  ImGui::PushFont(font(Font::small));
   header();
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(life.frames.size()));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       draw_row(life.frames[i], life.frames[i].frame == frame, commands);
+  ImGui::PopFont();
   ImGui::EndTable();
 }
 

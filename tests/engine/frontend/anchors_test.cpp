@@ -20,7 +20,7 @@ constexpr int kFrames = 30;
 constexpr int kLast = kFrames - 1;
 
 std::shared_ptr<const Recording> desk() {
-  return open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+  return open_recording(GPO_SOURCE_DIR "/sequences/desk");
 }
 
 Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
