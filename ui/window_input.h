@@ -4,6 +4,8 @@
 
 #include "ui/workbench/workbench.h"
 
+#include <string>
+
 struct GLFWwindow;
 
 namespace gpo {
@@ -25,9 +27,14 @@ class WindowInput {
   static void on_character(GLFWwindow* window, unsigned codepoint);
   static void on_drop(GLFWwindow* window, int count, const char** paths);
 
+  /// Whether keys are text for a field.
+  bool typing();
+  void run(const std::string& line);
+
   GLFWwindow* window_;
   Commands commands_;
   bool repeating_ = false;  ///< the key that types the next character is being held
+  bool will_type_ = false;  ///< a field was opened and has not been drawn yet
   bool shortcut_ = false;   ///< ... together with Ctrl, Alt or Super
 };
 

@@ -63,7 +63,7 @@ Verdict judged(const WindowEvidence& evidence,
         "the window tells the plane's normal to {:.1f} deg only; move the camera farther",
         *normal_sigma_deg);
   } else if (largest_translation < kDegenerateTranslation) {
-    verdict.reason = fmt::format("the camera moved by {:.1f} % of its distance from the plane only",
+    verdict.reason = fmt::format("the camera moved by only {:.1f} % of its distance from the plane",
                                  100 * largest_translation);
   } else if (*normal_sigma_deg > kWeakSigma_deg || largest_translation < kWeakTranslation) {
     verdict.readiness = Readiness::weak;

@@ -27,6 +27,16 @@ Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop
   }
 }
 
+/// Null where it was stopped or could not be made.
+std::shared_ptr<const NormalStudy> study_of(const Inspection& inspection,
+                                            const std::stop_token& stop) {
+  try {
+    return study_normals(inspection, stop);
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
@@ -160,7 +170,7 @@ void Survey::run(const std::stop_token& stop) {
       }
     }
     if (studied) {
-      finish_study(request, study_normals(*studied, request));
+      finish_study(request, study_of(*studied, request));
       if (changed_) changed_();
       continue;
     }

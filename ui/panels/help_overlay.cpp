@@ -33,12 +33,15 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
     if (action.value) row.value = action.value(state);
     rows.push_back(std::move(row));
   }
-  const std::array<std::array<const char*, 2>, 5> mouse = {
-      {{"Wheel", "Zoom picture or scene"},
+  const std::array<std::array<const char*, 2>, 8> mouse = {
+      {{"Wheel", "Zoom picture, scene, normals"},
        {"Drag", "Move the picture, turn the scene"},
-       {"Shift+Drag", "Move the scene (or middle button)"},
+       {"Shift+Drag", "Pick tracks in the picture, move the scene"},
        {"Double click", "Fit picture or scene"},
-       {"Drop a folder", "Open it"}}};
+       {"Click", "Pick a track, go to a camera, put the cube on the plane"},
+       {"Ctrl+Click", "Pick several tracks"},
+       {"Right click", "Put the cube there, in the picture; reset a setting"},
+       {"Drop a file", "Open a recording, a session, a results.csv"}}};
   for (const auto& [keys, title] : mouse) rows.push_back({keys, title, "", ""});
   return rows;
 }

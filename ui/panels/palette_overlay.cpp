@@ -80,6 +80,13 @@ void accept(PaletteEntry& entry, const Action* chosen, Commands& commands) {
   }
 }
 
+/// The actions that the text finds; of a whole command its own, whose usage is then on display.
+std::vector<const Action*> offered(const std::string& text) {
+  const auto call = match_line(text);
+  if (call && !call->arguments.empty()) return {call->action};
+  return find_actions(text);
+}
+
 int move_cursor_to_end(ImGuiInputTextCallbackData* data) {
   auto& entry = *static_cast<PaletteEntry*>(data->UserData);
   if (entry.typed_out)
@@ -118,7 +125,7 @@ void palette_overlay(const PanelInput& input,
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways,
       move_cursor_to_end,
       &entry);
-  const std::vector<const Action*> found = find_actions(entry.text.data());
+  const std::vector<const Action*> found = offered(entry.text.data());
   move_choice(entry, static_cast<int>(found.size()));
   const Action* clicked = draw_rows(found, entry.chosen, s);
   if (clicked != nullptr) accept(entry, clicked, commands);

@@ -36,7 +36,7 @@ bool tab(const Action& action, bool open, const Rectangle& place, float scale) {
   list.AddText({std::round(at.x + padding), y},
                imgui_color(open || hovered ? palette::kText : palette::kTextDim),
                action.title.c_str());
-  tooltip(action.tooltip);
+  if (!open) tooltip(action.tooltip);
   ImGui::SameLine(0, 0);
   return clicked;
 }

@@ -33,11 +33,11 @@ struct ColumnText {
 };
 constexpr ColumnText kColumns[] = {
     {"frame", "Counts in the recording; click: go there"},
-    {"x [px]", "Where it is seen, in the picture as it was recorded"},
-    {"y [px]", "Where it is seen, in the picture as it was recorded"},
-    {"transfer [px]", "Transfer error of the frame's own homography: what RANSAC decides by"},
-    {"residual [px]", "From there to where the result's plane and poses put it"},
-    {"fwd-bwd [px]", "How far the way from the frame before and back ends from where it began"},
+    {"x", "Where it is seen, in the picture as it was recorded"},
+    {"y", "Where it is seen, in the picture as it was recorded"},
+    {"transfer", "Transfer error of the frame's own homography: what RANSAC decides by"},
+    {"residual", "From there to where the result's plane and poses put it"},
+    {"fwd-bwd", "How far the way from the frame before and back ends from where it began"},
     {"", "Inlier: a green circle; outlier: a red cross"}};
 
 void header() {
@@ -206,7 +206,8 @@ void track_drawer(const PanelInput& input,
   ImGui::TextUnformatted(fmt::format("Track {}", life.id).c_str());
   ImGui::PopFont();
   ImGui::SameLine();
-  clipped_text(life.verdict, place.width - 120 * s, palette::kTextDim);
+  clipped_text(
+      life.verdict + " \u00b7 places and errors in px", place.width - 120 * s, palette::kTextDim);
   const float top = ImGui::GetCursorPosY();
   const float patches = (2 * kPatch_px * kMagnification + 20) * s;
   const float rest = place.width - patches - 24 * s;
