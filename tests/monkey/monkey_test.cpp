@@ -73,7 +73,7 @@ class Monkey {
   std::mt19937 random_;
 };
 
-class MonkeyTest : public DrawingTest {
+class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
  protected:
   void draw() {
     context_.bind();
@@ -111,14 +111,14 @@ double resident_megabytes() {
   return resident * 4096 / 1e6;
 }
 
-/// GPO_MONKEY_TURNS and GPO_MONKEY_SEED make it longer and other.
-TEST_F(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
+/// GPO_MONKEY_TURNS makes it longer, GPO_MONKEY_SEED adds to the seeds.
+TEST_P(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
   if (!std::filesystem::exists(GPO_SOURCE_DIR "/sequences/desk"))
     GTEST_SKIP() << "no bundled recording";
   std::filesystem::create_directories(kFolder);
   setenv("XDG_STATE_HOME", (kFolder / "state").c_str(), 1);
-  const int turns = from_environment("GPO_MONKEY_TURNS", 400);
-  const auto seed = static_cast<unsigned>(from_environment("GPO_MONKEY_SEED", 1));
+  const int turns = from_environment("GPO_MONKEY_TURNS", 2500);
+  const auto seed = static_cast<unsigned>(GetParam() + from_environment("GPO_MONKEY_SEED", 0));
   Monkey monkey(seed);
   run_action(host_.state, "open-example");
   host_.settle();
@@ -150,6 +150,8 @@ TEST_F(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
   // The survey keeps some results, and VTK some shaders; a leak a turn would be more.
   EXPECT_LT(grown, 300);
 }
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MonkeyTest, testing::Values(1, 2, 3));
 
 }  // namespace
 }  // namespace gpo

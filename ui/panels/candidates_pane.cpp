@@ -12,9 +12,6 @@
 namespace gpo {
 namespace {
 
-struct ColumnText {
-  const char *title, *meaning;
-};
 constexpr ColumnText kColumns[] = {
     {"algorithm", "Which decomposition of the homography gives this reading"},
     {"verdict", "Taken, or why not"},
@@ -29,14 +26,7 @@ constexpr ColumnText kColumns[] = {
 void header() {
   ImGui::TableSetupScrollFreeze(0, 1);
   for (const ColumnText& column : kColumns) ImGui::TableSetupColumn(column.title);
-  ImGui::TableNextRow();
-  for (const ColumnText& column : kColumns) {
-    ImGui::TableNextColumn();
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
-    ImGui::TextUnformatted(column.title);
-    ImGui::PopStyleColor();
-    tooltip(column.meaning);
-  }
+  table_header(kColumns);
 }
 
 void draw_verdict(const HomographyCandidate& candidate, float scale) {

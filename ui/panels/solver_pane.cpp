@@ -20,9 +20,6 @@ namespace {
 
 constexpr const char* kDash = "\u2013";
 
-struct ColumnText {
-  const char *title, *meaning;
-};
 constexpr ColumnText kColumns[] = {
     {"method", "The current result, and those that it is compared with"},
     {"cost [px\u00b2]",
@@ -57,27 +54,13 @@ void header(bool wide) {
   for (std::size_t i = 0; i < std::size(kColumns); ++i)
     ImGui::TableSetupColumn(kColumns[i].title,
                             is_shown(i, wide) ? 0 : ImGuiTableColumnFlags_Disabled);
-  ImGui::TableNextRow();
-  for (const ColumnText& column : kColumns) {
-    if (!ImGui::TableNextColumn()) continue;
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
-    ImGui::TextUnformatted(column.title);
-    ImGui::PopStyleColor();
-    tooltip(column.meaning);
-  }
+  table_header(kColumns);
 }
 
 void draw_row(const ShownResult& result, bool timings, float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float half = ImGui::GetTextLineHeight() / 2;
-  draw_sign(*ImGui::GetWindowDrawList(),
-            result.current ? Sign::disc : Sign::dot,
-            {at.x + half, at.y + half},
-            result.rgb);
-  ImGui::SetCursorScreenPos({at.x + 16 * scale, at.y});
-  ImGui::TextUnformatted(result.name.c_str());
+  marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
   const Initialization& made = *result.inspection->initialization;
   tooltip(made.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px",
                                 made.solver.unknowns,

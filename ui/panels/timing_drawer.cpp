@@ -94,14 +94,7 @@ void draw_row(const ShownResult& result, double longest_ms, bool timings, float 
   ImGui::TableNextRow();
   ImGui::PushID(&result);
   ImGui::TableNextColumn();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float half = ImGui::GetTextLineHeight() / 2;
-  draw_sign(*ImGui::GetWindowDrawList(),
-            result.current ? Sign::disc : Sign::dot,
-            {at.x + half, at.y + half},
-            result.rgb);
-  ImGui::SetCursorScreenPos({at.x + 20 * scale, at.y});
-  ImGui::TextUnformatted(result.name.c_str());
+  marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
   const auto number = [&](double ms) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(timings ? number_text(ms, 2).c_str() : "\u2013");

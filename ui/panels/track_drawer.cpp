@@ -27,10 +27,6 @@ std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", *value) : "\u2013";
 }
 
-/// What a column of the table is called, and means.
-struct ColumnText {
-  const char *title, *meaning;
-};
 constexpr ColumnText kColumns[] = {
     {"frame", "Counts in the recording; click: go there"},
     {"x", "Where it is seen, in the picture as it was recorded"},
@@ -43,14 +39,7 @@ constexpr ColumnText kColumns[] = {
 void header() {
   ImGui::TableSetupScrollFreeze(0, 1);
   for (const ColumnText& column : kColumns) ImGui::TableSetupColumn(column.title);
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ColumnText& column : kColumns) {
-    ImGui::TableNextColumn();
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
-    ImGui::TextUnformatted(column.title);
-    ImGui::PopStyleColor();
-    tooltip(column.meaning);
-  }
+  table_header(kColumns);
 }
 
 void draw_row(const TrackFrame& frame, bool current, Commands& commands) {

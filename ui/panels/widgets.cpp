@@ -46,6 +46,25 @@ void draw_empty(const Rectangle& place, const std::string& text) {
                wrap);
 }
 
+void table_header(std::span<const ColumnText> columns) {
+  ImGui::TableNextRow();
+  for (const ColumnText& column : columns) {
+    if (!ImGui::TableNextColumn()) continue;
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+    ImGui::TextUnformatted(column.title);
+    ImGui::PopStyleColor();
+    tooltip(column.meaning);
+  }
+}
+
+void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float half = ImGui::GetTextLineHeight() / 2;
+  draw_sign(*ImGui::GetWindowDrawList(), sign, {at.x + half, at.y + half}, rgb);
+  ImGui::SetCursorScreenPos({at.x + 18 * scale, at.y});
+  ImGui::TextUnformatted(name.c_str());
+}
+
 void heading(const char* text) {
   ImGui::PushFont(font(Font::small));
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/views/overlay.h"
 #include "ui/workbench/layout.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include <imgui.h>
@@ -23,6 +25,17 @@ class PanelScope {
 
 /// What a part of the window says while it has nothing to show, in its middle: why, and what to do.
 void draw_empty(const Rectangle& place, const std::string& text);
+
+/// What a column of a table is called, and what it means.
+struct ColumnText {
+  const char *title, *meaning;
+};
+/// The first row of a table, after its columns were set up: dim, with the meanings as tooltips.
+/// Columns that are disabled are left out.
+void table_header(std::span<const ColumnText> columns);
+
+/// A sign, and a name beside it, in the table's current cell.
+void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale);
 
 /// A small heading in dim capitals.
 void heading(const char* text);
