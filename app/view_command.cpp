@@ -8,6 +8,7 @@
 #include "ui/context/window_context.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions.h"
+#include "ui/workbench/recent_files.h"
 #include "ui/workbench/script.h"
 #include "ui/workbench/session_file.h"
 #include "ui/workbench_host.h"

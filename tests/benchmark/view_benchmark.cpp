@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/normal_study.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
 #include "ui/context/gui.h"
@@ -109,35 +110,53 @@ class OnlyScene : public View {
   OrbitCamera camera_;
 };
 
+/// With what is open in it.
 class WholeWindow : public View {
  public:
-  explicit WholeWindow(const Inspections& inspections) : inspection_(*inspections.front()) {
-    state_.settings = inspection_.settings;
-    adopt(state_, inspection_.recording);
+  explicit WholeWindow(const Inspections& inspections) {
+    const auto& inspection = inspections.front();
+    state_.settings = inspection->settings;
+    adopt(state_, inspection->recording);
+    state_.inspection = inspection;
   }
   void draw(int frame) override {
     apply(state_, GoToFrame{frame});
-    draw_workbench({state_, &inspection_, idle_}, kSize, gui_, views_);
+    draw_workbench({state_, idle_, no_survey_}, kSize, gui_, views_);
   }
+
+ protected:
+  WorkbenchState state_;
 
  private:
   Gui gui_;
   Views views_;
-  WorkbenchState state_;
   WorkerStatus idle_;
-  const Inspection& inspection_;
+  SurveyStatus no_survey_;
+};
+
+/// The views whose content changes with every frame.
+class BusyWindow : public WholeWindow {
+ public:
+  explicit BusyWindow(const Inspections& inspections) : WholeWindow(inspections) {
+    state_.study = study_normals(*inspections.front(), {});
+    state_.panes = {SidePane::normals, Drawer::residuals, false};
+  }
 };
 
 enum class Frames { unchanged, stepping, stepping_while_computing };
 constexpr Frames kFrames[] = {
     Frames::unchanged, Frames::stepping, Frames::stepping_while_computing};
 
-/// As the window does when a setting has changed: in one thread, until it is stopped.
+/// As the window does beside the user: every method of the paper on 60 frames, in one thread, until
+/// it is stopped.
 std::jthread compute(Frames frames) {
   if (frames != Frames::stepping_while_computing) return {};
   return std::jthread([](const std::stop_token& stop) {
-    while (!stop.stop_requested())
-      Inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk")).inspect(Settings{});
+    while (!stop.stop_requested()) {
+      Inspector inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk"));
+      for (const char* method : {"gpo", "pnp", "dbscan", "ba", "pnp_ba", "pba", "fpba"})
+        inspector.inspect({.frames = 60, .method = method}, stop);
+    }
   });
 }
 
@@ -168,7 +187,8 @@ struct Row {
 constexpr Row kRows[] = {{"image", run<ImageView>},
                          {"scene", run<OnlyScene>},
                          {"compare, 4 methods", run<CompareView>},
-                         {"window", run<WholeWindow>}};
+                         {"window", run<WholeWindow>},
+                         {"window with normals and residuals", run<BusyWindow>}};
 
 std::string name_of(const Row& row, Frames frames) {
   const char* const names[] = {"unchanged", "stepping", "stepping while computing"};

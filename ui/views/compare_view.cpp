@@ -3,11 +3,11 @@
 #include "ui/views/compare_view.h"
 
 #include "ui/context/gui.h"
+#include "ui/views/compare_caption.h"
 #include "ui/views/image_view.h"
-#include "ui/views/numbers.h"
 #include "ui/views/overlay.h"
+#include "ui/views/overlay_text.h"
 #include "ui/views/palette.h"
-#include "ui/views/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,173 +100,6 @@ PictureZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, cons
   return zoom;
 }
 
-void write(ImDrawList& list,
-           Font which,
-           const Vector2d& at,
-           const std::string& text,
-           std::uint32_t rgb = palette::kText) {
-  const ImFont* f = font(which);
-  const ImVec2 place(std::round(static_cast<float>(at.x())),
-                     std::round(static_cast<float>(at.y())));
-  list.AddText(f, f->FontSize, place, imgui_color(rgb), text.c_str());
-}
-
-double width_of(Font which, const std::string& text) {
-  const ImFont* f = font(which);
-  return f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
-}
-
-/// The first of the texts that is not wider; else the last one, cut.
-std::string fitting(Font which, std::initializer_list<std::string> texts, double width) {
-  for (const std::string& text : texts)
-    if (width_of(which, text) <= width) return text;
-  std::string text = *std::prev(texts.end());
-  const auto cut = [&] {
-    do text.pop_back();
-    while (!text.empty() && (text.back() & 0xC0) == 0x80);
-  };
-  while (!text.empty() && width_of(which, text + "\u2026") > width) cut();
-  return text + "\u2026";
-}
-
-std::string conditions(const Inspection& inspection, double width) {
-  const Window& window = *inspection.window;
-  const bool ransac = uses_ransac(inspection.settings);
-  const std::string rotations = to_string(inspection.rotations_used);
-  const int inliers = window.inlier_count(0), all = window.track_count();
-  const std::string tracks = ransac ? fmt::format("RANSAC on · {} of {} tracks", inliers, all)
-                                    : fmt::format("RANSAC off · all {} tracks", all);
-  const std::string few =
-      ransac ? fmt::format("{}/{} tracks", inliers, all) : fmt::format("all {} tracks", all);
-  return fitting(Font::small,
-                 {fmt::format("rotations: {} · {}", rotations, tracks),
-                  fmt::format("{} · {}", rotations, tracks),
-                  fmt::format("{} · {}", rotations, few)},
-                 width);
-}
-
-/// Sign and word of the verdict, ending at the rectangle's right edge. Returns its width [px].
-double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
-  const auto& verdict = inspection.initialization->verdict;
-  if (!verdict) return 0;
-  const double s = overlay_scale();
-  const ReadinessLook look = look_of(verdict->readiness);
-  const std::string word = to_string(verdict->readiness);
-  const double width = 16 * s + width_of(Font::small, word);
-  const Vector2d at = rect.min + Vector2d(rect.size.x() - width, 12 * s);
-  draw_sign(list, look.sign, to_imgui(at + s * Vector2d(6, 8)), look.rgb);
-  write(list, Font::small, at + Vector2d(16 * s, 0), word, look.rgb);
-  return width + 10 * s;
-}
-
-void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column) {
-  const double s = overlay_scale();
-  const Vector2d bar = rect.min + Vector2d(0, 8 * s);
-  list.AddRectFilled(to_imgui(bar),
-                     to_imgui(bar + s * Vector2d(6, 40)),
-                     imgui_color(color_of(column.configuration)),
-                     static_cast<float>(2 * s));
-  const double wide = rect.size.x() - 16 * s;
-  const std::string title = title_of(column.configuration);
-  const double room = wide - (column.inspection ? draw_verdict(list, rect, *column.inspection) : 0);
-  const Font large = width_of(Font::heading, title) <= room ? Font::heading : Font::bold;
-  write(list,
-        large,
-        bar + s * Vector2d(16, large == Font::heading ? 0 : 2),
-        fitting(large, {title, key_of(column.configuration)}, room));
-  if (column.inspection)
-    write(list,
-          Font::small,
-          bar + s * Vector2d(16, 24),
-          conditions(*column.inspection, wide),
-          palette::kTextDim);
-}
-
-std::string why_no_metrics(const Inspection& inspection) {
-  if (!inspection.truth) return "no truth";
-  const Alignment alignment = inspection.evaluation->alignment;
-  if (alignment == Alignment::point) return "the true path is a point: no scale";
-  return "the ground truth does not cover the reference frame or the plane";
-}
-
-/// What stands below the errors.
-std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
-  const std::string least =
-      fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
-  std::string more = least;
-  if (const auto& uncertainty = inspection.initialization->uncertainty)
-    more += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
-  std::string most = more;
-  if (!e.pne_deg || !e.ate_m) most += " · " + why_no_metrics(inspection);
-  if (e.pne_bound_deg) most += fmt::format(" · PNE bound {}", angle_text(*e.pne_bound_deg));
-  return fitting(Font::small, {most, more, least}, width);
-}
-
-/// An error, and that of the first column.
-struct ComparedError {
-  const char* name;
-  std::optional<double> value, first;
-  std::string (*text)(double);
-};
-
-/// Whether the value does not fit beside its name.
-bool too_wide(const ComparedError& error, double width) {
-  const std::string value = error.value ? error.text(*error.value) : "–";
-  const double beside = width_of(Font::small, error.name) + 6 * overlay_scale();
-  return beside + width_of(Font::bold, value) > width - 4 * overlay_scale();
-}
-
-/// In a third of the caption: value and name, side by side or `stacked`; below the difference.
-void draw_error(
-    ImDrawList& list, const Vector2d& at, double width, bool stacked, const ComparedError& error) {
-  const double s = overlay_scale();
-  const std::string value = error.value ? error.text(*error.value) : "–";
-  const double right = stacked ? 0 : width_of(Font::small, error.name) + 6 * s;
-  write(list, Font::small, at + Vector2d(0, stacked ? 0 : 8 * s), error.name, palette::kTextDim);
-  const bool tight = right + width_of(Font::bold, value) > width - 4 * s;
-  write(
-      list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
-  if (!error.value || !error.first) return;
-  std::string difference = difference_text(*error.value, *error.first, error.text);
-  const auto unit = value.find(' '), same = difference.find(' ');
-  const bool repeats = unit != std::string::npos && same != std::string::npos &&
-                       value.substr(unit) == difference.substr(same);
-  if (tight && repeats) difference.resize(same);
-  const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
-  write(list,
-        Font::small,
-        at + Vector2d(right, (stacked ? 34 : 28) * s),
-        difference,
-        difference == "\u00b10" ? palette::kTextDim : rgb);
-}
-
-/// `first`: of the first column, to which the others are compared; null: this is it.
-void draw_caption(ImDrawList& list,
-                  const ScreenRect& rect,
-                  const Inspection& inspection,
-                  const Inspection* first) {
-  const double s = overlay_scale();
-  if (!inspection.initialization->ok) {
-    write(list, Font::bold, rect.min + Vector2d(0, 8 * s), "not initialized", palette::kWarning);
-    return;
-  }
-  const Evaluation e = inspection.evaluation.value_or(Evaluation{});
-  const Evaluation f = first ? first->evaluation.value_or(Evaluation{}) : Evaluation{};
-  const double third = std::min(rect.size.x() / 3, 150 * s);
-  const ComparedError errors[] = {{"PNE", e.pne_deg, f.pne_deg, angle_text},
-                                  {"ATE", e.ate_m, f.ate_m, length_text},
-                                  {"PDE", e.pde_m, f.pde_m, length_text}};
-  const bool stacked =
-      std::ranges::any_of(errors, [&](const auto& one) { return too_wide(one, third); });
-  for (int i = 0; i < 3; ++i)
-    draw_error(list, rect.min + Vector2d(i * third, 0), third, stacked, errors[i]);
-  write(list,
-        Font::small,
-        rect.min + Vector2d(0, 50 * s),
-        remarks(inspection, e, rect.size.x()),
-        palette::kTextDim);
-}
-
 void draw_top(ImDrawList& list,
               const ScreenRect& rect,
               const Recording& recording,
@@ -281,10 +114,10 @@ void draw_top(ImDrawList& list,
     text += fmt::format("{} the window {}–{}", inside ? " of" : ", outside of", first, last);
   }
   const Vector2d at = rect.min + s * Vector2d(kGap, 11);
-  write(list, Font::regular, at, text);
+  write_text(list, Font::regular, at, text);
   if (!inside) return;
   draw_cube_legend(
-      list, at + Vector2d(width_of(Font::regular, text) + 30 * s, 0), one->truth != nullptr);
+      list, at + Vector2d(text_width(Font::regular, text) + 30 * s, 0), one->truth != nullptr);
 }
 
 void draw_column(ImDrawList& list,
@@ -296,9 +129,9 @@ void draw_column(ImDrawList& list,
                  const PictureZoom& zoom,
                  const ImageViewOptions& options) {
   const Inspection& inspection = *column.inspection;
-  draw_heading(list, place.heading, column);
+  draw_compare_heading(list, place.heading, column);
   draw_image_view(list, place.picture, inspection, frame, picture, zoom, options);
-  draw_caption(list, place.caption, inspection, first);
+  draw_compare_caption(list, place.caption, inspection, first);
 }
 
 /// What is still computed, or could not be: the picture alone, and why.
@@ -309,7 +142,7 @@ void draw_missing(ImDrawList& list,
                   int frame,
                   PictureTexture* picture,
                   const PictureZoom& zoom) {
-  draw_heading(list, place.heading, column);
+  draw_compare_heading(list, place.heading, column);
   ImageViewOptions plain;
   plain.legend = false;
   draw_image_view(list, place.picture, nothing, frame, picture, zoom, plain);
@@ -400,8 +233,8 @@ double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
   double x = at.x();
   for (const auto& [rgb, meaning] : signs) {
     draw_sign(list, Sign::square, to_imgui({x, at.y() + 8 * s}), rgb);
-    write(list, Font::small, {x + 13 * s, at.y() + s}, meaning, palette::kTextDim);
-    x += 38 * s + width_of(Font::small, meaning);
+    write_text(list, Font::small, {x + 13 * s, at.y() + s}, meaning, palette::kTextDim);
+    x += 38 * s + text_width(Font::small, meaning);
     if (!truth) break;
   }
   return x - at.x();

@@ -4,12 +4,10 @@
 
 #include "engine/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/output_file.h"
 #include "engine/recording/text_file.h"
 #include "ui/workbench/setting_text.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,7 +21,6 @@ using Eigen::Vector3d;
 
 constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
-constexpr std::size_t kMostRecent = 10;
 
 Json numbers(const auto& vector) {
   return std::vector<double>(vector.data(), vector.data() + vector.size());
@@ -229,25 +226,6 @@ void read_state(const Reader& read, WorkbenchState& state) {
   if (read.has("bookmarks")) state.bookmarks = read_bookmarks(read);
 }
 
-fs::path state_folder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  const char* home = std::getenv("HOME");
-  if (state != nullptr && *state == '/') return fs::path(state) / "gpo-inspector";
-  return fs::path(home != nullptr ? home : ".") / ".local" / "state" / "gpo-inspector";
-}
-
-void write_quietly(const fs::path& file, const std::string& text) {
-  std::error_code none;
-  fs::create_directories(file.parent_path(), none);
-  try {
-    write_file(file, text);
-  } catch (const InputError&) {
-    // Not worth a word: nobody asked for it.
-  }
-}
-
-fs::path recent_list() { return state_folder() / "recent.json"; }
-
 }  // namespace
 
 std::string session_text(const WorkbenchState& state) {
@@ -324,36 +302,6 @@ bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
   return read_file(file).find(kKind) != std::string::npos;
-}
-
-fs::path last_session_file() { return state_folder() / "last-session.json"; }
-
-void save_last_session(const WorkbenchState& state) {
-  if (state.recording) write_quietly(last_session_file(), session_text(state));
-}
-
-std::vector<fs::path> recent_files() {
-  std::vector<fs::path> files;
-  std::error_code none;
-  if (!fs::exists(recent_list(), none)) return files;
-  const Json json = Json::parse(read_file(recent_list()), nullptr, false);
-  if (!json.is_array()) return files;
-  for (const Json& one : json)
-    if (one.is_string() && fs::exists(one.get<std::string>(), none))
-      files.emplace_back(one.get<std::string>());
-  return files;
-}
-
-void remember_file(const fs::path& path) {
-  std::error_code none;
-  const fs::path whole = fs::absolute(path, none);
-  std::vector<fs::path> files = recent_files();
-  std::erase(files, whole);
-  files.insert(files.begin(), whole);
-  files.resize(std::min(files.size(), kMostRecent));
-  Json json = Json::array();
-  for (const fs::path& one : files) json.push_back(one.string());
-  write_quietly(recent_list(), json.dump(2) + "\n");
 }
 
 }  // namespace gpo

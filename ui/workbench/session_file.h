@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace gpo {
 
@@ -24,15 +23,5 @@ void continue_session(WorkbenchState& state, const SavedSession& session);
 
 /// Whether a file is a session, by its first lines.
 bool is_session(const std::filesystem::path& file);
-
-// What is kept from one start of the program to the next, in the user's folder for states
-// (XDG_STATE_HOME). Failures to write are silent: they must not keep anybody from working.
-
-std::filesystem::path last_session_file();
-/// Where a recording is open.
-void save_last_session(const WorkbenchState& state);
-/// Recordings and sessions that were opened, the last one first; those that are gone are left out.
-std::vector<std::filesystem::path> recent_files();
-void remember_file(const std::filesystem::path& path);
 
 }  // namespace gpo

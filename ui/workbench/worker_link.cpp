@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/experiment/results_file.h"
+#include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"
 
 #include <utility>

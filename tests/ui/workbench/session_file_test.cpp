@@ -5,6 +5,7 @@
 #include "engine/error.h"
 #include "engine/output_file.h"
 #include "ui/workbench/actions.h"
+#include "ui/workbench/recent_files.h"
 
 #include <cstdlib>
 #include <filesystem>

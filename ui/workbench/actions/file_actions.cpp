@@ -4,6 +4,7 @@
 #include "engine/inspection/report.h"
 #include "engine/output_file.h"
 #include "ui/workbench/actions/tables.h"
+#include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"
 
 #include <cstdio>

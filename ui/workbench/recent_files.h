@@ -1,0 +1,22 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/workbench.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace gpo {
+
+// What is kept from one start of the program to the next, in the user's folder for states
+// (XDG_STATE_HOME). Failures to write are silent: they must not keep anybody from working.
+
+std::filesystem::path last_session_file();
+/// Where a recording is open.
+void save_last_session(const WorkbenchState& state);
+/// Recordings and sessions that were opened, the last one first; those that are gone are left out.
+std::vector<std::filesystem::path> recent_files();
+void remember_file(const std::filesystem::path& path);
+
+}  // namespace gpo
