@@ -15,7 +15,7 @@ struct Watch {
   std::function<void(int iteration, double cost)> told;
 
   Watch() = default;
-  Watch(std::stop_token stop_by, std::function<void(int, double)> tell = {})  // NOLINT: on purpose
+  Watch(std::stop_token stop_by, std::function<void(int, double)> tell = {})
       : stop(std::move(stop_by)), told(std::move(tell)) {}
 
   bool stop_requested() const { return stop.stop_requested(); }
