@@ -13,9 +13,9 @@
 namespace gpo {
 namespace {
 
-/// Results kept beside those that are wanted: some tens of methods at some tens of lengths, each
-/// well below a megabyte.
-constexpr std::size_t kMostResults = 1000;
+/// Results kept, those that are wanted among them: ten methods at some tens of lengths, each about
+/// half a megabyte.
+constexpr std::size_t kMostResults = 300;
 
 Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop) {
   try {
