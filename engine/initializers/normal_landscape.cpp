@@ -118,9 +118,9 @@ std::optional<NormalLandscape> normal_landscape(const Window& window,
   const PlaneObservations observations = plane_observations(window);
   const Eigen::Matrix3Xd rays = rays_of_inliers(window);
   const int frames = window.frame_count();
-  NormalLandscape landscape{side,
-                            std::vector(frames, std::vector<float>(side * side, kNaN)),
-                            std::vector<int>(frames, 0)};
+  const auto cells = static_cast<std::size_t>(side) * side;
+  NormalLandscape landscape{
+      side, std::vector(frames, std::vector<float>(cells, kNaN)), std::vector<int>(frames, 0)};
   std::vector<TranslationEquations> equations(frames);
   for (int i = 1; i < frames; ++i) {
     landscape.observations[i] = observations.frames[i].count;
@@ -145,7 +145,7 @@ std::optional<NormalLandscape> normal_landscape(const Window& window,
 }
 
 std::vector<float> rms_px(const NormalLandscape& landscape, int frames) {
-  std::vector<double> sum(landscape.side * landscape.side, 0);
+  std::vector<double> sum(static_cast<std::size_t>(landscape.side) * landscape.side, 0);
   int observations = 0;
   for (int i = 0; i < frames; ++i) {
     observations += landscape.observations[i];

@@ -50,6 +50,7 @@ void line_on(const Stage& stage,
              bool closed,
              double alpha = 1) {
   std::vector<ImVec2> points;
+  points.reserve(disc.size());
   for (const Vector2d& point : disc) points.push_back(stage.at(point));
   const auto draw = [&](ImU32 color, float thickness) {
     stage.list.AddPolyline(points.data(),
