@@ -107,6 +107,13 @@ void draw_row(const ShownResult& result, double longest_ms, bool timings, float 
   ImGui::PopID();
 }
 
+float widest_name_px(const std::vector<ShownResult>& shown) {
+  float widest = 0;
+  for (const ShownResult& result : shown)
+    widest = std::max(widest, ImGui::CalcTextSize(result.name.c_str()).x);
+  return widest;
+}
+
 }  // namespace
 
 void timing_drawer(const PanelInput& input,
@@ -124,7 +131,13 @@ void timing_drawer(const PanelInput& input,
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollY;
   const ImVec2 size(place.width - 24 * s, place.bottom() - place.y - 12 * s);
   if (!ImGui::BeginTable("timing", kColumns, flags, size)) return;
-  for (int i = 0; i + 1 < kColumns; ++i) ImGui::TableSetupColumn("");
+  // Widths that do not depend on what was drawn before, as contents and their sizes come later.
+  const auto fixed = [](float width) {
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, width);
+  };
+  fixed(widest_name_px(shown) + 20 * s);
+  for (const auto& stage : kStages) fixed(ImGui::CalcTextSize(stage.title).x + 16 * s);
+  fixed(56 * s);
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupScrollFreeze(0, 1);
   header(s);
