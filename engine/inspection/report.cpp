@@ -308,30 +308,6 @@ std::string to_text(const Inspection& inspection) {
   return text;
 }
 
-std::string to_tum(const Inspection& inspection) {
-  std::string text =
-      "# timestamp[s] tx ty tz qx qy qz qw; camera to world; world = reference camera (x right, y "
-      "down, "
-      "z forward); unit = distance of the plane\n";
-  const Window& window = *inspection.window;
-  for (std::size_t i = 0; i < inspection.initialization->cameras.size(); ++i) {
-    const auto& [R_wc, p] = inspection.initialization->cameras[i];
-    const Eigen::Vector4d q = quaternion_xyzw(R_wc);
-    const std::int64_t t = window.timestamps_ns[i];
-    text += fmt::format("{}.{:09d} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
-                        t / 1'000'000'000,
-                        t % 1'000'000'000,
-                        p.x(),
-                        p.y(),
-                        p.z(),
-                        q.x(),
-                        q.y(),
-                        q.z(),
-                        q.w());
-  }
-  return text;
-}
-
 std::string to_ply(const Inspection& inspection) {
   const auto& points = inspection.initialization->points;
   std::string text = fmt::format(

@@ -18,7 +18,7 @@
 
 namespace gpo {
 
-enum class Layout { euroc, pictures, tracks };  ///< contract.md's layouts 1, 3 and 4
+enum class Layout { euroc, tum_rgbd, pictures, tracks };  ///< contract.md's layouts 1 to 4
 
 /// A gyroscope's samples, strictly ascending in time, all finite.
 struct Gyroscope {
@@ -26,6 +26,8 @@ struct Gyroscope {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<int> lines;                    ///< of each sample in `file`, for messages about a gap
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< in the gyroscope's own axes
+  std::vector<Eigen::Vector3d>
+      accelerations_m_s2;  ///< as many, or none; only handed on by `convert`
   Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
@@ -59,6 +61,7 @@ struct Recording {
   std::string name;  ///< last component of the path
   Layout layout = Layout::euroc;
   Camera camera;
+  std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
   std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
   std::shared_ptr<const FrameCache> pictures;  ///< null where there are none
   std::optional<Gyroscope> gyroscope;

@@ -23,6 +23,7 @@ constexpr double kGyroGap = 5;
 
 const char* layout_name(Layout layout) {
   if (layout == Layout::euroc) return "EuRoC";
+  if (layout == Layout::tum_rgbd) return "TUM RGB-D";
   return layout == Layout::pictures ? "pictures" : "tracks";
 }
 
