@@ -97,6 +97,7 @@ void add_gyroscope(Recording& recording, const fs::path& folder, const Calibrati
 void add_numbered_pictures(Recording& recording, const fs::path& folder, std::size_t cache_bytes) {
   auto files = numbered_pictures(folder);
   if (!files.empty()) {
+    recording.picture_files = files;
     recording.pictures = open_picture_files(std::move(files), recording.camera, cache_bytes);
   }
 }
@@ -118,6 +119,7 @@ Recording read_pictures(const fs::path& path,
   if (const auto video = video_at(path)) {
     auto opened = open_video(*video, recording.camera, cache_bytes);
     recording.pictures = opened.pictures;
+    recording.picture_files = {*video};
     video_times = std::move(opened.timestamps_ns);
   } else {
     add_numbered_pictures(recording, folder, cache_bytes);
