@@ -76,7 +76,7 @@ void add_pictures(Recording& recording,
              "the name of a missing picture",
              "the file " + list.files[i].string());
   }
-  recording.pictures = open_picture_files(std::move(list.files), recording.camera, cache_bytes);
+  add_picture_files(recording, std::move(list.files), cache_bytes);
 }
 
 /// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has

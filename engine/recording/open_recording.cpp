@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace gpo {
 
 namespace {
@@ -90,7 +92,10 @@ void add_notes(Recording& recording) {
     notes.emplace_back("no pictures: tracks are drawn on a plain background");
   if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from rotation averaging");
   const bool from_board = !recording.truth && recording.board && recording.pictures;
-  if (from_board) notes.emplace_back("no stored ground truth: it is computed from the chessboard");
+  if (from_board) {
+    notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",
+                                   recording.board->markers ? "ChArUco board" : "chessboard"));
+  }
   if (!from_board && !recording.truth) {
     notes.emplace_back("no ground truth: no metrics");
   } else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_value)) {

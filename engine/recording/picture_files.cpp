@@ -197,20 +197,22 @@ void check_size(const std::filesystem::path& file, cv::Size size, const Camera& 
                    ", expected the calibrated resolution " + shown(camera.width, camera.height));
 }
 
-std::shared_ptr<const FrameCache> open_picture_files(std::vector<std::filesystem::path> files,
-                                                     Camera& camera,
-                                                     std::size_t cache_bytes) {
+void add_picture_files(Recording& recording,
+                       std::vector<std::filesystem::path> files,
+                       std::size_t cache_bytes) {
   const int count = static_cast<int>(files.size());
   const cv::Mat first = read_picture(files.front());
+  Camera& camera = recording.camera;
   check_size(files.front(), first.size(), camera);
   camera.width = first.cols;
   camera.height = first.rows;
+  recording.picture_files = files;
   const auto decode = [files = std::move(files), camera, bits = significant_bits(first)](int i) {
     const cv::Mat picture = read_picture(files[i]);
     check_size(files[i], picture.size(), camera);
     return to_8_bits(picture, bits);
   };
-  return std::make_shared<const FrameCache>(count, decode, cache_bytes);
+  recording.pictures = std::make_shared<const FrameCache>(count, decode, cache_bytes);
 }
 
 bool is_picture_name(const std::filesystem::path& file) {

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
-#include "engine/recording/frame_cache.h"
+#include "engine/recording/recording.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -29,11 +28,11 @@ cv::Mat to_8_bits(const cv::Mat& picture, int bits);
 /// passes where that is 0x0, not known.
 void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
 
-/// At least one file. The first decides how many bits are significant, and the camera's size where
-/// the calibration does not tell it. Throws InputError.
-std::shared_ptr<const FrameCache> open_picture_files(std::vector<std::filesystem::path> files,
-                                                     Camera& camera,
-                                                     std::size_t cache_bytes);
+/// Opens at least one file as the recording's pictures. The first decides how many bits are
+/// significant, and the camera's size where the calibration does not tell it. Throws InputError.
+void add_picture_files(Recording& recording,
+                       std::vector<std::filesystem::path> files,
+                       std::size_t cache_bytes);
 
 /// Whether the file's name ends like that of a picture (png, jpg, ...).
 bool is_picture_name(const std::filesystem::path& file);

@@ -140,9 +140,10 @@ Recording read_pictures(const fs::path& path,
   if (const auto video = video_at(path)) {
     auto opened = open_video(*video, recording.camera, cache_bytes);
     recording.pictures = opened.pictures;
+    recording.picture_files = {*video};
     video_times = std::move(opened.timestamps_ns);
   } else if (auto files = pictures_in(folder); !files.empty()) {
-    recording.pictures = open_picture_files(std::move(files), recording.camera, cache_bytes);
+    add_picture_files(recording, std::move(files), cache_bytes);
   }
   check_size_is_known(recording.camera, calibration_file);
   recording.layout = recording.pictures ? Layout::pictures : Layout::tracks;

@@ -30,7 +30,7 @@ void add_pictures(Recording& recording,
     if (may_be_missing) return;
     csv_fail(list, row.line, "the name of a missing picture", "the file " + files.back().string());
   }
-  recording.pictures = open_picture_files(std::move(files), recording.camera, cache_bytes);
+  add_picture_files(recording, std::move(files), cache_bytes);
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 #include "engine/error.h"
 #include "engine/output_file.h"
 #include "engine/recording/text_file.h"
+#include "engine/user_folders.h"
 #include "ui/workbench/session_file.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <nlohmann/json.hpp>
 
@@ -20,13 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRecent = 10;
 
-fs::path state_folder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  const char* home = std::getenv("HOME");
-  if (state != nullptr && *state == '/') return fs::path(state) / "gpo-inspector";
-  return fs::path(home != nullptr ? home : ".") / ".local" / "state" / "gpo-inspector";
-}
-
 void write_quietly(const fs::path& file, const std::string& text) {
   std::error_code none;
   fs::create_directories(file.parent_path(), none);
@@ -37,11 +30,11 @@ void write_quietly(const fs::path& file, const std::string& text) {
   }
 }
 
-fs::path recent_list() { return state_folder() / "recent.json"; }
+fs::path recent_list() { return user_state_folder() / "recent.json"; }
 
 }  // namespace
 
-fs::path last_session_file() { return state_folder() / "last-session.json"; }
+fs::path last_session_file() { return user_state_folder() / "last-session.json"; }
 
 void save_last_session(const WorkbenchState& state) {
   if (state.recording) write_quietly(last_session_file(), session_text(state));
