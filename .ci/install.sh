@@ -8,7 +8,10 @@ build_packages=(
   libyaml-cpp-dev libtinyxml2-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
 )
-test_packages=(libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache)
+test_packages=(
+  libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache
+  clang libclang-rt-14-dev  # tests/fuzz
+)
 benchmark_packages=(libbenchmark-dev)
 
 # install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the

@@ -4,6 +4,7 @@
 #include "app/recordings.h"
 #include "engine/inspection/report.h"
 #include "engine/inspection/trajectory.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ int run_command(const RunArguments& arguments) {
   const auto inspection = inspect(arguments.inspect);
   const bool ok = inspection->initialization->ok;
   fmt::print("{}", to_text(*inspection));
-  if (arguments.json) write_file(*arguments.json, to_json(*inspection).dump(2) + "\n");
+  if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
   const auto write_trajectory = [&](const auto& file, const Trajectory& trajectory) {
     write_file(file, to_text(trajectory, arguments.trajectory_format));
   };

@@ -15,7 +15,6 @@ namespace gpo {
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 256U << 20;
 constexpr std::size_t kMostRows = 8'000'000;
 constexpr std::size_t kMostRemarks = 100;  // above the first row that are kept to look for names
 constexpr std::size_t kLongestShown = 40;
@@ -196,17 +195,6 @@ int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
   return 0;
 }
 
-std::shared_ptr<const std::string> text_of(const std::filesystem::path& file) {
-  std::error_code none;
-  if (const auto bytes = std::filesystem::file_size(file, none); !none && bytes > kMostBytes) {
-    throw InputError(fmt::format("{}: found {} MiB, expected a table of at most {} MiB",
-                                 file.string(),
-                                 bytes >> 20,
-                                 kMostBytes >> 20));
-  }
-  return std::make_shared<const std::string>(read_file(file));
-}
-
 }  // namespace
 
 void csv_fail(const CsvTable& table,
@@ -221,7 +209,7 @@ CsvTable read_csv(const std::filesystem::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
-  CsvTable table{file, separator, text_of(file), {}, {}};
+  CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
   std::string_view text = *table.text;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   std::vector<HeaderCandidate> above;

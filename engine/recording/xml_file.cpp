@@ -51,7 +51,7 @@ YAML::Node node_of(const XMLElement& element) {
 }  // namespace
 
 YamlEntry load_opencv_xml(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+  const std::string text = read_file(file, kMostBytesByHand);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   const XMLElement* root = document.RootElement();
