@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
                        ":17: key `distortion_coefficients`: found 4 numbers, expected none for "
                        "distortion model none"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, 3]"),
-                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5 or 8 "
-                       "(k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
+                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 "
+                       "or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, .nan, 4]"),
                        ":17: key `distortion_coefficients`: found \".nan\", expected finite "
                        "numbers"},
