@@ -5,8 +5,11 @@
 #include "engine/initializers/methods.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <functional>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <type_traits>
 
@@ -222,11 +225,15 @@ int dispatch(const CLI::App& app, const Arguments& arguments) {
   return view_command(arguments.view);
 }
 
-/// Messages of libraries may span lines; the contract promises one.
-int complain(std::string message) {
-  std::ranges::replace(message, '\n', ' ');
+int complain(const std::string& message) {
   fmt::print(stderr, "gpo-inspector: {}\n", message);
   return kBadInput;
+}
+
+/// CLI11's messages may span lines; the contract promises one.
+std::string one_line(std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  return InputError(message).what();
 }
 
 int main_with_errors(int argc, char** argv) {
@@ -238,15 +245,16 @@ int main_with_errors(int argc, char** argv) {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     declare(app, arguments);
     app.parse(argc, argv);
-    return dispatch(app, arguments);
+    const int code = dispatch(app, arguments);
+    if (std::fflush(stdout) == 0) return code;
+    return complain(fmt::format("standard output: cannot be written: {}",
+                                std::generic_category().message(errno)));
   } catch (const CLI::CallForHelp& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain(error.what());
-  } catch (const InputError& error) {
-    return complain(error.what());
+    return complain(one_line(error.what()));
   } catch (const std::exception& error) {
-    return complain(fmt::format("internal error, please report it: {}", error.what()));
+    return complain(message_of(error));
   }
 }
 

@@ -3,15 +3,25 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace gpo {
 
+/// A text as people can read it in one line, whatever its bytes: controls and what is not UTF-8
+/// become \x1B and the like, line ends \n; what is beyond `most` bytes becomes "...".
+std::string legible(std::string_view text, std::size_t most);
+
 /// Bad input that a user can mend: a file, a key, a line, an option. The message is one line that
-/// names the file, the line or key, what was found and what was expected. Caught once, in `app`
-/// (exit code 2) and in the worker of the window. What merely fails to initialize is not an error
-/// but a value with a reason (`Initialization`).
+/// names the file, the line or key, what was found and what was expected; what was found is made
+/// legible here. Caught once, in `app` (exit code 2) and in the worker of the window. What merely
+/// fails to initialize is not an error but a value with a reason (`Initialization`).
 struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit InputError(std::string_view message);
 };
+
+/// What to say of an exception: its message where it is bad input or something that the system
+/// refuses (a file, a thread), else that it is an internal error.
+std::string message_of(const std::exception& error);
 
 }  // namespace gpo

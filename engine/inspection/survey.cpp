@@ -20,10 +20,8 @@ constexpr std::size_t kMostResults = 300;
 Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop) {
   try {
     return {settings, inspector.inspect(settings, stop), ""};
-  } catch (const InputError& error) {
-    return {settings, nullptr, error.what()};
   } catch (const std::exception& error) {
-    return {settings, nullptr, fmt::format("internal error: {}", error.what())};
+    return {settings, nullptr, message_of(error)};
   }
 }
 

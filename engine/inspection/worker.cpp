@@ -17,10 +17,8 @@ std::string error_of(Work&& work) {
   try {
     work();
     return "";
-  } catch (const InputError& error) {
-    return error.what();
   } catch (const std::exception& error) {
-    return std::string("internal error: ") + error.what();
+    return message_of(error);
   }
 }
 

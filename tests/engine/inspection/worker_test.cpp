@@ -150,7 +150,7 @@ TEST_F(WorkerTest, RecordingThatCannotBeOpenedLeavesTheOldOneAndSaysWhy) {
   EXPECT_EQ(worker.status().error, "bad/camera.yaml: no such file");
   EXPECT_EQ(worker.latest().recording->name, "desk");
   open_and_wait(worker, "bug");
-  EXPECT_EQ(worker.status().error, "internal error: a bug");
+  EXPECT_EQ(worker.status().error, "internal error, please report it: a bug");
 }
 
 TEST_F(WorkerTest, OpeningAnotherRecordingDropsTheInspectionOfTheOld) {
