@@ -57,7 +57,7 @@ std::optional<Pose> pose_at(const BodyPath& path, std::int64_t time_ns) {
   if (*after == time_ns) return path.T_world_body[b];
   if (b == 0) return std::nullopt;
   const auto a = b - 1;
-  if (times[b] - times[a] > 3 * path.median_period_ns) return std::nullopt;
+  if ((times[b] - times[a]) / 3 > path.median_period_ns) return std::nullopt;
   const double s =
       static_cast<double>(time_ns - times[a]) / static_cast<double>(times[b] - times[a]);
   const Pose& T_a = path.T_world_body[a];
