@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <system_error>
+
+#include <fmt/format.h>
 
 namespace gpo {
 
@@ -32,23 +34,38 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
   if (count > 40) return std::nullopt;
   kept.append(static_cast<std::size_t>(count) - kept.size(), '0');
   const auto value = kept.empty() ? std::optional<std::int64_t>(0) : parse_integer(kept);
-  if (!value || *value > INT64_MAX / 2) return std::nullopt;
+  if (!value || *value >= INT64_MAX / 2) return std::nullopt;  // differences fit too
   return *value + (up ? 1 : 0);
 }
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& file) {
+std::string read_file(const std::filesystem::path& file, std::size_t most_bytes) {
+  using std::filesystem::file_type;
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    throw InputError(fmt::format("{}: found {}, expected {}", file.string(), found, expected));
+  };
   std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) {
-    throw InputError(file.string() + ": no such file");
-  }
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == file_type::not_found) throw InputError(file.string() + ": no such file");
+  if (type == file_type::none) refuse(error.message(), "a file");
+  if (type == file_type::directory) refuse("a folder", "a file");
+  if (type != file_type::regular) refuse("a pipe or device", "a regular file");
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(status)) {
-    throw InputError(file.string() + ": found something that cannot be read, expected a file");
+  if (!stream) refuse(std::generic_category().message(errno), "a file that can be read");
+  std::string content;
+  for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
+    const std::size_t before = content.size();
+    content.resize(std::min(before + chunk, most_bytes + 1));
+    stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
+    content.resize(before + static_cast<std::size_t>(stream.gcount()));
+    if (content.size() > most_bytes) {
+      refuse(fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
+    }
   }
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (stream.bad()) refuse("an error of the disk", "a file that can be read");
+  return content;
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -10,8 +10,15 @@
 
 namespace gpo {
 
-/// All bytes of a file. Throws InputError where it is missing or cannot be read.
-std::string read_file(const std::filesystem::path& file);
+/// Configurations, scripts: what a person writes.
+constexpr std::size_t kMostBytesByHand = std::size_t{1} << 20;
+/// Tables, sessions and pictures: what programs write.
+constexpr std::size_t kMostBytesByProgram = std::size_t{256} << 20;
+
+/// All bytes of a file. Throws InputError where it is missing, cannot be read, is no regular file
+/// (a pipe or device might never end) or is larger than `most_bytes`.
+std::string read_file(const std::filesystem::path& file,
+                      std::size_t most_bytes = kMostBytesByProgram);
 
 /// Without white space at both ends.
 std::string_view trimmed(std::string_view text);

@@ -11,8 +11,13 @@ namespace gpo {
 
 namespace {
 
+constexpr std::size_t kLongestQuotation = 40;
+/// No calibration and no recipe comes near; aliases may stand for more than a memory holds.
+constexpr int kMostNodes = 100'000;
+constexpr int kDeepest = 64;
+
 std::string shown(const YAML::Node& node) {
-  if (node.IsScalar()) return fmt::format("\"{}\"", node.Scalar());
+  if (node.IsScalar()) return fmt::format("\"{}\"", legible(node.Scalar(), kLongestQuotation));
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   if (node.IsMap()) return "a map";
   return "nothing";
@@ -26,18 +31,43 @@ void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<
   result.push_back(number({entry.file, entry.key, node}, "finite numbers"));
 }
 
+/// Counts what is in a node; an alias counts as what it stands for, and one of itself is deep.
+void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, int& count) {
+  if (depth > kDeepest) {
+    yaml_fail(entry, "lists or maps without end", fmt::format("at most {} in another", kDeepest));
+  }
+  if (++count > kMostNodes) {
+    yaml_fail(entry, "too many values", fmt::format("at most {}", kMostNodes));
+  }
+  if (node.IsSequence()) {
+    for (const auto& item : node) check_extent(entry, item, depth + 1, count);
+  } else if (node.IsMap()) {
+    for (const auto& item : node) {
+      check_extent(entry, item.first, depth + 1, count);
+      check_extent(entry, item.second, depth + 1, count);
+    }
+  }
+}
+
+YAML::Node parsed(const std::filesystem::path& file, const std::string& content) {
+  try {
+    return YAML::Load(content);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format(
+        "{}:{}: found {}, expected YAML", file.string(), error.mark.line + 1, error.msg));
+  }
+}
+
 }  // namespace
 
 YamlEntry load_yaml(const std::filesystem::path& file) {
-  std::string content = read_file(file);
+  std::string content = read_file(file, kMostBytesByHand);
   // OpenCV's directive is not YAML's, and yaml-cpp stumbles over it; the line count must stay.
   if (content.starts_with("%YAML:")) content[0] = '#';
-  try {
-    return {file, "", YAML::Load(content)};
-  } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + ":" + std::to_string(error.mark.line + 1) + ": found " +
-                     error.msg + ", expected YAML");
-  }
+  YamlEntry whole{file, "", parsed(file, content)};
+  int count = 0;
+  check_extent(whole, whole.node, 0, count);
+  return whole;
 }
 
 void yaml_fail(const YamlEntry& entry, const std::string& found, const std::string& expected) {

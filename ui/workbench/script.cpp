@@ -9,7 +9,7 @@
 namespace gpo {
 
 std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
-  std::istringstream text(read_file(file));
+  std::istringstream text(read_file(file, kMostBytesByHand));
   std::vector<ScriptLine> lines;
   int number = 0;
   for (std::string line; std::getline(text, line);) {
