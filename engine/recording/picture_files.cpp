@@ -3,6 +3,7 @@
 #include "engine/recording/picture_files.h"
 
 #include "engine/error.h"
+#include "engine/recording/picture_header.h"
 #include "engine/recording/text_file.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cctype>
 #include <utility>
 
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -145,6 +147,30 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a < b;
 }
 
+[[noreturn]] void refuse_format(const std::filesystem::path& file) {
+  throw InputError(file.string() + ": found something that cannot be decoded, expected a picture");
+}
+
+/// Refuses what would not fit into memory, and formats whose decoders nobody asked for.
+void check_header(const std::filesystem::path& file, Bytes bytes) {
+  constexpr std::int64_t kMostPixels = 64'000'000;
+  constexpr std::int64_t kLongestSide = 65'535;
+  const auto header = read_picture_header(bytes);
+  if (!header) refuse_format(file);
+  const auto& [width, height, bits] = *header;
+  if (width > kLongestSide || height > kLongestSide || width * height > kMostPixels) {
+    throw InputError(fmt::format("{}: found a picture of {}x{}, expected at most {} million pixels",
+                                 file.string(),
+                                 width,
+                                 height,
+                                 kMostPixels / 1'000'000));
+  }
+  if (bits > 16) {
+    throw InputError(
+        fmt::format("{}: found {} bits a channel, expected 8 or 16", file.string(), bits));
+  }
+}
+
 }  // namespace
 
 cv::Mat read_picture(const std::filesystem::path& file) {
@@ -152,6 +178,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
   if (!is_whole(bytes)) {
     throw InputError(file.string() + ": found a cut or broken picture, expected a whole one");
   }
+  check_header(file, bytes);
   cv::Mat picture;
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
@@ -159,10 +186,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
   } catch (const cv::Exception&) {
     picture.release();
   }
-  if (picture.empty()) {
-    throw InputError(file.string() +
-                     ": found something that cannot be decoded, expected a picture");
-  }
+  if (picture.empty()) refuse_format(file);
   return picture;
 }
 
