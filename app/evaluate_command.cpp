@@ -10,6 +10,7 @@
 #include "engine/experiment/summary.h"
 #include "engine/experiment/tables.h"
 #include "engine/experiment/window_files.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 #include "ui/views/figure_view.h"
 
@@ -87,13 +88,13 @@ void write_results(const fs::path& folder, const Experiment& experiment) {
   const Table times = running_time_table(rows);
   const Table errors = overview_table(rows);
   write_file(folder / "results.csv", to_csv(rows));
-  write_file(folder / "summary.json", to_json(experiment, rows).dump(1) + "\n");
+  write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));
   write_file(folder / "errors.md", to_markdown(errors));
   write_file(folder / "errors.csv", to_csv(errors));
   write_file(folder / "running_time.md", to_markdown(times));
   write_file(folder / "running_time.csv", to_csv(times));
   fmt::print("{}", to_text(errors));
-  fs::create_directories(folder / "figures");
+  make_folder(folder / "figures");
   for (const Figure& figure : figures(rows, experiment.configurations)) {
     write_figure(folder / "figures", figure);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
+#include "engine/json_text.h"
 #include "engine/recording/recording_info.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ int info_command(const std::filesystem::path& recording, bool json) {
   const auto opened = open_given(recording);
   const RecordingInfo info = describe(*opened);
   if (json) {
-    fmt::print("{}\n", to_json(info).dump(2));
+    fmt::print("{}", json_text(to_json(info), 2));
     return kDone;
   }
   fmt::print("{}", to_text(info));

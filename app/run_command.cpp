@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/recordings.h"
 #include "engine/inspection/report.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ int run_command(const RunArguments& arguments) {
   const auto inspection = inspect(arguments.inspect);
   const bool ok = inspection->initialization->ok;
   fmt::print("{}", to_text(*inspection));
-  if (arguments.json) write_file(*arguments.json, to_json(*inspection).dump(2) + "\n");
+  if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
   if (ok && arguments.trajectory) write_file(*arguments.trajectory, to_tum(*inspection));
   if (ok && arguments.points) write_file(*arguments.points, to_ply(*inspection));
   return ok ? kDone : kFailed;

@@ -9,11 +9,35 @@
 
 namespace gpo {
 
-/// Refuses, before any work is done, a file whose folder does not exist or that is a folder. Throws
-/// InputError.
+/// Refuses, before any work is done, a file whose folder does not exist or cannot be written to, or
+/// that is a folder. Throws InputError.
 void check_writable(const std::filesystem::path& file);
 
-/// Writes the whole file or none of it: beside it first, then renamed. Throws InputError.
+/// Makes a folder and those above it where they are missing. Throws InputError.
+void make_folder(const std::filesystem::path& folder);
+
+/// A file that appears whole or not at all: written under another name beside it, by whatever
+/// writes to `path`, then renamed by `finish`. What is not finished is removed. Of a link, what it
+/// leads to is written.
+class UnfinishedFile {
+ public:
+  /// Throws InputError where it cannot be written.
+  explicit UnfinishedFile(const std::filesystem::path& file);
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  /// Ends as the file does, for libraries that tell formats by endings.
+  const std::filesystem::path& path() const { return path_; }
+  /// Throws InputError.
+  void finish();
+
+ private:
+  std::filesystem::path file_, path_;
+};
+
+/// Writes the whole file or none of it; what is no regular file, like /dev/stdout, directly. Throws
+/// InputError.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// The same for a picture, as PNG.

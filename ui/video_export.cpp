@@ -3,9 +3,7 @@
 #include "ui/video_export.h"
 
 #include "engine/error.h"
-#include "engine/output_file.h"
 
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,19 +13,15 @@
 namespace gpo {
 
 VideoExport::VideoExport(std::filesystem::path file, double rate_hz, cv::Size size)
-    : file_(std::move(file)), size_(size) {
-  check_writable(file_);
-  partial_ = file_.parent_path() / (file_.stem().string() + ".partial.mp4");
+    : file_(std::move(file)), unfinished_(file_), size_(size) {
   const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  writer_ = std::make_unique<cv::VideoWriter>(partial_.string(),
+  writer_ = std::make_unique<cv::VideoWriter>(unfinished_.path().string(),
                                               cv::CAP_FFMPEG,
                                               cv::VideoWriter::fourcc('m', 'p', '4', 'v'),
                                               rate_hz,
                                               size_);
   cv::utils::logging::setLogLevel(level);
   if (writer_->isOpened()) return;
-  std::error_code none;
-  std::filesystem::remove(partial_, none);
   throw InputError(fmt::format(
       "{}: cannot be written: OpenCV's FFmpeg has no MPEG-4 encoder for {}x{} at {:.4g} Hz",
       file_.string(),
@@ -36,11 +30,7 @@ VideoExport::VideoExport(std::filesystem::path file, double rate_hz, cv::Size si
       rate_hz));
 }
 
-VideoExport::~VideoExport() {
-  writer_.reset();
-  std::error_code none;
-  std::filesystem::remove(partial_, none);
-}
+VideoExport::~VideoExport() = default;
 
 void VideoExport::add(const cv::Mat& picture) {
   if (picture.size() != size_) throw InputError(file_.string() + ": the picture's size changed");
@@ -50,11 +40,12 @@ void VideoExport::add(const cv::Mat& picture) {
 
 void VideoExport::finish() {
   writer_->release();
-  std::error_code failed;
-  if (count_ == 0 || std::filesystem::file_size(partial_, failed) == 0 || failed)
-    throw InputError(file_.string() + ": nothing was written, expected a movie; is the disk full?");
-  std::filesystem::rename(partial_, file_, failed);
-  if (failed) throw InputError(fmt::format("{}: {}", file_.string(), failed.message()));
+  // The writer does not tell a full disk; the number of frames is written last.
+  const cv::VideoCapture written(unfinished_.path().string(), cv::CAP_FFMPEG);
+  if (count_ == 0 || static_cast<int>(written.get(cv::CAP_PROP_FRAME_COUNT)) != count_) {
+    throw InputError(file_.string() + ": was not written whole; is the disk full?");
+  }
+  unfinished_.finish();
 }
 
 cv::Size even_size(cv::Size size) {

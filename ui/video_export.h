@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/output_file.h"
+
 #include <filesystem>
 #include <memory>
 
@@ -13,8 +15,7 @@ class VideoWriter;
 
 namespace gpo {
 
-/// An MP4 (MPEG-4 part 2) that is written picture by picture: the whole file or none of it, under
-/// another name until `finish`. What is not finished is removed.
+/// An MP4 (MPEG-4 part 2) that is written picture by picture: the whole file or none of it.
 class VideoExport {
  public:
   /// Width and height of the pictures are even. Throws InputError where the file cannot be written
@@ -32,7 +33,8 @@ class VideoExport {
   const std::filesystem::path& file() const { return file_; }
 
  private:
-  std::filesystem::path file_, partial_;
+  std::filesystem::path file_;
+  UnfinishedFile unfinished_;
   cv::Size size_;
   int count_ = 0;
   std::unique_ptr<cv::VideoWriter> writer_;

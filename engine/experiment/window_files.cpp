@@ -3,6 +3,7 @@
 #include "engine/experiment/window_files.h"
 
 #include "engine/error.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 #include "engine/recording/text_file.h"
 
@@ -19,14 +20,6 @@ fs::path definition_file(const fs::path& folder) { return folder / "experiment.j
 
 fs::path window_file(const fs::path& folder, const std::string& name, int start, int frames) {
   return folder / "windows" / fmt::format("{}-{}-{}.json", name, start, frames);
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  }
 }
 
 /// The first key in which two definitions differ.
@@ -59,7 +52,7 @@ std::string list_of(const std::vector<std::string>& missing) {
 void begin_experiment(const fs::path& folder, const Experiment& experiment) {
   if (!fs::exists(definition_file(folder))) {
     make_folder(folder / "windows");
-    write_file(definition_file(folder), to_json(experiment).dump(2) + "\n");
+    write_file(definition_file(folder), json_text(to_json(experiment), 2));
     return;
   }
   const Experiment there = read_experiment(folder);
@@ -89,7 +82,7 @@ void save_window(const fs::path& folder, std::span<const Row> rows) {
   for (const Row& row : rows) json.push_back(to_json(row));
   const Settings& window = rows.front().settings;
   write_file(window_file(folder, rows.front().recording, window.start, window.frames),
-             json.dump(1) + "\n");
+             json_text(json, 1));
 }
 
 std::optional<std::vector<Row>> load_window(const fs::path& folder,

@@ -3,11 +3,11 @@
 #include "engine/synthesis/synthesize.h"
 
 #include "engine/error.h"
+#include "engine/output_file.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -23,15 +23,6 @@ namespace fs = std::filesystem;
 constexpr double kMargin_s = 0.1;
 constexpr double kPhase = 0.37;  ///< of the samples' grid to the frames', in sample periods
 constexpr std::uint64_t kGyroscopeStream = 1;
-
-void write_file(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  if (!stream.flush()) {
-    throw InputError(fmt::format("{}: cannot be written, expected a writable disk", file.string()));
-  }
-}
 
 std::string join(const std::vector<double>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
@@ -176,14 +167,14 @@ cv::Mat render_frame(const Recipe& recipe,
   return render(scene, rays, row_poses(0), threads);
 }
 
-void write_picture(const fs::path& file, const cv::Mat& picture, int quality) {
+void write_frame(const fs::path& file, const cv::Mat& picture, int quality) {
   std::vector<int> parameters;
   if (file.extension() == ".jpg") {
     parameters = {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
   }
-  if (!cv::imwrite(file.string(), picture, parameters)) {
-    throw InputError(fmt::format("{}: cannot be written, expected a writable disk", file.string()));
-  }
+  std::vector<unsigned char> bytes;
+  cv::imencode(file.extension().string(), picture, bytes, parameters);
+  write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
 void write_pictures(const Recipe& recipe,
@@ -192,7 +183,6 @@ void write_pictures(const Recipe& recipe,
                     int threads) {
   const Scene scene = make_scene(recipe.desk, threads);
   const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
-  fs::create_directories(folder / "data");
   std::string list = "#timestamp [ns],filename\n";
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
@@ -202,9 +192,9 @@ void write_pictures(const Recipe& recipe,
         1 + recipe.picture.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
     const std::string name = fmt::format("{}.{}", timestamp, recipe.picture.format);
-    write_picture(folder / "data" / name,
-                  expose(light, recipe.picture, gain, noise_seed, threads),
-                  recipe.picture.quality);
+    write_frame(folder / "data" / name,
+                expose(light, recipe.picture, gain, noise_seed, threads),
+                recipe.picture.quality);
     list += fmt::format("{},{}\n", timestamp, name);
     if (progress) progress(frame + 1, recipe.frame_count);
   }
@@ -216,6 +206,9 @@ void write_recording(const Recipe& recipe,
                      const SynthesisProgress& progress,
                      int threads) {
   const fs::path mav = folder / "mav0";
+  for (const char* name : {"cam0/data", "imu0", "state_groundtruth_estimate0"}) {
+    make_folder(mav / name);
+  }
   write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recipe));
   write_file(mav / "imu0" / "sensor.yaml", imu_yaml(recipe.gyroscope));
   write_file(mav / "imu0" / "data.csv", imu_csv(recipe));

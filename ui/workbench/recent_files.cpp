@@ -3,6 +3,7 @@
 #include "ui/workbench/recent_files.h"
 
 #include "engine/error.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 #include "engine/recording/text_file.h"
 #include "ui/workbench/session_file.h"
@@ -37,6 +38,14 @@ void write_quietly(const fs::path& file, const std::string& text) {
   }
 }
 
+std::string read_quietly(const fs::path& file) {
+  try {
+    return read_file(file, kMostBytesByHand);
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 fs::path recent_list() { return state_folder() / "recent.json"; }
 
 }  // namespace
@@ -50,8 +59,7 @@ void save_last_session(const WorkbenchState& state) {
 std::vector<fs::path> recent_files() {
   std::vector<fs::path> files;
   std::error_code none;
-  if (!fs::exists(recent_list(), none)) return files;
-  const Json json = Json::parse(read_file(recent_list()), nullptr, false);
+  const Json json = Json::parse(read_quietly(recent_list()), nullptr, false);
   if (!json.is_array()) return files;
   for (const Json& one : json)
     if (one.is_string() && fs::exists(one.get<std::string>(), none))
@@ -68,7 +76,7 @@ void remember_file(const fs::path& path) {
   files.resize(std::min(files.size(), kMostRecent));
   Json json = Json::array();
   for (const fs::path& one : files) json.push_back(one.string());
-  write_quietly(recent_list(), json.dump(2) + "\n");
+  write_quietly(recent_list(), json_text(json, 2));
 }
 
 }  // namespace gpo

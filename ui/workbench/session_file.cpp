@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/json_text.h"
 #include "engine/recording/text_file.h"
 #include "ui/workbench/setting_text.h"
 
@@ -21,6 +22,7 @@ using Eigen::Vector3d;
 
 constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
 Json numbers(const auto& vector) {
   return std::vector<double>(vector.data(), vector.data() + vector.size());
@@ -99,8 +101,11 @@ class Reader {
     if (!(value >= least && value <= most)) refuse(key);
   }
   void operator()(const char* key, int& value, int least, int most) const {
-    (*this)(key, value);
-    if (value < least || value > most) refuse(key);
+    if (!has(key)) return;
+    const Json& json = json_.at(key);
+    // Neither 1.5 nor a number that only fits after its first bits are cut off.
+    if (!json.is_number_integer() || json < least || json > most) refuse(key);
+    json.get_to(value);
   }
   template <int N>
   void operator()(const char* key, Eigen::Matrix<double, N, 1>& vector) const {
@@ -167,9 +172,14 @@ OrbitCamera read_orbit(const Reader& read) {
 
 void read_selection(const Reader& read, Selection& selection) {
   std::vector<std::int64_t> tracks;
+  if (read.has("tracks")) {
+    const auto whole = [](const Json& one) { return one.is_number_integer(); };
+    if (!std::ranges::all_of(read.json().at("tracks"), whole)) read.refuse("tracks");
+  }
   read("tracks", tracks);
   selection = selected(tracks);
   if (!read.has("focus")) return;
+  if (!read.json().at("focus").is_number_integer()) read.refuse("focus");
   std::int64_t focus = 0;
   read("focus", focus);
   if (selection.contains(focus)) selection.focus = focus;
@@ -226,6 +236,20 @@ void read_state(const Reader& read, WorkbenchState& state) {
   if (read.has("bookmarks")) state.bookmarks = read_bookmarks(read);
 }
 
+/// Discarded where it is no JSON, or so deep that libraries run out of stack.
+Json parse_session(const std::string& text) {
+  constexpr int kDeepest = 16;
+  bool too_deep = false;
+  Json json = Json::parse(
+      text,
+      [&](int depth, Json::parse_event_t, const Json&) {
+        too_deep |= depth > kDeepest;
+        return depth <= kDeepest;
+      },
+      false);
+  return too_deep ? Json(Json::value_t::discarded) : json;
+}
+
 }  // namespace
 
 std::string session_text(const WorkbenchState& state) {
@@ -249,17 +273,17 @@ std::string session_text(const WorkbenchState& state) {
   json["orbit"] = orbit_json(state.orbit);
   json["selection"] = selection_json(state.selection);
   json["bookmarks"] = bookmarks_json(state.bookmarks);
-  return json.dump(2) + "\n";
+  return json_text(json, 2);
 }
 
 SavedSession read_session(const fs::path& file) {
-  const Json json = Json::parse(read_file(file), nullptr, false);
+  const Json json = parse_session(read_file(file, kMostBytes));
   if (json.is_discarded()) throw InputError(file.string() + ": not valid JSON; expected a session");
   const Reader read(json, file.string());
   std::string kind, recording;
   int version = 0;
   read("kind", kind);
-  read("version", version);
+  read("version", version, 0, 1'000'000);
   read("recording", recording);
   if (kind != kKind)
     throw InputError(fmt::format("{}: kind: '{}', expected '{}'", file.string(), kind, kKind));
@@ -301,7 +325,7 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
 bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
-  return read_file(file).find(kKind) != std::string::npos;
+  return read_file(file, kMostBytes).find(kKind) != std::string::npos;
 }
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/error.h"
 #include "engine/inspection/report.h"
+#include "engine/json_text.h"
 #include "engine/output_file.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/recent_files.h"
@@ -77,7 +78,7 @@ Action export_of(std::string what, std::string title, std::string (*text)(const 
   return action;
 }
 
-std::string json_text(const Inspection& inspection) { return to_json(inspection).dump(2) + "\n"; }
+std::string whole_result(const Inspection& inspection) { return json_text(to_json(inspection), 2); }
 
 void add_open(std::vector<Action>& table) {
   Action open{"open",
@@ -176,7 +177,7 @@ void add_file_actions(std::vector<Action>& table) {
   table.push_back(video);
   table.push_back(export_of("trajectory", "Export camera poses (TUM)", to_tum));
   table.push_back(export_of("points", "Export map points (PLY)", to_ply));
-  table.push_back(export_of("result", "Export the whole result (JSON)", json_text));
+  table.push_back(export_of("result", "Export the whole result (JSON)", whole_result));
   Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
     s.wishes.quit = true;
   });
