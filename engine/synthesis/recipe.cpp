@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -159,6 +160,25 @@ GyroscopeRecipe read_gyroscope(StrictMap map) {
   return gyroscope;
 }
 
+/// Numbers that are each in their range can together ask for more than a memory holds.
+void check_extent(StrictMap& top, const Recipe& recipe) {
+  constexpr double kMostRays = 1e8;
+  constexpr double kMostSamples = 1e6;
+  const double rays =
+      double(recipe.camera.width) * recipe.camera.height * std::pow(recipe.picture.samples, 2);
+  if (rays > kMostRays) {
+    top.fail("picture",
+             fmt::format("{:.0f} rays (width x height x samples^2)", rays),
+             fmt::format("at most {:.0f}", kMostRays));
+  }
+  const double samples = recipe.frame_count / recipe.frame_rate * recipe.gyroscope.rate;
+  if (samples > kMostSamples) {
+    top.fail("gyroscope",
+             fmt::format("{:.0f} samples (rate x time)", samples),
+             fmt::format("at most {:.0f}", kMostSamples));
+  }
+}
+
 /// A path on which the camera has no direction of view, or dives below the desk, has no picture.
 void check_trajectory(StrictMap& top, const Recipe& recipe) {
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
@@ -201,6 +221,7 @@ Recipe read_recipe(const std::filesystem::path& file) {
   recipe.picture = read_picture(top.map("picture"), 1 / recipe.frame_rate);
   recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
   top.finish();
+  check_extent(top, recipe);
   check_trajectory(top, recipe);
   return recipe;
 }

@@ -113,8 +113,10 @@ StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key, "a
 
 std::vector<StrictMap> StrictMap::list(const std::string& key) {
   if (!has(key)) return {};
-  const YamlEntry list = take(key, "a list");
-  if (!list.node.IsSequence()) yaml_fail(list, "a list");
+  constexpr std::size_t kMost = 200;
+  const std::string expected = fmt::format("a list of at most {}", kMost);
+  const YamlEntry list = take(key, expected);
+  if (!list.node.IsSequence() || list.node.size() > kMost) yaml_fail(list, expected);
   std::vector<StrictMap> maps;
   for (std::size_t i = 0; i < list.node.size(); ++i) {
     maps.push_back(StrictMap({list.file, fmt::format("{}[{}]", list.key, i), list.node[i]}));

@@ -40,7 +40,8 @@ class StrictMap {
     return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
   }
   StrictMap map(const std::string& key);
-  std::vector<StrictMap> list(const std::string& key);  ///< of maps; empty where the key is absent
+  /// Of maps, as many as a person writes; empty where the key is absent.
+  std::vector<StrictMap> list(const std::string& key);
   void finish() const;
   [[noreturn]] void fail(const std::string& key,
                          const std::string& found,
