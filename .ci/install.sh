@@ -7,7 +7,10 @@ build_packages=(
   libglfw3-dev libimgui-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libfmt-dev
 )
-test_packages=(libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache)
+test_packages=(
+  libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache
+  clang libclang-rt-14-dev  # tests/fuzz
+)
 benchmark_packages=(libbenchmark-dev)
 
 # install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the

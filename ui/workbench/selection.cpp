@@ -26,8 +26,7 @@ Selection extended(const Selection& selection, std::span<const std::int64_t> tra
   Selection all = selection;
   all.tracks.insert(all.tracks.end(), tracks.begin(), tracks.end());
   std::ranges::sort(all.tracks);
-  const auto repeated = std::ranges::unique(all.tracks);
-  all.tracks.erase(repeated.begin(), repeated.end());
+  all.tracks.erase(std::unique(all.tracks.begin(), all.tracks.end()), all.tracks.end());
   if (!tracks.empty()) all.focus = tracks.back();
   return all;
 }

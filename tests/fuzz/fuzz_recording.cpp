@@ -1,0 +1,32 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Folders in all layouts that `info` describes, without videos, which FFmpeg reads.
+#include "engine/recording/recording_info.h"
+#include "tests/fuzz/fuzzed_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const gpo::fuzz::Folder folder(gpo::fuzz::bytes_of(data, size),
+                                 {"cam0/data.csv",
+                                  "cam0/sensor.yaml",
+                                  "cam0/data/0.pgm",
+                                  "cam0/data/1.pgm",
+                                  "imu0/data.csv",
+                                  "imu0/sensor.yaml",
+                                  "state_groundtruth_estimate0/data.csv",
+                                  "camera.yaml",
+                                  "frame_timestamps.txt",
+                                  "gyro.csv",
+                                  "0.pgm",
+                                  "1.pgm",
+                                  "rgb.txt",
+                                  "groundtruth.txt",
+                                  "rgb/0.pgm",
+                                  "tracks.csv",
+                                  "board.yaml",
+                                  "plane.yaml"});
+  gpo::fuzz::parse([&] {
+    const auto recording = gpo::open_recording(folder.path(), {});
+    gpo::to_text(gpo::describe(*recording));
+  });
+  return 0;
+}

@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The first byte chooses what the rest is read as.
+#include "engine/recording/gyroscope_file.h"
+#include "engine/recording/tracks_reader.h"
+#include "engine/recording/truth_file.h"
+#include "tests/fuzz/fuzzed_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data + 1, size - 1));
+  gpo::fuzz::parse([&] {
+    switch (data[0]) {
+      case 'g':
+        gpo::read_gyroscope(file, gpo::TimeUnit::by_value);
+        break;
+      case 'i':
+        gpo::read_gyroscope(file, gpo::TimeUnit::nanoseconds);
+        break;
+      case 't':
+        gpo::read_tracks(file, std::nullopt);
+        break;
+      case 'f':
+        gpo::read_tracks(file, 30);
+        break;
+      case 'p':
+        gpo::pose_at(gpo::read_body_path(file), 1'403'636'579'763'555'584);
+        break;
+      default: {
+        const auto table = gpo::read_csv(file, {"timestamp"}, gpo::CsvColumns::exactly);
+        gpo::csv_time_stamps(table, gpo::TimeUnit::by_value);
+      }
+    }
+  });
+  return 0;
+}
