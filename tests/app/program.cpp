@@ -3,12 +3,13 @@
 #include "tests/app/program.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace gpo::test {
 
@@ -45,8 +46,16 @@ Outcome shell(const std::string& command) {
   const std::string err = log.string() + ".err";
   const std::string line = "cd '" GPO_SOURCE_DIR "' && unset DISPLAY WAYLAND_DISPLAY && { " +
                            command + " ; } > '" + out + "' 2> '" + err + "' < /dev/null";
-  const int status = std::system(line.c_str());  // NOLINT(concurrency-mt-unsafe): one thread
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  rusage used{};
+  wait4(child, &status, 0, &used);
+  return {
+      WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err), used.ru_maxrss};
 }
 
 Outcome program(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }

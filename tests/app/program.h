@@ -12,6 +12,7 @@ struct Outcome {
   int exit_code;
   std::string out;
   std::string err;
+  long peak_kib = 0;  ///< the most memory that it held
 };
 
 /// Runs a shell command in the source folder, without a display.

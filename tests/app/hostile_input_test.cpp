@@ -1,0 +1,331 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Broken files through the real program: one line that says what is wrong, exit code 2, nothing
+// written, and less than 1 GiB of memory. What parsers make of every other byte is up to
+// tests/fuzz.
+#include "tests/app/program.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::read_file;
+using test::shell;
+using test::write_file;
+using ::testing::HasSubstr;
+
+constexpr long kMostKiB = 1 << 20;
+
+const char* const kCamera = R"(resolution: [8, 6]
+camera_model: pinhole
+intrinsics: [6, 6, 4, 3]
+distortion_model: none
+distortion_coefficients: []
+T_BS: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+)";
+const char* const kPictureList = "#timestamp [ns],filename\n1000000000,0.pgm\n1050000000,1.pgm\n";
+const char* const kGyroscope =
+    "#timestamp [ns],wx,wy,wz\n990000000,0,0,0\n1000000000,0,0,0\n1060000000,0,0,0\n";
+const char* const kTruth =
+    "#timestamp [ns],px,py,pz,qw,qx,qy,qz\n990000000,0,0,1,1,0,0,0\n1060000000,0,0,1,1,0,0,0\n";
+
+std::string picture() { return "P5 8 6 255\n" + std::string(48, 'x'); }
+
+/// A small recording in EuRoC's layout, without faults.
+void write_recording(const fs::path& folder) {
+  write_file(folder / "cam0/sensor.yaml", kCamera);
+  write_file(folder / "cam0/data.csv", kPictureList);
+  write_file(folder / "cam0/data/0.pgm", picture());
+  write_file(folder / "cam0/data/1.pgm", picture());
+  write_file(folder / "imu0/data.csv", kGyroscope);
+  write_file(folder / "state_groundtruth_estimate0/data.csv", kTruth);
+  write_file(folder / "plane.yaml", "normal: [0, 0, 1]\ndistance: 0\n");
+  write_file(folder / "board.yaml", "pattern: chessboard\ncolumns: 9\nrows: 6\nsquare: 0.025\n");
+}
+
+void expect_one_line(const Outcome& outcome, const std::string& message) {
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr(message));
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err.substr(0, 2000);
+  EXPECT_LT(outcome.err.size(), 2000U);
+  const auto control = [](unsigned char c) { return c < 0x20 && c != '\n'; };
+  EXPECT_TRUE(std::ranges::none_of(outcome.err, control)) << outcome.err.substr(0, 2000);
+  EXPECT_LT(outcome.peak_kib, kMostKiB);
+}
+
+/// One file of the recording, replaced.
+struct Replaced {
+  std::string file;
+  std::string content;
+  std::string message;  ///< part of it
+};
+std::ostream& operator<<(std::ostream& stream, const Replaced& replaced) {
+  return stream << replaced.file << ": " << replaced.message;
+}
+
+class HostileFile : public ::testing::TestWithParam<Replaced> {};
+
+TEST_P(HostileFile, IsRefusedWithOneLine) {
+  const auto& [file, content, message] = GetParam();
+  const fs::path folder = fresh_folder();
+  write_recording(folder / "recording");
+  write_file(folder / "recording" / file, content);
+  const std::string path = (folder / "recording").string();
+  expect_one_line(program("info " + path), message);
+  const std::string json = (folder / "result.json").string();
+  expect_one_line(program("run " + path + " --frames 2 --json " + json), message);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+std::string camera_with(const std::string& from, const std::string& to) {
+  std::string text = kCamera;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string repeated(const std::string& text, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+const std::string kZeros(4096, '\0');
+
+INSTANTIATE_TEST_SUITE_P(
+    Calibration,
+    HostileFile,
+    ::testing::Values(
+        Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found nothing, expected"},
+        Replaced{"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
+        Replaced{"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
+        Replaced{"cam0/sensor.yaml", repeated("[", 500'000), "expected YAML"},
+        Replaced{"cam0/sensor.yaml", repeated("a: {", 100'000), "expected YAML"},
+        Replaced{"cam0/sensor.yaml", repeated(" ", 2 << 20), "found more than 1 MiB"},
+        Replaced{"cam0/sensor.yaml", "resolution: &a [*a, *a]", "lists or maps without end"},
+        Replaced{"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[0, 6, 4, 3]"), "intrinsics"},
+        Replaced{"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[.nan, 6, 4, 3]"), "intrinsics"},
+        Replaced{"cam0/sensor.yaml", camera_with("[8, 6]", "[1e9, 1e9]"), "resolution"},
+        Replaced{"cam0/sensor.yaml",
+                 camera_with("pinhole", repeated("x\\n", 300'000)),
+                 "key `camera_model`: found \"x"},
+        Replaced{"board.yaml",
+                 "pattern: chessboard\ncolumns: 1000000000\nrows: 6\nsquare: 1\n",
+                 "board.yaml:2: key `columns`"},
+        Replaced{
+            "plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Tables,
+    HostileFile,
+    ::testing::Values(
+        Replaced{"cam0/data.csv", "", "cam0/data.csv: found no rows"},
+        Replaced{"cam0/data.csv", kZeros, "cam0/data.csv"},
+        Replaced{"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
+        Replaced{"cam0/data.csv", "1,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
+        Replaced{"cam0/data.csv", "1,0.pgm\n2,nothing.pgm\n", "nothing.pgm"},
+        Replaced{"imu0/data.csv", "1,0,0,0\n2,nan,0,0\n", "imu0/data.csv:2: found \"nan\""},
+        Replaced{"imu0/data.csv", "1,0,0,0\n2,inf,0,0\n", "imu0/data.csv:2: found \"inf\""},
+        Replaced{"imu0/data.csv", "1,0,0,0\n2,0,0", "imu0/data.csv:2: found 3 columns"},
+        Replaced{"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
+        Replaced{"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Pictures,
+    HostileFile,
+    ::testing::Values(
+        Replaced{"cam0/data/0.pgm", "", "0.pgm: found"},
+        Replaced{"cam0/data/0.pgm", "no picture at all", "cannot be decoded, expected a picture"},
+        Replaced{"cam0/data/0.pgm", picture().substr(0, 40), "found a cut or broken picture"},
+        Replaced{"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found a picture of 65535x65535"},
+        Replaced{
+            "cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}));
+
+/// The same with other bytes, which change nothing.
+TEST(HostileInput, WhatEditorsDoToFilesIsReadSensibly) {
+  const fs::path folder = fresh_folder();
+  write_recording(folder / "plain");
+  const Outcome plain = program("info " + (folder / "plain").string());
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  write_recording(folder / "edited/plain");
+  for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/data.csv", "plane.yaml"}) {
+    std::string text = "\xEF\xBB\xBF" + read_file(folder / "plain" / name);
+    text.pop_back();  // the last line's end
+    for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 4) {
+      text.replace(i, 1, "  \r\n");
+    }
+    write_file(folder / "edited/plain" / name, text);
+  }
+  const Outcome edited = program("info " + (folder / "edited/plain").string());
+  EXPECT_EQ(edited.exit_code, 0) << edited.err;
+  EXPECT_EQ(edited.out.substr(edited.out.find('\n')), plain.out.substr(plain.out.find('\n')));
+}
+
+TEST(HostileInput, WhatIsNoFileIsRefused) {
+  const fs::path folder = fresh_folder();
+  write_recording(folder / "recording");
+  const fs::path file = folder / "recording/cam0/sensor.yaml";
+  const std::string info = "info " + (folder / "recording").string();
+  const auto replace_by = [&](const std::function<void()>& make) {
+    fs::remove_all(file);
+    make();
+  };
+  replace_by([&] { mkfifo(file.c_str(), 0600); });
+  expect_one_line(program(info), "sensor.yaml: found a pipe or device, expected a regular file");
+  replace_by([&] { fs::create_symlink("/dev/zero", file); });
+  expect_one_line(program(info), "sensor.yaml: found a pipe or device, expected a regular file");
+  replace_by([&] { fs::create_symlink("sensor.yaml", file); });
+  expect_one_line(program(info), "sensor.yaml");
+  replace_by([&] { fs::create_directory(file); });
+  expect_one_line(program(info), "sensor.yaml: found a folder, expected a file");
+}
+
+TEST(HostileInput, PathsOfEveryKindAreRefused) {
+  const fs::path folder = fresh_folder();
+  fs::create_symlink("loop", folder / "loop");
+  expect_one_line(program("info " + (folder / "loop").string()),
+                  "loop: Too many levels of symbolic links");
+  expect_one_line(program("info " + repeated("long", 1000)), "File name too long");
+  expect_one_line(program("info $(printf 'no\\nsuch\\033[31m\\377file')"), "no");
+  expect_one_line(program("info ''"), ": no such file or folder");
+  expect_one_line(program("info /dev/zero"), "/dev/zero");
+}
+
+TEST(HostileInput, NamesThatAreNotUtf8AreWritten) {
+  const fs::path folder = fresh_folder();
+  const fs::path recording = folder / "caf\xE9";
+  write_recording(recording);
+  const Outcome outcome = program("info --json '" + recording.string() + "'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("caf\xEF\xBF\xBD"));
+}
+
+TEST(HostileInput, UnreadableFilesAreRefused) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const fs::path folder = fresh_folder();
+  write_recording(folder / "recording");
+  fs::permissions(folder / "recording/cam0/sensor.yaml", fs::perms::none);
+  const std::string info = "info " + (folder / "recording").string();
+  expect_one_line(program(info), "sensor.yaml: found Permission denied");
+  fs::permissions(folder / "recording", fs::perms::none);
+  expect_one_line(program(info), "Permission denied");
+  fs::permissions(folder / "recording", fs::perms::owner_all);
+}
+
+TEST(HostileInput, BrokenVideosAreRefused) {
+  const fs::path folder = fresh_folder();
+  const fs::path video = folder / "recording/a.mp4";
+  write_file(folder / "recording/camera.yaml", camera_with("[8, 6]", "[64, 48]"));
+  {
+    cv::VideoWriter writer(
+        video.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30, {64, 48});
+    for (int i = 0; i < 10; ++i) writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(20 * i)));
+  }
+  const std::string whole = read_file(video);
+  const std::string info = "info " + (folder / "recording").string();
+  EXPECT_EQ(program(info).exit_code, 0);
+  for (const std::string& broken :
+       {std::string(), whole.substr(0, whole.size() / 2), whole.substr(0, 40), kZeros}) {
+    write_file(video, broken);
+    expect_one_line(program(info), "a.mp4");
+  }
+}
+
+TEST(HostileInput, OtherFilesOfThePersonAreRefused) {
+  const fs::path folder = fresh_folder();
+  const auto file = [&](const std::string& name, const std::string& content) {
+    write_file(folder / name, content);
+    return (folder / name).string();
+  };
+  expect_one_line(program("info " + file("r.yaml", "seed: &a [*a]")), "lists or maps without end");
+  expect_one_line(program("synthesize " + file("r.yaml", "seed: 1e300\n") + " --output " +
+                          (folder / "made").string()),
+                  "r.yaml:1: key `seed`: found \"1e300\"");
+  expect_one_line(program("view --session " + file("s.json", repeated("[", 100'000))),
+                  "s.json: not valid JSON; expected a session");
+  expect_one_line(program("view --session " + file("s.json", repeated(" ", 20 << 20))),
+                  "found more than 16 MiB");
+  expect_one_line(program("view --script " + file("s.txt", repeated("x", 2 << 20))),
+                  "found more than 1 MiB");
+  file("done/experiment.json", repeated("[", 100'000));
+  expect_one_line(program("evaluate " + desk().string() + " --methods gpo --lengths 5 --starts 0 " +
+                          "--output " + (folder / "done").string()),
+                  "experiment.json: is not the definition of an experiment");
+  EXPECT_FALSE(fs::exists(folder / "made"));
+}
+
+/// Runs the program where files end after 4 KiB, as on a full disk.
+Outcome on_full_disk(const std::string& arguments) {
+  return shell("trap '' XFSZ && ulimit -f 8 && '" GPO_PROGRAM "' " + arguments);
+}
+
+TEST(FullDisk, RunLeavesNothingHalf) {
+  const fs::path folder = fresh_folder();
+  const std::string result = (folder / "r.json").string();
+  const std::string frames = desk().string() + " --frames 10";
+  expect_one_line(on_full_disk("run " + frames + " --json " + result),
+                  "r.json: cannot be written: File too large");
+  expect_one_line(on_full_disk("run " + frames + " --points " + (folder / "p.ply").string()),
+                  "p.ply: cannot be written: File too large");
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST(FullDisk, SnapshotLeavesNothingHalf) {
+  const fs::path folder = fresh_folder();
+  expect_one_line(on_full_disk("snapshot " + desk().string() + " --frames 5 --view image " +
+                               "--output " + (folder / "a.png").string()),
+                  "a.png: cannot be written: File too large");
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST(FullDisk, MovieLeavesNothingHalf) {
+  const fs::path folder = fresh_folder();
+  const fs::path script = folder.string() + ".script";
+  write_file(script, "export-video " + (folder / "a.mp4").string() + "\n");
+  expect_one_line(
+      on_full_disk("snapshot " + desk().string() + " --frames 5 --script " + script.string()),
+      "a.mp4: was not written whole");
+  EXPECT_TRUE(fs::is_empty(folder));
+  fs::remove(script);
+}
+
+TEST(FullDisk, SynthesizeLeavesNothingHalf) {
+  const fs::path folder = fresh_folder();
+  const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences/desk.yaml";
+  expect_one_line(
+      on_full_disk("synthesize " + recipe.string() + " --output " + (folder / "made").string()),
+      "cannot be written: File too large");
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST(FullDisk, EvaluateNamesTheFile) {
+  const fs::path folder = fresh_folder();
+  const Outcome outcome = on_full_disk(
+      "evaluate " + desk().string() + " --methods all --lengths 5 --starts 0 " + "--output " +
+      (folder / "e").string() + " 2>&1 >/dev/null | tail -n 1 >&2; exit 2");
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large"));
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+  }
+}
+
+TEST(FullDisk, OfStandardOutputIsToldToo) {
+  expect_one_line(program("info " + desk().string() + " >/dev/full"),
+                  "standard output: cannot be written: No space left on device");
+}
+
+}  // namespace
+}  // namespace gpo
