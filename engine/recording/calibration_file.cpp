@@ -230,6 +230,11 @@ Pose rigid_motion(const YamlEntry& entry) {
   return {svd.matrixU() * svd.matrixV().transpose(), T.topRightCorner<3, 1>()};
 }
 
+const char* distortion_name(Distortion distortion) {
+  if (distortion == Distortion::none) return "none";
+  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
+}
+
 Calibration read_calibration(const std::filesystem::path& file) {
   const bool xml = lower_case(file.extension().string()) == ".xml";
   const YamlEntry whole = xml ? load_opencv_xml(file) : load_yaml(file);

@@ -26,6 +26,9 @@ struct Calibration {
 /// pictures: width and height are 0 then. Throws InputError.
 Calibration read_calibration(const std::filesystem::path& file);
 
+/// As EuRoC's files call it.
+const char* distortion_name(Distortion distortion);
+
 /// The calibration in a folder, by the names that people and tools give it: camera.yaml,
 /// sensor.yaml, camchain-imucam.yaml, calibration.xml, ... Throws InputError where there is none.
 std::filesystem::path calibration_in(const std::filesystem::path& folder);

@@ -5,6 +5,8 @@
 #include "engine/error.h"
 #include "engine/output_file.h"
 #include "engine/output_folder.h"
+#include "engine/recording/calibration_file.h"
+#include "engine/recording/sidecar_files.h"
 #include "engine/recording/timestamps.h"
 
 #include <Eigen/Geometry>
@@ -22,27 +24,13 @@ std::string list(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
 
-std::string transformation(const Pose& pose) {
-  std::string rows;
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Matrix3d& R = pose.R_wc;
-    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
-  }
-  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
-}
-
-const char* distortion_name(Distortion distortion) {
-  if (distortion == Distortion::none) return "none";
-  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
-}
-
 std::string camera_yaml(const Recording& recording) {
   const Camera& camera = recording.camera;
   std::string text = fmt::format(
       "sensor_type: camera\n{}resolution: [{}, {}]\ncamera_model: pinhole\n"
       "intrinsics: [{}, {}, {}, {}]  # fx, fy, cx, cy\ndistortion_model: {}\n"
       "distortion_coefficients: [{}]\n",
-      transformation(recording.T_body_camera.value_or(Pose{})),
+      transformation_yaml(recording.T_body_camera.value_or(Pose{})),
       camera.width,
       camera.height,
       camera.fx,
@@ -63,7 +51,7 @@ std::string imu_yaml(const Gyroscope& gyroscope, const Pose& T_body_camera) {
   const Pose T_body_gyro{T_body_camera.R_wc * gyroscope.R_gyro_camera.transpose(),
                          Eigen::Vector3d::Zero()};
   std::string text = fmt::format("sensor_type: imu\n{}rate_hz: {}\n",
-                                 transformation(T_body_gyro),
+                                 transformation_yaml(T_body_gyro),
                                  rate_hz(gyroscope.timestamps_ns));
   if (!gyroscope.bias_rad_s.isZero(0))
     text += fmt::format("gyroscope_bias: {}  # [rad/s]\n", list(gyroscope.bias_rad_s));
@@ -115,7 +103,7 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
 void write_pictures(const Recording& recording,
                     const fs::path& cam,
                     const std::function<void(int done, int of)>& progress) {
-  fs::create_directories(cam / "data");
+  make_folder(cam / "data");
   std::string list = "#timestamp [ns],filename\n";
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::string name = fmt::format("{}.png", recording.timestamps_ns[i]);
@@ -134,29 +122,17 @@ void write_pictures(const Recording& recording,
 
 void write_truth(const Recording& recording, const GroundTruth& truth, const fs::path& mav) {
   const fs::path folder = mav / "state_groundtruth_estimate0";
-  fs::create_directories(folder);
+  make_folder(folder);
   write_file(folder / "data.csv", truth_csv(recording, truth));
   write_file(folder / "sensor.yaml",
-             "sensor_type: visual-inertial\n" + transformation(Pose{}) +
+             "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) +
                  "longest_gap_s: 0  # over which poses are interpolated: frames without one stay "
                  "without\n");
 }
 
 void write_sidecars(const Recording& recording, const fs::path& folder) {
-  if (const auto& plane = recording.plane) {
-    write_file(folder / "plane.yaml",
-               fmt::format("# In the world of the ground truth [m].\nnormal: {}\ndistance: {}\n",
-                           list(plane->normal),
-                           plane->distance));
-  }
-  if (const auto& board = recording.board) {
-    write_file(folder / "board.yaml",
-               fmt::format("# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\n"
-                           "square: {}\n",
-                           board->columns,
-                           board->rows,
-                           board->square_m));
-  }
+  if (recording.plane) write_file(folder / "plane.yaml", plane_yaml(*recording.plane));
+  if (recording.board) write_file(folder / "board.yaml", board_yaml(*recording.board));
   if (recording.tracks.empty()) return;
   std::string text = "frame,track,x,y\n";
   for (const TrackObservation& o : recording.tracks)
@@ -166,16 +142,25 @@ void write_sidecars(const Recording& recording, const fs::path& folder) {
 
 }  // namespace
 
+std::string transformation_yaml(const Pose& pose) {
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Matrix3d& R = pose.R_wc;
+    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
+  }
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
+}
+
 void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,
                  const fs::path& folder,
                  const std::function<void(int done, int of)>& progress) {
   UnfinishedFolder unfinished(folder);
   const fs::path mav = unfinished.path() / "mav0";
-  fs::create_directories(mav / "cam0");
+  make_folder(mav / "cam0");
   write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recording));
   if (const auto& gyroscope = recording.gyroscope) {
-    fs::create_directories(mav / "imu0");
+    make_folder(mav / "imu0");
     write_file(mav / "imu0" / "sensor.yaml",
                imu_yaml(*gyroscope, recording.T_body_camera.value_or(Pose{})));
     write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace gpo {
 
@@ -19,5 +20,8 @@ void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,
                  const std::filesystem::path& folder,
                  const std::function<void(int done, int of)>& progress = {});
+
+/// `T_BS` as EuRoC's sensor.yaml has it; reads back as the same numbers.
+std::string transformation_yaml(const Pose& pose);
 
 }  // namespace gpo

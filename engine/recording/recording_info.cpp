@@ -3,6 +3,7 @@
 #include "engine/recording/recording_info.h"
 
 #include "engine/recording/board_truth.h"
+#include "engine/recording/calibration_file.h"
 #include "engine/recording/timestamps.h"
 
 #include <algorithm>
@@ -25,11 +26,6 @@ const char* layout_name(Layout layout) {
   if (layout == Layout::euroc) return "EuRoC";
   if (layout == Layout::tum_rgbd) return "TUM RGB-D";
   return layout == Layout::pictures ? "pictures" : "tracks";
-}
-
-const char* distortion_name(Distortion distortion) {
-  if (distortion == Distortion::none) return "none";
-  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
 }
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }

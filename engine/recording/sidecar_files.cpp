@@ -88,4 +88,32 @@ Plane read_plane(const std::filesystem::path& file) {
   return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
 }
 
+std::string board_yaml(const Board& board) {
+  if (const auto& markers = board.markers) {
+    return fmt::format(
+        "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
+        "marker: {}\ndictionary: {}\n",
+        board.columns + 1,
+        board.rows + 1,
+        board.square_m,
+        markers->side_m,
+        markers->dictionary);
+  }
+  return fmt::format(
+      "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
+      board.columns,
+      board.rows,
+      board.square_m);
+}
+
+std::string plane_yaml(const Plane& plane) {
+  const auto& n = plane.normal;
+  return fmt::format(
+      "# In the world of the ground truth, meters.\nnormal: [{}, {}, {}]\ndistance: {}\n",
+      n.x(),
+      n.y(),
+      n.z(),
+      plane.distance);
+}
+
 }  // namespace gpo

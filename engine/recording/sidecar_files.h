@@ -5,6 +5,7 @@
 #include "engine/recording/recording.h"
 
 #include <filesystem>
+#include <string>
 
 namespace gpo {
 
@@ -15,5 +16,9 @@ Board read_board(const std::filesystem::path& file);
 
 /// plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
 Plane read_plane(const std::filesystem::path& file);
+
+/// What the two read.
+std::string board_yaml(const Board& board);
+std::string plane_yaml(const Plane& plane);
 
 }  // namespace gpo

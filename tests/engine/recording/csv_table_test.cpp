@@ -121,7 +121,8 @@ TEST(CsvTable, ReadsColumnsSeparatedByBlanks) {
 
 TEST(CsvTable, KnowsRatesByManyNames) {
   const TestFolder folder;
-  for (const char* x : {"wx", "gx[rad/s]", "gyro_x", "omega_x (rad/s)", "rotationRateX", "w_RS_S_x"}) {
+  for (const char* x :
+       {"wx", "gx[rad/s]", "gyro_x", "omega_x (rad/s)", "rotationRateX", "w_RS_S_x"}) {
     const std::string name = x;
     const auto axis = [&](char c) {
       std::string other = name;
@@ -129,7 +130,8 @@ TEST(CsvTable, KnowsRatesByManyNames) {
       return other;
     };
     const auto file = folder.write(
-        "gyro.csv", "Timestamp[nanosec]," + name + "," + axis('y') + "," + axis('z') + "\n1,2,3,4\n");
+        "gyro.csv",
+        "Timestamp[nanosec]," + name + "," + axis('y') + "," + axis('z') + "\n1,2,3,4\n");
     EXPECT_NO_THROW(read_csv(file, kGyro, CsvColumns::exactly)) << name;
   }
 }
