@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings.h"
-#include "engine/inspection/trajectory.h"
+#include "engine/inspection/camera_path.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
+#include "engine/inspection/camera_path.h"
 #include "engine/inspection/report.h"
-#include "engine/inspection/trajectory.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
 
@@ -31,13 +31,13 @@ int run_command(const RunArguments& arguments) {
   const bool ok = inspection->initialization->ok;
   fmt::print("{}", to_text(*inspection));
   if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
-  const auto write_trajectory = [&](const auto& file, const Trajectory& trajectory) {
-    write_file(file, to_text(trajectory, arguments.trajectory_format));
+  const auto write_trajectory = [&](const auto& file, const CameraPath& path) {
+    write_file(file, to_text(path, arguments.trajectory_format));
   };
   if (ok && arguments.trajectory)
-    write_trajectory(*arguments.trajectory, estimated_trajectory(*inspection));
+    write_trajectory(*arguments.trajectory, estimated_path(*inspection));
   if (arguments.true_trajectory)
-    write_trajectory(*arguments.true_trajectory, true_trajectory(*inspection));
+    write_trajectory(*arguments.true_trajectory, true_path(*inspection));
   if (ok && arguments.points) write_file(*arguments.points, to_ply(*inspection));
   return ok ? kDone : kFailed;
 }

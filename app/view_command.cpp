@@ -43,6 +43,8 @@ struct Session {
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
 
+  explicit Session(std::size_t cache) : cache_mib(cache) {}
+
   void draw() {
     host.size = window.size();
     if (host.size.width < 1 || host.size.height < 1) return;  // minimized
@@ -123,7 +125,7 @@ int view_command(const ViewArguments& arguments) {
   if (recording) resolve_recordings({*recording});  // before there is a window that would wait
   if (session_file) read_session(*session_file);    // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session{cache_mib};
+  Session session(cache_mib);
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.state.recent = recent_files();

@@ -236,8 +236,7 @@ const char* distortion_name(Distortion distortion) {
 }
 
 Calibration read_calibration(const std::filesystem::path& file) {
-  const bool xml = lower_case(file.extension().string()) == ".xml";
-  const YamlEntry whole = xml ? load_opencv_xml(file) : load_yaml(file);
+  const YamlEntry whole = is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
   const auto kalibr = find(whole, "cam0");
   const YamlEntry& root = kalibr ? *kalibr : whole;
   check_model(root);

@@ -40,7 +40,7 @@ std::string camera_yaml(const Recording& recording) {
       distortion_name(camera.distortion),
       fmt::join(camera.coefficients, ", "));
   if (const double rate = rate_hz(recording.timestamps_ns); rate > 0)
-    text += fmt::format("rate_hz: {}\n", rate);
+    text += fmt::format("rate_hz: {:.6g}\n", rate);
   if (recording.gyroscope && recording.gyroscope->time_offset_ns != 0)
     text += fmt::format("timeshift_cam_imu: {}  # [s] gyroscope's clock - camera's clock\n",
                         static_cast<double>(recording.gyroscope->time_offset_ns) * 1e-9);
@@ -106,7 +106,7 @@ void write_pictures(const Recording& recording,
   make_folder(cam / "data");
   std::string list = "#timestamp [ns],filename\n";
   for (int i = 0; i < recording.frame_count(); ++i) {
-    const std::string name = fmt::format("{}.png", recording.timestamps_ns[i]);
+    const std::string name = fmt::format("{:019d}.png", recording.timestamps_ns[i]);
     list += fmt::format("{},{}\n", recording.timestamps_ns[i], name);
     if (!recording.pictures) continue;
     const cv::Mat bgr = recording.pictures->bgr(i);

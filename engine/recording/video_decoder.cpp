@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -43,12 +42,6 @@ struct ScalerCloser {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-/// What libav says about broken files on stderr becomes our InputError.
-void silence_library() {
-  static std::once_flag once;
-  std::call_once(once, [] { av_log_set_level(AV_LOG_QUIET); });
-}
-
 [[noreturn]] void fail_to_open(const fs::path& file) {
   throw InputError(file.string() +
                    ": found something that cannot be decoded (cut, or no video), expected a video");
@@ -75,7 +68,8 @@ struct VideoDecoder::Input {
   std::unique_ptr<SwsContext, ScalerCloser> scaler;
 
   explicit Input(const fs::path& file) {
-    silence_library();
+    // What it says about broken files becomes our InputError. Others (OpenCV) change the level, too.
+    av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* opened = nullptr;
     // Without the protocol's name a path with a colon would be taken for an address.
     if (avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr) < 0) {

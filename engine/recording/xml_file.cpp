@@ -50,6 +50,13 @@ YAML::Node node_of(const XMLElement& element) {
 
 }  // namespace
 
+bool is_xml(const std::filesystem::path& file) {
+  const std::string content = read_file(file, kMostBytesByHand);
+  std::string_view text = content;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  return trimmed(text).starts_with('<');
+}
+
 YamlEntry load_opencv_xml(const std::filesystem::path& file) {
   const std::string text = read_file(file, kMostBytesByHand);
   tinyxml2::XMLDocument document;

@@ -308,7 +308,8 @@ INSTANTIATE_TEST_SUITE_P(All, Layouts, testing::ValuesIn(fixtures()), [](const a
 });
 
 TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "tracks";
+  fs::create_directories(folder);
   write_file(folder / "camera.yaml", kEurocCamera);
   write_file(folder / "tracks.csv", [] {
     std::string text = "frame,track,x,y\n";

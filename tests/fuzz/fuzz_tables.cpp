@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   gpo::fuzz::parse([&] {
     switch (data[0]) {
       case 'g':
-        gpo::read_gyroscope(file, gpo::TimeUnit::by_value);
+        gpo::read_gyroscope(file, gpo::TimeUnit::by_sample_rate);
         break;
       case 'i':
         gpo::read_gyroscope(file, gpo::TimeUnit::nanoseconds);
@@ -24,11 +24,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gpo::read_tracks(file, 30);
         break;
       case 'p':
-        gpo::pose_at(gpo::read_body_path(file), 1'403'636'579'763'555'584);
+        gpo::pose_at(gpo::read_euroc_path(file), 1'403'636'579'763'555'584);
+        break;
+      case 'm':
+        gpo::pose_at(gpo::read_tum_path(file), 1'403'636'579'763'555'584);
         break;
       default: {
-        const auto table = gpo::read_csv(file, {"timestamp"}, gpo::CsvColumns::exactly);
-        gpo::csv_time_stamps(table, gpo::TimeUnit::by_value);
+        const auto table = gpo::read_csv(file, {"timestamp"}, gpo::CsvColumns::at_least);
+        gpo::csv_time_stamps(table, gpo::TimeUnit::by_frame_rate);
       }
     }
   });

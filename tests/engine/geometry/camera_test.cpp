@@ -143,7 +143,7 @@ TEST(Camera, DoesNotTakeTheBranchBeyondTheFold) {
   EXPECT_FALSE(project(camera, {1.5, 0, 1}).allFinite());
   for (double x = camera.cx; x < 20000; x += 10) {
     const Eigen::Vector2d ideal = undistort(camera, {x, camera.cy});
-    if (ideal.allFinite()) EXPECT_LT((ideal.x() - camera.cx) / camera.fx, 0.62) << x;
+    EXPECT_FALSE((ideal.x() - camera.cx) / camera.fx > 0.62) << x;
   }
 }
 

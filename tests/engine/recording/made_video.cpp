@@ -58,6 +58,8 @@ void drain(AVCodecContext* encoder, AVFormatContext* format) {
   AVPacket* packet = av_packet_alloc();
   AVStream* stream = format->streams[0];
   while (avcodec_receive_packet(encoder, packet) == 0) {
+    // Without it the last frame would be cut off by the container's edit list.
+    packet->duration = encoder->time_base.den == 25 ? 1 : 40;
     av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
     packet->stream_index = 0;
     check(av_interleaved_write_frame(format, packet), "cannot write");

@@ -93,6 +93,31 @@ TEST(VideoDecoder, GivesOpenCvsPixelsOfRealVideos) {
   }
 }
 
+/// A frame that is gone does not take the others with it.
+TEST(VideoDecoder, GoesOnAfterAFrameThatCannotBeDecoded) {
+  const TestFolder folder;
+  make_video(folder.path() / "whole.mkv", moving(40));
+  const std::string bytes = folder.read("whole.mkv");
+  std::string broken = bytes;
+  std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 3000, '\0');
+  folder.write("broken.mkv", broken);
+  const auto expected = by_opencv(folder.path() / "whole.mkv");
+  VideoDecoder decoder(folder.path() / "broken.mkv");
+  const int frames = static_cast<int>(decoder.index().times.size());
+  EXPECT_LT(frames, 40);
+  const auto same = [&](int frame, const cv::Mat& picture) {
+    return cv::norm(decoder.decode(frame), picture, cv::NORM_INF) == 0;
+  };
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    EXPECT_TRUE(same(frames - 1, expected.back()));
+    EXPECT_TRUE(same(3, expected[3]));
+    for (int i = 0; i < frames; ++i) {
+      EXPECT_THAT(test::error_of([&] { decoder.decode(i); }),
+                  testing::AnyOf("no error", testing::HasSubstr("broken.mkv: frame ")));
+    }
+  }
+}
+
 TEST(VideoFile, TakesVariableTimesFromTheContainer) {
   const TestFolder folder;
   for (const char* name : {"v.mkv", "v.mp4"}) {
@@ -104,6 +129,7 @@ TEST(VideoFile, TakesVariableTimesFromTheContainer) {
   }
 }
 
+/// As players do. OpenCV 4.6 turns it the other way (its issue 22088).
 TEST(VideoFile, TurnsThePictureAsThePhoneWasHeld) {
   const TestFolder folder;
   const auto pictures = moving(3);
@@ -119,7 +145,6 @@ TEST(VideoFile, TurnsThePictureAsThePhoneWasHeld) {
     cv::rotate(plain.decode(1), expected, code);
     ASSERT_EQ(turned.index().size, expected.size());
     EXPECT_EQ(cv::norm(turned.decode(1), expected, cv::NORM_INF), 0) << degrees;
-    EXPECT_EQ(cv::norm(by_opencv(file)[1], expected, cv::NORM_INF), 0) << degrees;
   }
 }
 

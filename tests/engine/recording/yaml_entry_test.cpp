@@ -4,6 +4,7 @@
 
 #include "test_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,14 +33,13 @@ TEST(Yaml, AliasesWithoutEndAreRefused) {
               HasSubstr("a.yaml:1: found lists or maps without end, expected at most 64"));
   std::string doubling = "a0: &a0 [1, 1]\n";
   for (int i = 1; i < 40; ++i) {
-    doubling += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [*a" +
-                std::to_string(i - 1) + ", *a" + std::to_string(i - 1) + "]\n";
+    doubling += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
   }
   EXPECT_THAT(error_in(doubling), HasSubstr("a.yaml:1: found too many values"));
 }
 
 TEST(Yaml, DeepOrHugeOrBinaryFilesAreRefused) {
-  EXPECT_THAT(error_in("a: " + std::string(65, '[') + std::string(65, ']')),
+  EXPECT_THAT(error_in(fmt::format("a: {:[>65}{:]>65}", "", "")),
               HasSubstr("lists or maps without end"));
   EXPECT_THAT(error_in(std::string(100'000, '[')), HasSubstr("expected YAML"));
   EXPECT_THAT(error_in(std::string(2 << 20, ' ')), HasSubstr("found more than 1 MiB"));
@@ -51,10 +51,10 @@ TEST(Yaml, DeepOrHugeOrBinaryFilesAreRefused) {
 
 TEST(Yaml, FoundTextIsCutAndLegible) {
   const TestFolder folder;
-  const auto file = folder.write("a.yaml", "a: \"x\n" + std::string(100, 'y') + "\"\n");
+  const auto file = folder.write("a.yaml", fmt::format("a: \"x\n{:y>100}\"\n", ""));
   const auto root = load_yaml(file);
   EXPECT_EQ(error_of([&] { number(at(root, "a", "")); }),
-            file.string() + ":1: key `a`: found \"x\n" + std::string(37, 'y') +
+            file.string() + ":1: key `a`: found \"x " + std::string(37, 'y') +
                 "...\", expected a finite number");
 }
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/trajectory.h"
+#include "engine/inspection/camera_path.h"
 
 #include "engine/error.h"
 
@@ -64,7 +64,7 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
 
 }  // namespace
 
-Trajectory estimated_trajectory(const Inspection& inspection) {
+CameraPath estimated_path(const Inspection& inspection) {
   if (!inspection.initialization->ok) {
     throw InputError(fmt::format("{}: found a failed initialization ({}), expected one with poses",
                                  inspection.recording->name,
@@ -75,12 +75,12 @@ Trajectory estimated_trajectory(const Inspection& inspection) {
           "world = reference camera (x right, y down, z forward); unit = distance of the plane"};
 }
 
-Trajectory true_trajectory(const Inspection& inspection) {
+CameraPath true_path(const Inspection& inspection) {
   if (!inspection.truth) {
     throw InputError(inspection.recording->name +
                      ": found no ground truth, expected one to write its trajectory");
   }
-  Trajectory trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
+  CameraPath trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
   const auto& cameras = inspection.truth->cameras;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     trajectory.complete = trajectory.complete && cameras[i];
@@ -91,7 +91,7 @@ Trajectory true_trajectory(const Inspection& inspection) {
   return trajectory;
 }
 
-std::string to_text(const Trajectory& trajectory, TrajectoryFormat format) {
+std::string to_text(const CameraPath& trajectory, TrajectoryFormat format) {
   struct Style {
     const char* header;  ///< the columns; KITTI's files have none
     std::string (*line)(std::int64_t ns, const Pose& camera);

@@ -11,7 +11,7 @@
 namespace gpo {
 
 /// Camera poses over time.
-struct Trajectory {
+struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<Pose> cameras;  ///< as many
   std::string world;          ///< axes and unit, for people
@@ -30,14 +30,14 @@ struct ChoiceKeys<TrajectoryFormat> {
 
 /// World = reference camera, unit = distance of the plane. Throws InputError for an initialization
 /// that failed.
-Trajectory estimated_trajectory(const Inspection& inspection);
+CameraPath estimated_path(const Inspection& inspection);
 
 /// The true poses of the same window, of the frames that have one [m]. Throws InputError where no
 /// truth is known.
-Trajectory true_trajectory(const Inspection& inspection);
+CameraPath true_path(const Inspection& inspection);
 
 /// Throws InputError for an incomplete trajectory in KITTI's format, which cannot say which frames
 /// are missing.
-std::string to_text(const Trajectory& trajectory, TrajectoryFormat format);
+std::string to_text(const CameraPath& trajectory, TrajectoryFormat format);
 
 }  // namespace gpo
