@@ -5,7 +5,8 @@ build_packages=(
   g++ cmake ninja-build pkg-config
   libeigen3-dev libceres-dev libopencv-dev libvtk9-dev
   libglfw3-dev libimgui-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
-  libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+  libyaml-cpp-dev libtinyxml2-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
 )
 test_packages=(
   libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache

@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings.h"
+#include "engine/inspection/trajectory.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,10 +22,14 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;    ///< the initialization failed, or a picture differs
 inline constexpr int kBadInput = 2;  ///< bad input or usage
 
+/// Decoded pictures that are kept [MiB].
+inline constexpr std::size_t kDefaultCacheMib = FrameCache::kDefaultByteLimit >> 20;
+
 /// What `run` and `snapshot` inspect.
 struct InspectArguments {
   std::filesystem::path recording;
   std::optional<std::filesystem::path> tracks;
+  std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
 };
 
@@ -37,6 +42,8 @@ struct RunArguments {
   InspectArguments inspect;
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> true_trajectory;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;  ///< of both
   std::optional<std::filesystem::path> points;
 };
 
@@ -67,6 +74,7 @@ struct EvaluateArguments {
 
 struct ViewArguments {
   std::optional<std::filesystem::path> recording;
+  std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
   std::optional<std::filesystem::path> session;
   std::optional<std::filesystem::path> script;
@@ -76,6 +84,7 @@ struct ViewArguments {
 /// executable or where it is run.
 std::filesystem::path example_recording();
 
+int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const std::filesystem::path& recording, bool json);
 int run_command(const RunArguments& arguments);

@@ -85,12 +85,19 @@ void add_settings(CLI::App& command, Settings& settings) {
   });
 }
 
+void add_cache(CLI::App& command, std::size_t& mib) {
+  command.add_option("--cache", mib, "Decoded pictures that are kept in memory [MiB]")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 1'000'000));
+}
+
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command
       .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
       ->required();
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
+  add_cache(command, arguments.cache_mib);
   add_settings(command, arguments.settings);
 }
 
@@ -98,7 +105,11 @@ void add_run(CLI::App& app, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "One initialization; prints a short table");
   add_inspection(*command, arguments.inspect);
   command->add_option("--json", arguments.json, "Write the whole result");
-  command->add_option("--trajectory", arguments.trajectory, "Write the camera poses in TUM format");
+  command->add_option("--trajectory", arguments.trajectory, "Write the camera poses");
+  command->add_option(
+      "--true-trajectory", arguments.true_trajectory, "Write the true camera poses of the window");
+  add_choice<TrajectoryFormat>(
+      *command, "--trajectory-format", "Of both; default: tum", arguments.trajectory_format);
   command->add_option("--points", arguments.points, "Write the map points as PLY");
 }
 
@@ -187,6 +198,8 @@ struct Arguments {
   bool info_json = false;
   RunArguments run;
   SnapshotArguments snapshot;
+  std::filesystem::path convert_recording;
+  std::filesystem::path convert_output;
   std::filesystem::path recipe;
   std::filesystem::path synthesize_output;
   ViewArguments view;
@@ -197,6 +210,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::App* view = app.add_subcommand("view", "The window; the default");
   view->add_option(
       "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
+  add_cache(*view, arguments.view.cache_mib);
   add_settings(*view, arguments.view.settings);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");
@@ -205,6 +219,12 @@ void declare(CLI::App& app, Arguments& arguments) {
           "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
       ->required();
   info->add_flag("--json", arguments.info_json, "As JSON");
+  CLI::App* convert = app.add_subcommand("convert", "Writes any recording as an EuRoC folder");
+  convert
+      ->add_option(
+          "recording", arguments.convert_recording, "Folder or file of a recording, or a recipe")
+      ->required();
+  convert->add_option("--output", arguments.convert_output, "Folder to write")->required();
   add_run(app, arguments.run);
   add_snapshot(app, arguments.snapshot);
   add_evaluate(app, arguments.evaluate);
@@ -218,6 +238,8 @@ void declare(CLI::App& app, Arguments& arguments) {
 int dispatch(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("info"))
     return info_command(arguments.info_recording, arguments.info_json);
+  if (app.got_subcommand("convert"))
+    return convert_command(arguments.convert_recording, arguments.convert_output);
   if (app.got_subcommand("run")) return run_command(arguments.run);
   if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);

@@ -87,8 +87,10 @@ std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOpti
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-Worker::Opened open_for_window(const fs::path& path) {
-  return Worker::with_inspector(open_given(path));
+std::function<Worker::Opened(const fs::path&)> opener_for_window(std::size_t cache_mib) {
+  return [cache_mib](const fs::path& path) {
+    return Worker::with_inspector(open_given(path, {.tracks = {}, .cache_bytes = cache_mib << 20}));
+  };
 }
 
 }  // namespace gpo

@@ -6,6 +6,7 @@
 #include "engine/recording/recording.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,7 @@ std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
                                             const OpenOptions& options = {});
 
 /// The same for the window's worker.
-Worker::Opened open_for_window(const std::filesystem::path& path);
+std::function<Worker::Opened(const std::filesystem::path&)> opener_for_window(
+    std::size_t cache_mib);
 
 }  // namespace gpo

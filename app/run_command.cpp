@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/recordings.h"
 #include "engine/inspection/report.h"
+#include "engine/inspection/trajectory.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
 
@@ -11,7 +12,8 @@
 namespace gpo {
 
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
-  auto recording = open_given(arguments.recording, {.tracks = arguments.tracks});
+  auto recording = open_given(
+      arguments.recording, {.tracks = arguments.tracks, .cache_bytes = arguments.cache_mib << 20});
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }
@@ -21,14 +23,21 @@ std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
 }
 
 int run_command(const RunArguments& arguments) {
-  for (const auto& file : {arguments.json, arguments.trajectory, arguments.points}) {
+  for (const auto& file :
+       {arguments.json, arguments.trajectory, arguments.true_trajectory, arguments.points}) {
     if (file) check_writable(*file);
   }
   const auto inspection = inspect(arguments.inspect);
   const bool ok = inspection->initialization->ok;
   fmt::print("{}", to_text(*inspection));
   if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
-  if (ok && arguments.trajectory) write_file(*arguments.trajectory, to_tum(*inspection));
+  const auto write_trajectory = [&](const auto& file, const Trajectory& trajectory) {
+    write_file(file, to_text(trajectory, arguments.trajectory_format));
+  };
+  if (ok && arguments.trajectory)
+    write_trajectory(*arguments.trajectory, estimated_trajectory(*inspection));
+  if (arguments.true_trajectory)
+    write_trajectory(*arguments.true_trajectory, true_trajectory(*inspection));
   if (ok && arguments.points) write_file(*arguments.points, to_ply(*inspection));
   return ok ? kDone : kFailed;
 }

@@ -32,11 +32,13 @@ constexpr const char* kTitle = "GPO Inspector";
 
 /// Everything between opening the window and closing it.
 struct Session {
+  std::size_t cache_mib;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
   Gui gui{window};
-  WorkbenchHost host{gui, open_for_window, example_recording(), [] { glfwPostEmptyEvent(); }};
+  WorkbenchHost host{
+      gui, opener_for_window(cache_mib), example_recording(), [] { glfwPostEmptyEvent(); }};
   std::deque<ScriptLine> script;
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
@@ -113,7 +115,7 @@ std::filesystem::path example_recording() {
 }
 
 int view_command(const ViewArguments& arguments) {
-  const auto& [recording, settings, session_file, script] = arguments;
+  const auto& [recording, cache_mib, settings, session_file, script] = arguments;
   find_method(settings.method);
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
@@ -121,7 +123,7 @@ int view_command(const ViewArguments& arguments) {
   if (recording) resolve_recordings({*recording});  // before there is a window that would wait
   if (session_file) read_session(*session_file);    // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session;
+  Session session{cache_mib};
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.state.recent = recent_files();

@@ -7,6 +7,7 @@
 #include "engine/geometry/pose.h"
 #include "engine/geometry/similarity.h"
 #include "engine/initializers/initialization.h"
+#include "engine/recording/recording.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,8 +19,9 @@ namespace gpo {
 /// The truth over one window, in the truth's own world.
 struct WindowTruth {
   std::string source;
-  std::vector<std::optional<Pose>> cameras;  ///< one a frame of the window [m]
-  std::optional<Plane> plane;                ///< [m]
+  std::vector<std::optional<Pose>> cameras;                     ///< one a frame of the window [m]
+  std::optional<Plane> plane;                                   ///< [m]
+  std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< as `cameras`; empty: not known
 };
 
 /// What is unknown is empty: ATE, scale and PDE where the true path is a point, the aligned PNE

@@ -105,6 +105,7 @@ Search search(const cv::Mat& picture,
               const AnchorOptions& options) {
   Nodes nodes;
   for (int k = 0; k < 9; ++k) nodes.col(k) = carried(camera, H, look.undistorted_px.col(k));
+  if (!nodes.allFinite()) return {.end = TrackEnd{.reason = LossReason::look_not_found}};
   const Matrix2Xf places = places_between(nodes, look.width, look.height);
   Matrix2d J;  // of the way from the reference picture, in the middle of the look
   J << (nodes.col(5) - nodes.col(3)) / (look.width - 1),

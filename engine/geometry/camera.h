@@ -21,7 +21,8 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6]] (Brown, as OpenCV orders them);
+  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]] (Brown, rational,
+  /// thin prism and tilted sensor, as OpenCV orders them);
   /// equidistant: k1 k2 k3 k4 (Kannala-Brandt); none: empty. Missing ones are zero.
   std::vector<double> coefficients;
 
@@ -34,14 +35,14 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 /// Undistorted pixel of a point in the camera frame (z > 0).
 Eigen::Vector2d project_undistorted(const Camera& camera, const Eigen::Vector3d& point_c);
 
-/// Raw pixel of a point in the camera frame (z > 0).
+/// Raw pixel of a point in the camera frame (z > 0); NaN beyond the lens model's valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 
-/// Raw pixel where the undistorted pixel appears in the picture.
+/// Raw pixel where the undistorted pixel appears in the picture; NaN beyond the valid radius.
 Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted_px);
 
 /// Undistorted pixel of a raw one; the inverse of `distort`, by Newton's method to 1e-10 px. NaN
-/// where the model has no inverse (far outside of what was calibrated).
+/// where the model has no inverse within its valid radius (far outside of what was calibrated).
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
 }  // namespace gpo

@@ -7,6 +7,8 @@
 #include "engine/initializers/growth.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window_rotations.h"
+#include "engine/recording/board_corners.h"
+#include "engine/recording/board_pose.h"
 #include "engine/recording/board_truth.h"
 
 #include <algorithm>
@@ -111,9 +113,10 @@ std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& who
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
                                              int frames) {
   if (!whole || static_cast<int>(whole->cameras.size()) == frames) return whole;
-  const auto begin = whole->cameras.begin();
-  return std::make_shared<const WindowTruth>(
-      WindowTruth{whole->source, {begin, begin + frames}, whole->plane});
+  WindowTruth truth = *whole;
+  truth.cameras.resize(frames);
+  if (!truth.uncertainties.empty()) truth.uncertainties.resize(frames);
+  return std::make_shared<const WindowTruth>(std::move(truth));
 }
 
 /// A method that needs no plane gets its start from the tracks on it even where it then uses all.
@@ -177,6 +180,21 @@ std::optional<Plane> plane_of_board(const Recording& recording,
   const auto found = board_pose(corners, *recording.board, recording.camera);
   if (!found) return std::nullopt;
   return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
+}
+
+/// The board's corners in the reference picture, for the cube; those that are hidden from its pose.
+std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame) {
+  if (!recording.board || !recording.pictures) return {};
+  auto corners = find_board(recording.pictures->gray(frame), *recording.board);
+  const auto hidden = [](const Eigen::Vector2d& corner) { return !corner.allFinite(); };
+  if (std::ranges::none_of(corners, hidden)) return corners;
+  const auto found = board_pose(corners, *recording.board, recording.camera);
+  if (!found) return {};
+  const auto whole = project_board(*recording.board, recording.camera, found->pose);
+  std::ranges::transform(corners, whole, corners.begin(), [&](const auto& seen, const auto& put) {
+    return hidden(seen) ? put : seen;
+  });
+  return corners;
 }
 
 /// Tells people of an optimization, not more often than they can read it.
@@ -269,8 +287,8 @@ std::shared_ptr<const WindowTruth> Inspector::Stages::compute_truth(
     if (progress) progress("finding the board", done, of);
   };
   GroundTruth found = board_truth(*recording, start, frames, stop, told);
-  return std::make_shared<const WindowTruth>(
-      WindowTruth{found.source, std::move(found.poses), kBoardPlane});
+  return std::make_shared<const WindowTruth>(WindowTruth{
+      found.source, std::move(found.poses), kBoardPlane, std::move(found.uncertainties)});
 }
 
 bool Inspector::Stages::update_truth(const Settings& settings,
@@ -286,12 +304,8 @@ bool Inspector::Stages::update_truth(const Settings& settings,
   if (!done) return false;
   truth.update(span,
                [&]() { return std::optional(beginning(longest_truth.value, settings.frames)); });
-  return board_corners.update(settings.start, [&]() {
-    const bool look = recording->board && recording->pictures;
-    return std::optional(
-        look ? find_board(recording->pictures->gray(settings.start), *recording->board)
-             : std::vector<Eigen::Vector2d>{});
-  });
+  return board_corners.update(
+      settings.start, [&]() { return std::optional(corners_in(*recording, settings.start)); });
 }
 
 bool Inspector::Stages::update_window(const Settings& settings,

@@ -3,6 +3,9 @@
 #include "engine/inspection/report.h"
 
 #include "engine/initializers/methods.h"
+#include "engine/recording/board_truth.h"
+
+#include <algorithm>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -98,6 +101,20 @@ ordered_json metrics_json(const Evaluation& evaluation) {
           {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
           {"pde_m", optional_json(evaluation.pde_m)},
           {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+}
+
+/// Medians of the uncertainties over the window; absent where the truth is from a file.
+ordered_json truth_json(const WindowTruth& truth) {
+  const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
+  ordered_json json = {{"source", truth.source},
+                       {"frames", std::ranges::count_if(truth.cameras, known)}};
+  if (const auto uncertainty = median_uncertainty(truth.uncertainties)) {
+    json["rms_px"] = uncertainty->rms_px;
+    json["position_sigma_m"] = uncertainty->position_sigma_m;
+    json["rotation_sigma_deg"] = uncertainty->rotation_sigma_deg;
+    json["normal_sigma_deg"] = uncertainty->normal_sigma_deg;
+  }
+  return json;
 }
 
 ordered_json matrix_json(const auto& matrix) {
@@ -208,6 +225,14 @@ std::string metrics_text(const Evaluation& e) {
          row("PDE", with_unit(e.pde_m, 1e3, 2, "mm"));
 }
 
+std::string truth_text(const WindowTruth& truth) {
+  const auto uncertainty = median_uncertainty(truth.uncertainties);
+  return row("truth",
+             uncertainty
+                 ? fmt::format("{}, certain to {}", truth.source, uncertainty_text(*uncertainty))
+                 : truth.source);
+}
+
 }  // namespace
 
 ordered_json to_json(const Inspection& inspection) {
@@ -253,6 +278,7 @@ ordered_json to_json(const Inspection& inspection) {
                        {"initialize", t.initialize},
                        {"optimize", t.optimize},
                        {"total", t.total}};
+  if (inspection.truth) json["truth"] = truth_json(*inspection.truth);
   if (inspection.evaluation) json["metrics"] = metrics_json(*inspection.evaluation);
   return json;
 }
@@ -303,31 +329,7 @@ std::string to_text(const Inspection& inspection) {
                           t.initialize,
                           t.optimize));
   if (inspection.evaluation) {
-    text += metrics_text(*inspection.evaluation) + row("truth", inspection.truth->source);
-  }
-  return text;
-}
-
-std::string to_tum(const Inspection& inspection) {
-  std::string text =
-      "# timestamp[s] tx ty tz qx qy qz qw; camera to world; world = reference camera (x right, y "
-      "down, "
-      "z forward); unit = distance of the plane\n";
-  const Window& window = *inspection.window;
-  for (std::size_t i = 0; i < inspection.initialization->cameras.size(); ++i) {
-    const auto& [R_wc, p] = inspection.initialization->cameras[i];
-    const Eigen::Vector4d q = quaternion_xyzw(R_wc);
-    const std::int64_t t = window.timestamps_ns[i];
-    text += fmt::format("{}.{:09d} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
-                        t / 1'000'000'000,
-                        t % 1'000'000'000,
-                        p.x(),
-                        p.y(),
-                        p.z(),
-                        q.x(),
-                        q.y(),
-                        q.z(),
-                        q.w());
+    text += metrics_text(*inspection.evaluation) + truth_text(*inspection.truth);
   }
   return text;
 }

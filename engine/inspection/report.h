@@ -17,10 +17,6 @@ nlohmann::ordered_json to_json(const Inspection& inspection);
 /// The short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Camera poses in TUM format: t tx ty tz qx qy qz qw, after a comment line that names frame and
-/// units.
-std::string to_tum(const Inspection& inspection);
-
 /// Map points, ASCII PLY with the track's id; the very points that the views draw.
 std::string to_ply(const Inspection& inspection);
 

@@ -2,261 +2,221 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board_truth.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
+#include "engine/recording/board_cache.h"
+#include "engine/recording/board_corners.h"
+#include "engine/recording/board_pose.h"
 
-#include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 
 namespace {
 
-using Corners = std::vector<Eigen::Vector2d>;
+constexpr double kMostTimesMedian = 4;
+constexpr double kAlwaysGoodPx = 0.5;  ///< a blurred frame among very sharp ones is no mistake
+constexpr int kMedianFrames = 30;
 
-constexpr int kSearchSize = 420;  // [px] long side of the picture in which the board is looked for
-constexpr double kMostRmsPx = 2;  // a pose that fits worse is none
-constexpr double kMostAstray = 0.12;  // of the distance to the next corner, before refinement
-constexpr double kSubPixReach = 0.3;  // of the distance to the next corner
+/// Looks for the board in the pictures of some frames, on all processors.
+class BoardSearch {
+ public:
+  BoardSearch(const Recording& recording, std::vector<int> frames, std::stop_token stop)
+      : recording_(recording), frames_(std::move(frames)), stop_(std::move(stop)) {}
 
-/// Corners by OpenCV in a reduced picture, row by row but in some order, back in full pixels.
-std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
-  cv::Mat reduced = gray;
-  const double scale =
-      std::min(1.0, static_cast<double>(kSearchSize) / std::max(gray.cols, gray.rows));
-  if (scale < 1) cv::resize(gray, reduced, {}, scale, scale, cv::INTER_AREA);
-  std::vector<cv::Point2f> corners;
-  const cv::Size size(board.columns, board.rows);
-  const int flags =
-      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  // The first is quicker and finds boards at a slant, the second finds small ones among clutter;
-  // both give up within some tens of milliseconds in so small a picture (in a larger one they do
-  // not).
-  if (!cv::findChessboardCorners(reduced, size, corners, flags) &&
-      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) {
-    return {};
+  /// Throws what decoding throws; `views` has what was found until then.
+  void run(BoardViews& views, const std::function<void()>& told) {
+    const auto count = static_cast<unsigned>(frames_.size());
+    {
+      std::vector<std::jthread> helpers;
+      for (unsigned i = 1; i < std::min(count, std::thread::hardware_concurrency()); ++i) {
+        helpers.emplace_back([&] { work(views, told); });
+      }
+      work(views, told);
+    }
+    if (error_) std::rethrow_exception(error_);
   }
-  const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
-  const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
-  for (auto& corner : corners) {
-    corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
-  }
-  return corners;
-}
 
-double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
-    if (i % board.columns > 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
-    if (i >= board.columns) {
-      least = std::min(least, cv::norm(corners[i] - corners[i - board.columns]));
+ private:
+  void work(BoardViews& views, const std::function<void()>& told) {
+    try {
+      while (const auto frame = next()) {
+        cv::Mat gray;
+        cv::cvtColor(frame->bgr, gray, cv::COLOR_BGR2GRAY);
+        const Board& board = *recording_.board;
+        const auto pose = board_pose(find_board(gray, board), board, recording_.camera);
+        const std::scoped_lock lock(mutex_);
+        views[frame->index] = pose;
+        told();
+      }
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      error_ = std::current_exception();
     }
   }
-  return least;
-}
 
-/// The search in the reduced picture leaves single corners far off (a gap of the floor beside the
-/// board attracts them). Those that a homography of the whole board contradicts move onto it.
-void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
-  std::vector<cv::Point2f> grid;
-  grid.reserve(corners.size());
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
-      grid.emplace_back(static_cast<float>(column), static_cast<float>(row));
-    }
-  }
-  const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
-  if (H.empty()) return;
-  std::vector<cv::Point2f> expected;
-  cv::perspectiveTransform(grid, expected, H);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
-  }
-}
-
-/// Sub-pixel corners in the full picture; one that runs away from its start stays there.
-void refine(std::vector<cv::Point2f>& corners, const cv::Mat& gray, double spacing) {
-  const double reach = kSubPixReach * spacing;
-  const int half = std::clamp(static_cast<int>(std::lround(reach)), 2, 7);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
-  const std::vector<cv::Point2f> starts = corners;
-  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (cv::norm(corners[i] - starts[i]) > reach) corners[i] = starts[i];
-  }
-}
-
-/// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
-Corners quarter_turn(const Corners& from, const Board& board) {
-  const int n = board.columns;
-  Corners turned(from.size());
-  for (int row = 0; row < n; ++row) {
-    for (int column = 0; column < n; ++column) {
-      turned[row * n + column] = from[column * n + (n - 1 - row)];
-    }
-  }
-  return turned;
-}
-
-Corners half_turn(const Corners& from) { return {from.rbegin(), from.rend()}; }
-
-/// Reverses each row where the corners run the wrong way round.
-Corners right_handed(Corners corners, const Board& board) {
-  const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
-  const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();
-  if (along_row.x() * along_column.y() - along_row.y() * along_column.x() > 0) return corners;
-  for (auto row = corners.begin(); row != corners.end(); row += board.columns) {
-    std::reverse(row, row + board.columns);
-  }
-  return corners;
-}
-
-/// How much darker the inner squares with even row + column are than the others.
-double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Board& board) {
-  double difference = 0;
-  for (int row = 0; row + 1 < board.rows; ++row) {
-    for (int column = 0; column + 1 < board.columns; ++column) {
-      const int i = row * board.columns + column;
-      const Eigen::Vector2d center = (corners[i] + corners[i + 1] + corners[i + board.columns] +
-                                      corners[i + board.columns + 1]) /
-                                     4;
-      const int x = std::clamp(static_cast<int>(std::lround(center.x())), 0, gray.cols - 1);
-      const int y = std::clamp(static_cast<int>(std::lround(center.y())), 0, gray.rows - 1);
-      difference += ((row + column) % 2 == 0 ? -1.0 : 1.0) * gray.at<std::uint8_t>(y, x);
-    }
-  }
-  return difference;
-}
-
-Eigen::Vector2d center_of(const Corners& corners) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const auto& corner : corners) sum += corner;
-  return sum / static_cast<double>(corners.size());
-}
-
-/// How well two sets of corners agree in direction; where they are does not count.
-double agreement(const Corners& a, const Corners& b) {
-  const Eigen::Vector2d center_a = center_of(a);
-  const Eigen::Vector2d center_b = center_of(b);
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - center_a).dot(b[i] - center_b);
-  return sum;
-}
-
-/// Our own order (OpenCV's jumps between frames, and its finders disagree): the first square inside
-/// is dark where the turns of the board differ in that; among equals the order nearest to the
-/// previous frame's, or with the rows running to the right.
-Corners ordered(Corners corners, const cv::Mat& gray, const Board& board, const Corners& previous) {
-  corners = right_handed(std::move(corners), board);
-  std::vector<Corners> turns = {corners, half_turn(corners)};
-  if (board.columns == board.rows) {
-    turns.push_back(quarter_turn(corners, board));
-    turns.push_back(half_turn(turns.back()));
-  }
-  std::vector<Corners> dark_first;
-  for (const auto& turn : turns) {
-    if (darkness_of_first(gray, turn, board) > 0) dark_first.push_back(turn);
-  }
-  if (!dark_first.empty()) turns = std::move(dark_first);
-  const auto score = [&](const Corners& turn) {
-    if (previous.size() == turn.size()) return agreement(turn, previous);
-    return (turn[board.columns - 1] - turn.front()).x();
+  struct Frame {
+    int index;
+    cv::Mat bgr;
   };
-  return *std::max_element(turns.begin(), turns.end(), [&](const auto& a, const auto& b) {
-    return score(a) < score(b);
-  });
+  /// Decoded in the order of the frames: a video goes backward only from its beginning again.
+  std::optional<Frame> next() {
+    const std::scoped_lock lock(decoding_);
+    if (next_ == frames_.size() || stop_.stop_requested() || failed()) return std::nullopt;
+    const int index = frames_[next_++];
+    return Frame{index, recording_.pictures->bgr(index)};
+  }
+
+  bool failed() {
+    const std::scoped_lock lock(mutex_);
+    return error_ != nullptr;
+  }
+
+  const Recording& recording_;
+  std::vector<int> frames_;
+  std::stop_token stop_;
+  std::size_t next_ = 0;
+  std::mutex decoding_;
+  std::mutex mutex_;  ///< of the views and of the error
+  std::exception_ptr error_;
+};
+
+/// From the cache, and from the pictures where the cache has none.
+BoardViews look_at(const Recording& recording,
+                   const std::vector<int>& frames,
+                   const std::stop_token& stop,
+                   const BoardProgress& progress) {
+  const auto cache = board_cache_file(recording);
+  BoardViews views = cache ? load_board_views(*cache) : BoardViews{};
+  std::vector<int> missing;
+  for (const int frame : frames) {
+    if (!views.contains(frame)) missing.push_back(frame);
+  }
+  if (missing.empty()) return views;
+  const int of = static_cast<int>(frames.size());
+  int done = of - static_cast<int>(missing.size());
+  BoardViews found;
+  const auto save = [&] {
+    if (cache && !found.empty()) save_board_views(*cache, found);
+  };
+  try {
+    BoardSearch(recording, missing, stop).run(found, [&] {
+      ++done;
+      if (progress) progress(done, of);
+    });
+  } catch (...) {
+    save();
+    throw;
+  }
+  save();
+  views.merge(found);
+  return views;
 }
 
-/// Refined pose for one of IPPE's two solutions.
-BoardPose refined(const std::vector<cv::Point3d>& points,
-                  const std::vector<cv::Point2d>& pixels,
-                  const cv::Matx33d& K,
-                  cv::Mat rvec,
-                  cv::Mat tvec) {
-  cv::solvePnPRefineLM(points, pixels, K, cv::noArray(), rvec, tvec);
-  std::vector<cv::Point2d> projected;
-  cv::projectPoints(points, rvec, tvec, K, cv::noArray(), projected);
-  double sum = 0;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const cv::Point2d error = projected[i] - pixels[i];
-    sum += error.dot(error);
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The RMS above which a fit is taken for a mistake [px].
+double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
+  std::vector<double> rms_px;
+  for (const int frame : frames) {
+    const auto view = views.find(frame);
+    if (view != views.end() && view->second) rms_px.push_back(view->second->uncertainty.rms_px);
   }
-  const Pose T_camera_board{so3_exp({rvec.at<double>(0), rvec.at<double>(1), rvec.at<double>(2)}),
-                            {tvec.at<double>(0), tvec.at<double>(1), tvec.at<double>(2)}};
-  return {inverse(T_camera_board), std::sqrt(sum / static_cast<double>(pixels.size()))};
+  if (rms_px.empty()) return std::numeric_limits<double>::infinity();
+  return std::max(kAlwaysGoodPx, kMostTimesMedian * median(std::move(rms_px)));
+}
+
+/// The symmetric pose that is nearest in rotation.
+Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& last) {
+  const auto turned = [&](const Pose& symmetry) {
+    return so3_log(last.R_wc.transpose() * symmetry.R_wc * pose.R_wc).norm();
+  };
+  return *std::min_element(symmetries.begin(), symmetries.end(), [&](const Pose& a, const Pose& b) {
+    return turned(a) < turned(b);
+  }) * pose;
+}
+
+GroundTruth in_one_frame(const BoardViews& views,
+                         std::span<const int> frames,
+                         const Board& board,
+                         double most_rms_px) {
+  GroundTruth truth;
+  truth.source = board.markers ? "ChArUco board" : "chessboard";
+  truth.poses.resize(frames.size());
+  truth.uncertainties.resize(frames.size());
+  const auto symmetries = board_symmetries(board);
+  std::optional<Pose> last;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto view = views.find(frames[i]);
+    if (view == views.end() || !view->second) continue;
+    const BoardPose& found = *view->second;
+    if (found.uncertainty.rms_px > most_rms_px) continue;
+    last = last ? nearest(found.pose, symmetries, *last) : found.pose;
+    truth.poses[i] = last;
+    truth.uncertainties[i] = found.uncertainty;
+  }
+  return truth;
 }
 
 }  // namespace
 
-Corners find_board(const cv::Mat& gray, const Board& board, const Corners& previous) {
-  auto found = search(gray, board);
-  if (found.empty()) return {};
-  const double spacing = least_spacing(found, board);
-  mend(found, board, spacing);
-  refine(found, gray, spacing);
-  Corners corners;
-  for (const auto& corner : found) corners.emplace_back(corner.x, corner.y);
-  return ordered(std::move(corners), gray, board, previous);
-}
-
-std::vector<Eigen::Vector3d> board_points(const Board& board) {
-  std::vector<Eigen::Vector3d> points;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(column * board.square_m, row * board.square_m, 0);
-    }
-  }
-  return points;
-}
-
-std::optional<BoardPose> board_pose(const Corners& corners_raw_px,
-                                    const Board& board,
-                                    const Camera& camera) {
-  std::vector<cv::Point3d> points;
-  for (const auto& point : board_points(board)) points.emplace_back(point.x(), point.y(), 0);
-  if (corners_raw_px.size() != points.size()) return std::nullopt;
-  std::vector<cv::Point2d> pixels;
-  for (const auto& raw : corners_raw_px) {
-    const Eigen::Vector2d ideal = undistort(camera, raw);
-    if (!ideal.allFinite()) return std::nullopt;
-    pixels.emplace_back(ideal.x(), ideal.y());
-  }
-  const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
-  std::vector<cv::Mat> rvecs;
-  std::vector<cv::Mat> tvecs;
-  cv::solvePnPGeneric(points, pixels, K, cv::noArray(), rvecs, tvecs, false, cv::SOLVEPNP_IPPE);
-  std::optional<BoardPose> best;
-  for (std::size_t i = 0; i < rvecs.size(); ++i) {
-    const BoardPose pose = refined(points, pixels, K, rvecs[i].clone(), tvecs[i].clone());
-    const bool in_front = pose.pose.p_wc.z() < 0;
-    if (in_front && pose.rms_px <= kMostRmsPx && (!best || pose.rms_px < best->rms_px)) best = pose;
-  }
-  return best;
+GroundTruth board_truth(const Recording& recording,
+                        const std::vector<int>& frames,
+                        const std::stop_token& stop,
+                        const BoardProgress& progress) {
+  const BoardViews views = look_at(recording, frames, stop, progress);
+  return in_one_frame(views, frames, *recording.board, largest_rms_px(views, frames));
 }
 
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
                         const std::stop_token& stop,
-                        const std::function<void(int done, int of)>& progress) {
-  GroundTruth truth;
-  truth.source = "chessboard";
-  truth.poses.resize(frames);
-  Corners previous;
-  for (int i = 0; i < frames && !stop.stop_requested(); ++i) {
-    const auto corners =
-        find_board(recording.pictures->gray(start + i), *recording.board, previous);
-    if (!corners.empty()) {
-      previous = corners;
-      if (const auto pose = board_pose(corners, *recording.board, recording.camera)) {
-        truth.poses[i] = pose->pose;
-      }
+                        const BoardProgress& progress) {
+  const int left = recording.frame_count() - start;
+  std::vector<int> looked_at(std::max(frames, std::min(kMedianFrames, left)));
+  std::iota(looked_at.begin(), looked_at.end(), start);
+  const BoardViews views = look_at(recording, looked_at, stop, progress);
+  const std::span<const int> all = looked_at;
+  const double most_rms_px = largest_rms_px(views, all.first(std::min(kMedianFrames, left)));
+  return in_one_frame(views, all.first(frames), *recording.board, most_rms_px);
+}
+
+std::optional<PoseUncertainty> median_uncertainty(
+    std::span<const std::optional<PoseUncertainty>> uncertainties) {
+  const auto known = [](const auto& one) { return one.has_value(); };
+  if (std::none_of(uncertainties.begin(), uncertainties.end(), known)) return std::nullopt;
+  const auto of = [&](double PoseUncertainty::*number) {
+    std::vector<double> values;
+    for (const auto& one : uncertainties) {
+      if (one) values.push_back((*one).*number);
     }
-    if (progress) progress(i + 1, frames);
-  }
-  return truth;
+    return median(std::move(values));
+  };
+  return PoseUncertainty{of(&PoseUncertainty::rms_px),
+                         of(&PoseUncertainty::position_sigma_m),
+                         of(&PoseUncertainty::rotation_sigma_deg),
+                         of(&PoseUncertainty::normal_sigma_deg)};
+}
+
+std::string uncertainty_text(const PoseUncertainty& uncertainty) {
+  return fmt::format(
+      "{:.2g} mm, {:.2g} deg, its normal {:.2g} deg (one standard deviation; fit {:.2f} px RMS)",
+      1e3 * uncertainty.position_sigma_m,
+      uncertainty.rotation_sigma_deg,
+      uncertainty.normal_sigma_deg,
+      uncertainty.rms_px);
 }
 
 }  // namespace gpo

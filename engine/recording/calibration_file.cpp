@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/calibration_file.h"
 
+#include "engine/error.h"
+#include "engine/recording/folder.h"
 #include "engine/recording/text_file.h"
+#include "engine/recording/xml_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
+#include <set>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -14,6 +20,34 @@
 namespace gpo {
 
 namespace {
+
+using Names = std::initializer_list<const char*>;
+
+/// OpenCV leaves the names to whoever writes the file; these are its samples', ROS' and common
+/// ones.
+constexpr Names kMatrix = {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "M1", "mtx"};
+constexpr Names kCoefficients = {"distortion_coefficients",
+                                 "Distortion_Coefficients",
+                                 "distCoeffs",
+                                 "dist_coeffs",
+                                 "distortion",
+                                 "D",
+                                 "D1",
+                                 "dist"};
+constexpr Names kWidth = {"image_width", "image_Width", "imageWidth", "width"};
+constexpr Names kHeight = {"image_height", "image_Height", "imageHeight", "height"};
+constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
+
+constexpr double kMostFocalLength = 1e6;  // [px]
+constexpr double kMostCoefficient = 1e6;
+constexpr double kMostShift_s = 3600;
+
+std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
+  for (const char* name : names) {
+    if (auto entry = find(map, name)) return entry;
+  }
+  return std::nullopt;
+}
 
 std::string count_of(const std::vector<double>& values) {
   return std::to_string(values.size()) + " numbers";
@@ -30,10 +64,11 @@ Distortion distortion_model(const YamlEntry& entry) {
   const std::string expected = "radial-tangential, equidistant or none";
   const std::string model = lower_case(text(entry, expected));
   if (model == "none" || model == "no") return Distortion::none;
-  for (const char* same : {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial"}) {
+  for (const char* same :
+       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"}) {
     if (model == same) return Distortion::radial_tangential;
   }
-  for (const char* same : {"equidistant", "fisheye"}) {
+  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"}) {
     if (model == same) return Distortion::equidistant;
   }
   yaml_fail(entry, fmt::format("\"{}\"", model), expected);
@@ -51,10 +86,15 @@ void set_coefficients(Camera& camera, const YamlEntry& entry) {
   if (camera.distortion == Distortion::equidistant && n != 4) {
     yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
   }
-  if (camera.distortion == Distortion::radial_tangential && n != 4 && n != 5 && n != 8) {
+  static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
+  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n)) {
     yaml_fail(entry,
               count_of(values),
-              "4, 5 or 8 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
+              "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
+  }
+  const auto absurd = [](double k) { return std::abs(k) > kMostCoefficient; };
+  if (std::ranges::any_of(values, absurd)) {
+    yaml_fail(entry, "a coefficient that no lens has", "numbers of the order of 1");
   }
   camera.coefficients = values;
 }
@@ -74,9 +114,12 @@ void set_intrinsics(
   if (fx <= 0 || fy <= 0) {
     yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
   }
+  if (fx > kMostFocalLength || fy > kMostFocalLength) {
+    yaml_fail(entry, "a focal length that no lens has", "fx, fy in pixels");
+  }
   const bool inside =
       cx > -camera.width && cx < 2 * camera.width && cy > -camera.height && cy < 2 * camera.height;
-  if (!inside) {
+  if (camera.width > 0 && !inside) {
     yaml_fail(entry,
               "a principal point far outside of the picture",
               "cx, cy in pixels, near the middle of it");
@@ -108,18 +151,30 @@ Camera euroc_camera(const YamlEntry& root) {
   return camera;
 }
 
-Camera opencv_camera(const YamlEntry& root) {
+/// Leaves the size at 0 where the file does not tell it.
+void set_opencv_size(Camera& camera, const YamlEntry& root) {
+  if (const auto size = find_any(root, kSize)) {
+    const auto s = numbers(*size, 2, "2 (width, height)");
+    return set_resolution(camera, *size, s[0], s[1]);
+  }
+  const auto width = find_any(root, kWidth);
+  const auto height = find_any(root, kHeight);
+  if (!width && !height) return;
+  const char* const kExpected = "a number of pixels";
+  if (!width) at(root, *kWidth.begin(), kExpected);
+  if (!height) at(root, *kHeight.begin(), kExpected);
+  set_resolution(camera, *width, number(*width), number(*height));
+}
+
+Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   Camera camera;
-  const auto width = at(root, "image_width", "a number of pixels");
-  const auto height = at(root, "image_height", "a number of pixels");
-  set_resolution(camera, width, number(width), number(height));
-  const auto matrix = at(root, "camera_matrix", "a 3x3 matrix");
+  set_opencv_size(camera, root);
   const auto k = numbers(matrix, 9, "9 (a 3x3 matrix)");
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   }
   set_intrinsics(camera, matrix, k[0], k[4], k[2], k[5]);
-  const auto coefficients = find(root, "distortion_coefficients");
+  const auto coefficients = find_any(root, kCoefficients);
   if (!coefficients) return camera;
   const auto fisheye = find(root, "fisheye_model");
   camera.distortion =
@@ -129,6 +184,31 @@ Camera opencv_camera(const YamlEntry& root) {
   }
   set_coefficients(camera, *coefficients);
   return camera;
+}
+
+/// "camera.yaml", ... in the order in which they are looked for.
+std::vector<std::string> calibration_names() {
+  std::vector<std::string> names;
+  for (const char* stem : {"camera",
+                           "sensor",
+                           "camchain-imucam",
+                           "camchain",
+                           "calibration",
+                           "camera_calibration",
+                           "calib",
+                           "intrinsics",
+                           "out_camera_data"}) {
+    for (const char* extension : {".yaml", ".yml", ".xml", ".json"}) {
+      names.push_back(std::string(stem) + extension);
+    }
+  }
+  return names;
+}
+
+/// Kalibr prefixes the name of the bag: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
+bool is_camchain(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
 }
 
 }  // namespace
@@ -150,26 +230,49 @@ Pose rigid_motion(const YamlEntry& entry) {
   return {svd.matrixU() * svd.matrixV().transpose(), T.topRightCorner<3, 1>()};
 }
 
+const char* distortion_name(Distortion distortion) {
+  if (distortion == Distortion::none) return "none";
+  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
+}
+
 Calibration read_calibration(const std::filesystem::path& file) {
-  const YamlEntry whole = load_yaml(file);
+  const bool xml = lower_case(file.extension().string()) == ".xml";
+  const YamlEntry whole = xml ? load_opencv_xml(file) : load_yaml(file);
   const auto kalibr = find(whole, "cam0");
   const YamlEntry& root = kalibr ? *kalibr : whole;
   check_model(root);
   Calibration result;
-  result.camera = find(root, "camera_matrix") ? opencv_camera(root) : euroc_camera(root);
+  const auto matrix = find_any(root, kMatrix);
+  result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
   if (const auto T_BS = find(root, "T_BS")) {
     result.T_body_camera = rigid_motion(*T_BS);
   } else if (const auto T_cam_imu = find(root, "T_cam_imu")) {
     result.T_body_camera = inverse(rigid_motion(*T_cam_imu));
   }
   if (const auto shift = find(root, "timeshift_cam_imu")) {
-    result.time_offset_ns = std::llround(number(*shift) * 1e9);
+    const double seconds = number(*shift);
+    if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
+    result.time_offset_ns = std::llround(seconds * 1e9);
   }
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
   }
   return result;
+}
+
+std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+  for (const std::string& name : calibration_names()) {
+    if (is_file(folder / name)) return folder / name;
+  }
+  std::set<std::filesystem::path> chains;
+  for (const auto& file : files_in(folder)) {
+    if (is_camchain(file)) chains.insert(file);
+  }
+  if (!chains.empty()) return *chains.begin();
+  throw InputError(folder.string() +
+                   ": found no calibration, expected camera.yaml (the names and formats of EuRoC, "
+                   "OpenCV and Kalibr are known, too; `gpo-inspector calibrate` makes one)");
 }
 
 }  // namespace gpo

@@ -21,9 +21,17 @@ struct Calibration {
   std::optional<double> rate_hz;    ///< of the pictures
 };
 
-/// Reads a camera's calibration: EuRoC's sensor.yaml, OpenCV's YAML (also ROS') or Kalibr's
-/// camchain, told apart by their keys. Throws InputError.
+/// Reads a camera's calibration: EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also
+/// ROS') or Kalibr's camchain, told apart by their keys. OpenCV's need not tell the size of the
+/// pictures: width and height are 0 then. Throws InputError.
 Calibration read_calibration(const std::filesystem::path& file);
+
+/// As EuRoC's files call it.
+const char* distortion_name(Distortion distortion);
+
+/// The calibration in a folder, by the names that people and tools give it: camera.yaml,
+/// sensor.yaml, camchain-imucam.yaml, calibration.xml, ... Throws InputError where there is none.
+std::filesystem::path calibration_in(const std::filesystem::path& folder);
 
 /// EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError
 /// where it is no rigid motion.

@@ -15,14 +15,35 @@ namespace gpo {
 
 namespace {
 
-constexpr std::int64_t kLeastNanoseconds = 1'000'000'000'000;
+constexpr std::size_t kMostRows = 8'000'000;
+constexpr std::size_t kMostRemarks = 100;  // above the first row that are kept to look for names
+constexpr std::size_t kLongestShown = 40;
+constexpr std::string_view kBlanks = " \t";
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
+/// Takes the next cell off the front of what is left of a row.
+std::string_view take_cell(std::string_view& rest, Separator separator) {
+  const bool commas = separator == Separator::comma;
+  const std::size_t end = commas ? rest.find(',') : rest.find_first_of(kBlanks);
+  const std::string_view cell = trimmed(rest.substr(0, end));
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  if (!commas) rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  return cell;
+}
+
+int cell_count(std::string_view row, Separator separator) {
+  if (separator == Separator::comma) return 1 + static_cast<int>(std::ranges::count(row, ','));
+  int count = 0;
+  while (!row.empty()) {
+    take_cell(row, separator);
+    ++count;
+  }
+  return count;
+}
+
+std::vector<std::string> split(std::string_view row, Separator separator) {
+  std::vector<std::string> cells;
+  for (int left = cell_count(row, separator); left > 0; --left) {
+    cells.emplace_back(take_cell(row, separator));
   }
   return cells;
 }
@@ -36,8 +57,8 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  return fmt::format("\"{}{}\"", text.substr(0, kLongest), text.size() > kLongest ? "..." : "");
+  return fmt::format(
+      "\"{}{}\"", text.substr(0, kLongestShown), text.size() > kLongestShown ? "..." : "");
 }
 
 /// "W_RS_S_x [rad s^-1]" -> "w_rs_s_x".
@@ -46,12 +67,15 @@ std::string plain_name(const std::string& name) {
   return lower_case(trimmed(before_unit));
 }
 
+/// Rates are called w, g(yro), o(mega) or r(otation rate), with the axis at the end.
 bool same_name(const std::string& header, const std::string& expected) {
   const std::string name = plain_name(header);
   if (expected.empty()) return true;
   if (name.empty()) return false;
-  if (expected.size() <= 2) return name[0] == expected[0] && name.back() == expected.back();
-  return name.starts_with(expected) || expected.starts_with(name);
+  if (expected == "timestamp") return name[0] == 't' || name.find("time") != std::string::npos;
+  if (expected.size() > 2) return name.starts_with(expected) || expected.starts_with(name);
+  const std::string first = expected[0] == 'w' ? "wgor" : expected.substr(0, 1);
+  return first.find(name[0]) != std::string::npos && name.back() == expected.back();
 }
 
 void check_header(const CsvTable& table, int line, const std::vector<std::string>& names) {
@@ -70,21 +94,21 @@ void check_count(const CsvTable& table,
                  const std::vector<std::string>& names,
                  CsvColumns columns,
                  bool cut) {
-  const std::size_t first = table.rows.empty() ? row.cells.size() : table.rows[0].cells.size();
-  const bool enough = columns == CsvColumns::exactly ? row.cells.size() == names.size()
-                                                     : row.cells.size() >= names.size();
-  if (enough && row.cells.size() == first) return;
-  const std::size_t expected = enough ? first : names.size();
+  const int count = cell_count(row.text, table.separator);
+  const int named = static_cast<int>(names.size());
+  const int first = table.rows.empty() ? count : table.columns;
+  const bool enough = columns == CsvColumns::exactly ? count == named : count >= named;
+  if (enough && count == first) return;
   csv_fail(table,
            row.line,
-           std::to_string(row.cells.size()) + " columns" + (cut ? " (the file seems cut)" : ""),
+           std::to_string(count) + " columns" + (cut ? " (the file seems cut)" : ""),
            std::string(columns == CsvColumns::at_least && !enough ? "at least " : "") +
-               std::to_string(expected) + " (" + joined(names) + ")");
+               std::to_string(enough ? first : named) + " (" + joined(names) + ")");
 }
 
-/// The lines above the first row: which one of them names the columns.
+/// A line above the first row, which may name the columns.
 struct HeaderCandidate {
-  std::vector<std::string_view> cells;
+  std::string_view text;
   int line = 0;
   bool comment = false;
 };
@@ -93,23 +117,37 @@ void take_header(CsvTable& table,
                  const std::vector<HeaderCandidate>& candidates,
                  const std::vector<std::string>& names) {
   for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
-    const auto& [cells, line, comment] = *candidate;
-    if (comment && cells.size() != table.rows[0].cells.size()) continue;
-    // A remark above a single column of numbers has as many cells as a header.
-    if (comment && names.size() == 1 && !same_name(std::string(cells[0]), names[0])) continue;
-    table.header.assign(cells.begin(), cells.end());
-    if (cells.size() != table.rows[0].cells.size()) {
+    auto cells = split(candidate->text, table.separator);
+    const bool as_many = static_cast<int>(cells.size()) == table.columns;
+    // A remark may have as many words as there are columns.
+    if (candidate->comment && !(as_many && same_name(cells[0], names[0]))) continue;
+    table.header = std::move(cells);
+    if (!as_many) {
       csv_fail(table,
-               line,
-               std::to_string(cells.size()) + " names of columns",
-               std::to_string(table.rows[0].cells.size()) + ", as many as the rows have");
+               candidate->line,
+               std::to_string(table.header.size()) + " names of columns",
+               std::to_string(table.columns) + ", as many as the rows have");
     }
-    return check_header(table, line, names);
+    return check_header(table, candidate->line, names);
   }
 }
 
-/// Whether the time stamps are in seconds (true) or nanoseconds, where the header tells.
-std::optional<bool> header_says_seconds(const CsvTable& table) {
+/// Decimal places that make nanoseconds of a unit, and how headers call it.
+struct NamedUnit {
+  int decimals;
+  std::vector<std::string_view> names;
+};
+
+const std::vector<NamedUnit>& named_units() {
+  static const std::vector<NamedUnit> kUnits = {
+      {9, {"s", "sec", "secs", "second", "seconds"}},
+      {6, {"ms", "msec", "millis", "millisec", "millisecond", "milliseconds"}},
+      {3, {"us", "usec", "micros", "microsec", "microsecond", "microseconds"}},
+      {0, {"ns", "nsec", "nanos", "nanosec", "nanosecond", "nanoseconds"}}};
+  return kUnits;
+}
+
+std::optional<int> decimals_of_header(const CsvTable& table) {
   if (table.header.empty()) return std::nullopt;
   std::string token;
   for (const char c : lower_case(table.header[0]) + " ") {
@@ -117,15 +155,44 @@ std::optional<bool> header_says_seconds(const CsvTable& table) {
       token += c;
       continue;
     }
-    if (token == "s" || token == "sec" || token == "seconds") return true;
-    if (token == "ns" || token == "nsec" || token == "nanoseconds") return false;
-    if (token == "ms" || token == "us" || token == "msec" || token == "usec") {
-      throw InputError(table.file.string() + ": found time stamps in " + in_quotes(token) +
-                       ", expected ns or s");
+    for (const NamedUnit& unit : named_units()) {
+      if (std::ranges::find(unit.names, token) != unit.names.end()) return unit.decimals;
     }
     token.clear();
   }
   return std::nullopt;
+}
+
+double median_step(const CsvTable& table) {
+  constexpr std::size_t kRows = 1000;
+  std::vector<double> steps;
+  std::optional<double> previous;
+  for (std::size_t i = 0; i < std::min(table.rows.size(), kRows); ++i) {
+    const auto time = parse_number(csv_cell(table, table.rows[i], 0));
+    if (time && previous) steps.push_back(*time - *previous);
+    previous = time;
+  }
+  if (steps.empty()) return 0;
+  std::ranges::nth_element(steps, steps.begin() + std::ssize(steps) / 2);
+  return steps[steps.size() / 2];
+}
+
+/// What a camera's or a sensor's rate can be tells thousands of the unit apart.
+int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
+  constexpr double kSurelyNanoseconds = 1e16;
+  constexpr double kShortestFrame = 2;  // in thousandths of the unit
+  constexpr double kShortestSample = 0.2;
+  if (otherwise == TimeUnit::seconds) return 9;
+  if (otherwise == TimeUnit::nanoseconds) return 0;
+  const auto first = parse_number(csv_cell(table, table.rows[0], 0));
+  if (first && *first > kSurelyNanoseconds) return 0;
+  const double step = median_step(table);
+  double shortest = otherwise == TimeUnit::by_frame_rate ? kShortestFrame : kShortestSample;
+  for (const int decimals : {9, 6, 3}) {
+    if (step < shortest) return decimals;
+    shortest *= 1e3;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -140,11 +207,13 @@ void csv_fail(const CsvTable& table,
 
 CsvTable read_csv(const std::filesystem::path& file,
                   const std::vector<std::string>& names,
-                  CsvColumns columns) {
-  CsvTable table{file, std::make_shared<const std::string>(read_file(file)), {}, {}};
+                  CsvColumns columns,
+                  Separator separator) {
+  CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
   std::string_view text = *table.text;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   std::vector<HeaderCandidate> above;
+  bool named = false;
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const bool last = end == std::string_view::npos;
@@ -153,16 +222,22 @@ CsvTable read_csv(const std::filesystem::path& file,
     const bool comment = line.starts_with('#');
     if (comment) line = trimmed(line.substr(1));
     if (line.empty() || (comment && !table.rows.empty())) continue;
-    CsvRow row{number, split(line)};
-    if (comment || (table.rows.empty() && !parse_decimal(row.cells[0], 0) &&
-                    std::none_of(above.begin(), above.end(), [](const auto& candidate) {
-                      return !candidate.comment;
-                    }))) {
-      above.push_back({row.cells, number, comment});
+    std::string_view rest = line;
+    const bool names_columns =
+        !comment && !named && table.rows.empty() && !parse_decimal(take_cell(rest, separator), 0);
+    if (comment || names_columns) {
+      named = named || names_columns;
+      if (above.size() == kMostRemarks) above.erase(above.begin());
+      above.push_back({line, number, comment});
       continue;
     }
+    const CsvRow row{number, line};
     check_count(table, row, names, columns, last);
-    table.rows.push_back(std::move(row));
+    if (table.rows.empty()) table.columns = cell_count(line, separator);
+    if (table.rows.size() == kMostRows) {
+      csv_fail(table, number, "one more row", fmt::format("at most {}", kMostRows));
+    }
+    table.rows.push_back(row);
     if (table.rows.size() == 1) take_header(table, above, names);
   }
   if (table.rows.empty()) {
@@ -171,32 +246,39 @@ CsvTable read_csv(const std::filesystem::path& file,
   return table;
 }
 
+std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column) {
+  std::string_view rest = row.text;
+  for (; column > 0; --column) take_cell(rest, table.separator);
+  return take_cell(rest, table.separator);
+}
+
 double csv_number(const CsvTable& table, const CsvRow& row, int column) {
-  const auto value = parse_number(row.cells[column]);
-  if (!value) csv_fail(table, row.line, in_quotes(row.cells[column]), "a finite number");
+  const std::string_view cell = csv_cell(table, row, column);
+  const auto value = parse_number(cell);
+  if (!value) csv_fail(table, row.line, in_quotes(cell), "a finite number");
   return *value;
 }
 
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column) {
-  const auto value = parse_integer(row.cells[column]);
-  if (!value) csv_fail(table, row.line, in_quotes(row.cells[column]), "an integer");
+  const std::string_view cell = csv_cell(table, row, column);
+  const auto value = parse_integer(cell);
+  if (!value) csv_fail(table, row.line, in_quotes(cell), "an integer");
   return *value;
 }
 
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise) {
-  const auto first = parse_integer(table.rows[0].cells[0]);
-  const bool large = first && *first > kLeastNanoseconds;
-  const bool seconds =
-      header_says_seconds(table).value_or(otherwise == TimeUnit::by_value && !large);
+  const auto named = decimals_of_header(table);
+  const int decimals = named ? *named : decimals_of_values(table, otherwise);
   std::vector<std::int64_t> times;
   times.reserve(table.rows.size());
   for (const auto& row : table.rows) {
-    const auto time = parse_decimal(row.cells[0], seconds ? 9 : 0);
-    if (!time) csv_fail(table, row.line, in_quotes(row.cells[0]), "a time stamp");
+    const std::string_view cell = csv_cell(table, row, 0);
+    const auto time = parse_decimal(cell, decimals);
+    if (!time) csv_fail(table, row.line, in_quotes(cell), "a time stamp");
     if (!times.empty() && *time <= times.back()) {
       csv_fail(table,
                row.line,
-               "time stamp " + std::string(row.cells[0]) +
+               "time stamp " + std::string(cell.substr(0, kLongestShown)) +
                    (*time == times.back() ? ", a repetition of" : ", earlier than") +
                    " the one before it",
                "ascending time stamps");

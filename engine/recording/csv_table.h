@@ -11,37 +11,48 @@
 
 namespace gpo {
 
+/// A row as it stands in the file; cells are cut out of it when they are asked for.
 struct CsvRow {
   int line;  ///< in the file, from 1
-  std::vector<std::string_view> cells;
+  std::string_view text;
 };
 
-/// A file of numbers and names, separated by commas. Every row has the same number of cells.
+enum class Separator { comma, blanks };
+
+/// A file of numbers and names in rows. Every row has the same number of cells.
 struct CsvTable {
   std::filesystem::path file;
-  std::shared_ptr<const std::string> text;  ///< what the cells point into
+  Separator separator = Separator::comma;
+  std::shared_ptr<const std::string> text;  ///< what the rows point into
   std::vector<std::string> header;          ///< empty where the file has none
   std::vector<CsvRow> rows;                 ///< at least one
+  int columns = 0;
 };
 
 enum class CsvColumns { exactly, at_least };
-enum class TimeUnit { nanoseconds, by_value };
+
+/// In which unit time stamps are, where the header does not tell: by_frame_rate and by_sample_rate
+/// tell it from their median distance, as that of a camera (0.5 to 500 Hz) or an inertial sensor
+/// (10 to 5000 Hz).
+enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
 /// Reads a table. `names` are the expected columns in their order; an empty name is not checked. A
 /// header, if any, is the line above the first row, with or without '#'; other lines that begin
-/// with '#' are comments. "w_RS_S_x [rad s^-1]" passes for "wx". Throws InputError: no rows, wrong
-/// columns, a cut line.
+/// with '#' are comments. "w_RS_S_x [rad s^-1]" passes for "wx", and so does "gyro_x". Throws
+/// InputError: no rows, wrong columns, a cut line, more than can be kept in memory.
 CsvTable read_csv(const std::filesystem::path& file,
                   const std::vector<std::string>& names,
-                  CsvColumns columns);
+                  CsvColumns columns,
+                  Separator separator = Separator::comma);
 
+/// What stands in a column, without blanks around it.
+std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
 /// A finite number in a cell, or an InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 
 /// The first column as time stamps [ns], strictly ascending, in the unit that the header names
-/// ("timestamp [ns]", "timestamp_s"). Where it names none: `otherwise`; by_value means nanoseconds
-/// for integers above 1e12, else seconds. Throws InputError.
+/// ("timestamp [ns]", "time_ms"), else in `otherwise`. Throws InputError.
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
 [[noreturn]] void csv_fail(const CsvTable& table,

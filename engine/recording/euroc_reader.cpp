@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/euroc_reader.h"
 
+#include "engine/error.h"
 #include "engine/recording/calibration_file.h"
+#include "engine/recording/folder.h"
 #include "engine/recording/gyroscope_file.h"
 #include "engine/recording/picture_files.h"
+#include "engine/recording/text_file.h"
 #include "engine/recording/tracks_reader.h"
 #include "engine/recording/truth_file.h"
 #include "engine/recording/yaml_entry.h"
@@ -18,27 +21,62 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CsvTable read_picture_list(const fs::path& folder) {
-  return read_csv(folder / "cam0" / "data.csv", {"timestamp", ""}, CsvColumns::exactly);
+/// The pictures of cam0: those that data.csv lists, or where there is none those in data, named by
+/// their time stamps.
+struct PictureList {
+  std::vector<std::int64_t> timestamps_ns;
+  std::vector<fs::path> files;
+  std::optional<CsvTable> table;  ///< data.csv
+};
+
+PictureList listed_pictures(const fs::path& cam) {
+  PictureList list;
+  list.table = read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least);
+  list.timestamps_ns = csv_time_stamps(*list.table, TimeUnit::nanoseconds);
+  list.files.reserve(list.table->rows.size());
+  for (const auto& row : list.table->rows) {
+    list.files.push_back(cam / "data" / csv_cell(*list.table, row, 1));
+  }
+  return list;
 }
 
-fs::path picture_file(const fs::path& folder, const CsvRow& row) {
-  return folder / "cam0" / "data" / std::string(row.cells[1]);
+PictureList named_pictures(const fs::path& cam) {
+  PictureList list;
+  list.files = numbered_pictures(cam / "data");
+  for (const auto& file : list.files) {
+    const auto time = parse_integer(file.stem().string());
+    if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back())) {
+      throw InputError(file.string() +
+                       ": found another name, expected a time stamp in nanoseconds, since there is "
+                       "no cam0/data.csv");
+    }
+    list.timestamps_ns.push_back(*time);
+  }
+  return list;
+}
+
+PictureList read_picture_list(const fs::path& folder) {
+  const fs::path cam = folder / "cam0";
+  if (!is_file(cam / "data.csv") && is_folder(cam / "data")) {
+    auto named = named_pictures(cam);
+    if (!named.files.empty()) return named;
+  }
+  return listed_pictures(cam);
 }
 
 void add_pictures(Recording& recording,
-                  const fs::path& folder,
-                  const CsvTable& list,
+                  PictureList list,
                   bool may_be_missing,
                   std::size_t cache_bytes) {
-  std::vector<fs::path> files;
-  for (const auto& row : list.rows) {
-    files.push_back(picture_file(folder, row));
-    if (fs::is_regular_file(files.back())) continue;
+  for (std::size_t i = 0; i < list.files.size(); ++i) {
+    if (is_file(list.files[i])) continue;
     if (may_be_missing) return;
-    csv_fail(list, row.line, "the name of a missing picture", "the file " + files.back().string());
+    csv_fail(*list.table,
+             list.table->rows[i].line,
+             "the name of a missing picture",
+             "the file " + list.files[i].string());
   }
-  recording.pictures = open_picture_files(std::move(files), recording.camera, cache_bytes);
+  add_picture_files(recording, std::move(list.files), cache_bytes);
 }
 
 /// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has
@@ -57,7 +95,7 @@ double positive_number(const YamlEntry& entry, const std::string& expected) {
 
 ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::string>& notes) {
   ImuCalibration result;
-  if (!fs::exists(file)) {
+  if (!is_file(file)) {
     notes.emplace_back("no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
     return result;
   }
@@ -72,86 +110,92 @@ ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::strin
   return result;
 }
 
-/// The first of EuRoC's and TUM-VI's names that is there.
-std::optional<fs::path> truth_file(const fs::path& folder) {
-  for (const char* name : {"state_groundtruth_estimate0", "mocap0"}) {
-    const fs::path file = folder / name / "data.csv";
-    if (fs::exists(file)) return file;
+/// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
+std::optional<fs::path> truth_folder(const fs::path& folder) {
+  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
+    if (is_file(folder / name / "data.csv")) return folder / name;
   }
   return std::nullopt;
 }
 
-GroundTruth camera_truth(const BodyPath& path,
-                         const fs::path& file,
-                         const Pose& T_body_camera,
-                         const std::vector<std::int64_t>& times) {
-  GroundTruth truth;
-  truth.source = (file.parent_path().filename() / file.filename()).string();
-  for (const std::int64_t time : times) {
-    const auto body = pose_at(path, time);
-    truth.poses.push_back(body ? std::optional(*body * T_body_camera) : std::nullopt);
+/// Returns the mean of the gyroscope's bias, where the truth has it.
+std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& folder) {
+  const auto source = truth_folder(folder);
+  if (!source) {
+    recording.truth = truth_beside(folder, recording.timestamps_ns);
+    return std::nullopt;
   }
-  return truth;
+  PosePath path = read_euroc_path(*source / "data.csv");
+  TruthMounting mounting{recording.T_body_camera.value_or(Pose{})};
+  if (const auto sensor = if_file(*source / "sensor.yaml")) {
+    read_truth_clock(*sensor, path, mounting);
+    if (const auto T_BS = find(load_yaml(*sensor), "T_BS")) {
+      mounting.T_measured_camera = inverse(rigid_motion(*T_BS)) * mounting.T_measured_camera;
+    }
+  }
+  recording.truth = camera_truth(
+      path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
+  return path.mean_gyro_bias_rad_s;
 }
 
 void add_gyroscope(Recording& recording,
                    const fs::path& folder,
-                   const Calibration& calibration,
-                   const std::optional<BodyPath>& path,
-                   const Pose& T_body_camera) {
-  const fs::path file = folder / "imu0" / "data.csv";
-  if (!fs::exists(file)) return;
-  Gyroscope gyroscope = read_gyroscope(file, TimeUnit::nanoseconds);
+                   std::int64_t time_offset_ns,
+                   const std::optional<Eigen::Vector3d>& true_mean_bias_rad_s) {
+  const auto file = if_file(folder / "imu0" / "data.csv");
+  if (!file) return;
+  Gyroscope gyroscope = read_gyroscope(*file, TimeUnit::nanoseconds);
   const auto imu = read_imu_calibration(folder / "imu0" / "sensor.yaml", recording.notes);
-  gyroscope.R_gyro_camera = imu.R_body_gyro.transpose() * T_body_camera.R_wc;
-  gyroscope.time_offset_ns = calibration.time_offset_ns;
+  gyroscope.R_gyro_camera =
+      imu.R_body_gyro.transpose() * recording.T_body_camera.value_or(Pose{}).R_wc;
+  gyroscope.time_offset_ns = time_offset_ns;
   if (imu.bias_rad_s) {
     gyroscope.bias_rad_s = *imu.bias_rad_s;
     gyroscope.bias_source = "imu0/sensor.yaml";
-  } else if (path && path->mean_gyro_bias_rad_s) {
-    gyroscope.bias_rad_s = *path->mean_gyro_bias_rad_s;
+  } else if (true_mean_bias_rad_s) {
+    gyroscope.bias_rad_s = *true_mean_bias_rad_s;
     gyroscope.bias_source = "mean of the ground truth's";
   }
   if (imu.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *imu.bias_sigma_rad_s;
   recording.gyroscope = std::move(gyroscope);
 }
 
+/// TUM-VI keeps Kalibr's calibration in `dso`, beside mav0.
 fs::path calibration_of(const fs::path& folder) {
-  fs::path own = folder / "cam0" / "sensor.yaml";
-  fs::path beside = folder / "camera.yaml";
-  return !fs::exists(own) && fs::exists(beside) ? beside : own;
+  const fs::path cam = folder / "cam0" / "sensor.yaml";
+  const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
+  for (const fs::path& file :
+       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}) {
+    if (is_file(file)) return file;
+  }
+  return cam;
 }
 
 }  // namespace
 
 bool euroc_lacks_pictures(const fs::path& folder) {
-  const CsvTable list = read_picture_list(folder);
-  return std::none_of(list.rows.begin(), list.rows.end(), [&](const CsvRow& row) {
-    return fs::is_regular_file(picture_file(folder, row));
-  });
+  const PictureList list = read_picture_list(folder);
+  return std::ranges::none_of(list.files, is_file);
 }
 
 Recording read_euroc(const fs::path& folder,
                      const std::optional<fs::path>& tracks,
                      std::size_t cache_bytes) {
   Recording recording;
-  const auto calibration = read_calibration(calibration_of(folder));
+  const fs::path calibration_file = calibration_of(folder);
+  const auto calibration = read_calibration(calibration_file);
   recording.camera = calibration.camera;
-  const CsvTable list = read_picture_list(folder);
-  recording.timestamps_ns = csv_time_stamps(list, TimeUnit::nanoseconds);
-  add_pictures(recording, folder, list, tracks.has_value(), cache_bytes);
+  recording.T_body_camera = calibration.T_body_camera;
+  PictureList list = read_picture_list(folder);
+  recording.timestamps_ns = list.timestamps_ns;
+  add_pictures(recording, std::move(list), tracks.has_value(), cache_bytes);
   recording.layout = recording.pictures ? Layout::euroc : Layout::tracks;
   if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
 
-  const Pose T_body_camera = calibration.T_body_camera.value_or(Pose{});
-  std::optional<BodyPath> path;
-  if (const auto file = truth_file(folder)) {
-    path = read_body_path(*file);
-    recording.truth = camera_truth(*path, *file, T_body_camera, recording.timestamps_ns);
-  }
-  add_gyroscope(recording, folder, calibration, path, T_body_camera);
+  const auto mean_bias = add_truth(recording, folder);
+  add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
-    recording.notes.push_back("no T_BS in " + calibration_of(folder).filename().string() +
+    recording.notes.push_back("no T_BS in " + calibration_file.filename().string() +
                               ": the camera's axes are taken as the body's");
   }
   return recording;

@@ -9,8 +9,9 @@
 
 namespace gpo {
 
-/// The samples of imu0/data.csv or gyro.csv: time stamp, then rates [rad/s]; further columns
-/// (accelerometer) are passed over. Axes and bias are left at their defaults. Throws InputError.
+/// The samples of imu0/data.csv, gyro.csv or gyro_accel.csv: time stamp, then rates [rad/s] (or
+/// [deg/s], where the header says so), then accelerations if there are any; further columns are
+/// passed over. Axes and bias are left at their defaults. Throws InputError.
 Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit);
 
 }  // namespace gpo

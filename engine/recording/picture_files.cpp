@@ -3,12 +3,14 @@
 #include "engine/recording/picture_files.h"
 
 #include "engine/error.h"
+#include "engine/recording/folder.h"
 #include "engine/recording/picture_header.h"
 #include "engine/recording/text_file.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -182,33 +184,58 @@ cv::Mat read_picture(const std::filesystem::path& file) {
   cv::Mat picture;
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    picture = cv::imdecode(buffer, cv::IMREAD_COLOR);
+    picture = cv::imdecode(buffer, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
   } catch (const cv::Exception&) {
     picture.release();
   }
-  if (picture.empty()) refuse_format(file);
+  if (picture.empty() || picture.depth() > CV_16U || picture.depth() == CV_8S) {
+    refuse_format(file);
+  }
   return picture;
 }
 
-void check_size(const std::filesystem::path& file, const cv::Mat& picture, const Camera& camera) {
-  if (picture.cols == camera.width && picture.rows == camera.height) return;
+int significant_bits(const cv::Mat& picture) {
+  if (picture.depth() == CV_8U) return 8;
+  double largest = 0;
+  cv::minMaxLoc(picture.reshape(1), nullptr, &largest);
+  for (const int bits : {10, 12, 14}) {
+    if (largest < std::exp2(bits)) return bits;
+  }
+  return 16;
+}
+
+cv::Mat to_8_bits(const cv::Mat& picture, int bits) {
+  if (picture.depth() == CV_8U) return picture;
+  cv::Mat reduced;
+  picture.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
+  return reduced;
+}
+
+void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera) {
+  if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
   const auto shown = [](int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
   };
-  throw InputError(file.string() + ": found a picture of " + shown(picture.cols, picture.rows) +
+  throw InputError(file.string() + ": found a picture of " + shown(size.width, size.height) +
                    ", expected the calibrated resolution " + shown(camera.width, camera.height));
 }
 
-std::shared_ptr<const FrameCache> open_picture_files(std::vector<std::filesystem::path> files,
-                                                     const Camera& camera,
-                                                     std::size_t cache_bytes) {
+void add_picture_files(Recording& recording,
+                       std::vector<std::filesystem::path> files,
+                       std::size_t cache_bytes) {
   const int count = static_cast<int>(files.size());
-  const auto decode = [files = std::move(files), camera](int index) {
-    cv::Mat picture = read_picture(files[index]);
-    check_size(files[index], picture, camera);
-    return picture;
+  const cv::Mat first = read_picture(files.front());
+  Camera& camera = recording.camera;
+  check_size(files.front(), first.size(), camera);
+  camera.width = first.cols;
+  camera.height = first.rows;
+  recording.picture_files = files;
+  const auto decode = [files = std::move(files), camera, bits = significant_bits(first)](int i) {
+    const cv::Mat picture = read_picture(files[i]);
+    check_size(files[i], picture.size(), camera);
+    return to_8_bits(picture, bits);
   };
-  return std::make_shared<const FrameCache>(count, decode, cache_bytes);
+  recording.pictures = std::make_shared<const FrameCache>(count, decode, cache_bytes);
 }
 
 bool is_picture_name(const std::filesystem::path& file) {
@@ -220,10 +247,9 @@ bool is_picture_name(const std::filesystem::path& file) {
 
 std::vector<std::filesystem::path> numbered_pictures(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string stem = entry.path().stem().string();
-    const bool numbered = stem.find_first_of("0123456789") != std::string::npos;
-    if (numbered && is_picture_name(entry.path())) files.push_back(entry.path());
+  for (const auto& file : files_in(folder)) {
+    const bool numbered = file.stem().string().find_first_of("0123456789") != std::string::npos;
+    if (numbered && is_picture_name(file)) files.push_back(file);
   }
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
     return natural_less(a.filename().string(), b.filename().string());

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
-#include "engine/recording/frame_cache.h"
+#include "engine/recording/recording.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -14,16 +13,26 @@
 
 namespace gpo {
 
-/// Decodes a picture file to BGR, 8 bits. Throws InputError where it is missing, cut or broken; a
-/// half picture is never returned.
+/// Decodes a picture file: blue, green, red, of 8 or 16 bits each. Throws InputError where it is
+/// missing, cut or broken; a half picture is never returned.
 cv::Mat read_picture(const std::filesystem::path& file);
 
-/// Throws InputError where the picture has not the size that the camera was calibrated for.
-void check_size(const std::filesystem::path& file, const cv::Mat& picture, const Camera& camera);
+/// How many bits of a picture's pixels are used, judged by the brightest: 8, 10, 12, 14 or 16.
+/// Cameras of 10 or 12 bits store those in pictures of 16.
+int significant_bits(const cv::Mat& picture);
 
-std::shared_ptr<const FrameCache> open_picture_files(std::vector<std::filesystem::path> files,
-                                                     const Camera& camera,
-                                                     std::size_t cache_bytes);
+/// CV_8UC3; brighter than `bits` allow is white.
+cv::Mat to_8_bits(const cv::Mat& picture, int bits);
+
+/// Throws InputError where a picture has not the size that the camera was calibrated for; any size
+/// passes where that is 0x0, not known.
+void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
+
+/// Opens at least one file as the recording's pictures. The first decides how many bits are
+/// significant, and the camera's size where the calibration does not tell it. Throws InputError.
+void add_picture_files(Recording& recording,
+                       std::vector<std::filesystem::path> files,
+                       std::size_t cache_bytes);
 
 /// Whether the file's name ends like that of a picture (png, jpg, ...).
 bool is_picture_name(const std::filesystem::path& file);

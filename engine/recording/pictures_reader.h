@@ -8,8 +8,10 @@
 
 namespace gpo {
 
-/// Reads a video, or a folder with a video or with numbered pictures, and camera.yaml, gyro.csv and
-/// frame_timestamps.txt beside them. With `tracks` there need be no pictures. Throws InputError.
+/// Reads a video, or a folder with a video or with numbered pictures (in it, or in its folder
+/// images, frames, rgb or data), and beside them a calibration, gyro.csv or gyro_accel.csv,
+/// frame_timestamps.txt and groundtruth.txt. With `tracks` there need be no pictures. Throws
+/// InputError.
 Recording read_pictures(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& tracks,
                         std::size_t cache_bytes);

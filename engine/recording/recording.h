@@ -18,7 +18,7 @@
 
 namespace gpo {
 
-enum class Layout { euroc, pictures, tracks };  ///< contract.md's layouts 1, 3 and 4
+enum class Layout { euroc, tum_rgbd, pictures, tracks };  ///< contract.md's layouts 1 to 4
 
 /// A gyroscope's samples, strictly ascending in time, all finite.
 struct Gyroscope {
@@ -26,6 +26,8 @@ struct Gyroscope {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<int> lines;                    ///< of each sample in `file`, for messages about a gap
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< in the gyroscope's own axes
+  std::vector<Eigen::Vector3d>
+      accelerations_m_s2;  ///< as many, or none; only handed on by `convert`
   Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
@@ -33,17 +35,35 @@ struct Gyroscope {
   std::string bias_source = "none: zero";  ///< where the bias comes from, for people
 };
 
-/// True camera poses, one entry a frame; nothing where a frame has none.
-struct GroundTruth {
-  std::string source;                      ///< file name, for people
-  std::vector<std::optional<Pose>> poses;  ///< in the truth's world [m]
+/// How sure a pose is that was computed from a picture of a board: standard deviations, roots of
+/// the covariances' traces, from the noise that the fit's residuals show. Of an error in the
+/// calibration, in the board's size or its flatness they know nothing.
+struct PoseUncertainty {
+  double rms_px = 0;              ///< distance of the board's corners from where the pose puts them
+  double position_sigma_m = 0;    ///< of the camera in the board's frame
+  double rotation_sigma_deg = 0;  ///< of the camera
+  double normal_sigma_deg = 0;    ///< of the board's normal in the camera's frame
 };
 
-/// A chessboard on the true plane.
+/// True camera poses, one entry a frame; nothing where a frame has none.
+struct GroundTruth {
+  std::string source;                                           ///< file name, for people
+  std::vector<std::optional<Pose>> poses;                       ///< in the truth's world [m]
+  std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< as `poses`; empty: not known
+};
+
+/// ArUco markers in the light squares of a board.
+struct BoardMarkers {
+  double side_m = 0;       ///< of a marker, with its black border
+  std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
+};
+
+/// A chessboard on the true plane, or a ChArUco board: one with markers.
 struct Board {
-  int columns = 0;      ///< inner corners along a row
-  int rows = 0;         ///< inner corners along a column
-  double square_m = 0;  ///< side of a square
+  int columns = 0;                        ///< inner corners along a row
+  int rows = 0;                           ///< inner corners along a column
+  double square_m = 0;                    ///< side of a square
+  std::optional<BoardMarkers> markers{};  ///< of a ChArUco board; none: a plain chessboard
 };
 
 /// One observation of a track that somebody else's front end made.
@@ -59,8 +79,11 @@ struct Recording {
   std::string name;  ///< last component of the path
   Layout layout = Layout::euroc;
   Camera camera;
+  std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
   std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
   std::shared_ptr<const FrameCache> pictures;  ///< null where there are none
+  /// Where `pictures` come from: a video, or one file a frame; empty where they are not from files.
+  std::vector<std::filesystem::path> picture_files;
   std::optional<Gyroscope> gyroscope;
   std::optional<GroundTruth> truth;  ///< from a file; truth from the board is computed on demand
   std::optional<Plane> plane;        ///< true plane, in the truth's world

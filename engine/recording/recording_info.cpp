@@ -3,6 +3,7 @@
 #include "engine/recording/recording_info.h"
 
 #include "engine/recording/board_truth.h"
+#include "engine/recording/calibration_file.h"
 #include "engine/recording/timestamps.h"
 
 #include <algorithm>
@@ -23,12 +24,8 @@ constexpr double kGyroGap = 5;
 
 const char* layout_name(Layout layout) {
   if (layout == Layout::euroc) return "EuRoC";
+  if (layout == Layout::tum_rgbd) return "TUM RGB-D";
   return layout == Layout::pictures ? "pictures" : "tracks";
-}
-
-const char* distortion_name(Distortion distortion) {
-  if (distortion == Distortion::none) return "none";
-  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
 }
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -67,26 +64,31 @@ GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& re
   return info;
 }
 
+int known_count(const GroundTruth& truth) {
+  return static_cast<int>(std::count_if(
+      truth.poses.begin(), truth.poses.end(), [](const auto& pose) { return pose.has_value(); }));
+}
+
 TruthInfo examine_board(const Recording& recording) {
   const int frames = recording.frame_count();
   const int count = frames <= kMostFramesExamined ? frames : kSample;
-  TruthInfo info{"chessboard (board.yaml)", 0, count};
+  std::vector<int> sample;
   for (int i = 0; i < count; ++i) {
-    const int frame =
-        count == 1 ? 0 : static_cast<int>(std::int64_t{i} * (frames - 1) / (count - 1));
-    const auto truth = board_truth(recording, frame, 1);
-    info.frames += truth.poses[0] ? 1 : 0;
+    sample.push_back(count == 1 ? 0
+                                : static_cast<int>(std::int64_t{i} * (frames - 1) / (count - 1)));
   }
-  return info;
+  const GroundTruth truth = board_truth(recording, sample);
+  return {truth.source + " (board.yaml)",
+          known_count(truth),
+          count,
+          median_uncertainty(truth.uncertainties)};
 }
 
 std::optional<TruthInfo> describe_truth(const Recording& recording) {
   if (recording.truth) {
-    const auto& poses = recording.truth->poses;
-    const auto known = std::count_if(
-        poses.begin(), poses.end(), [](const auto& pose) { return pose.has_value(); });
-    return TruthInfo{
-        recording.truth->source, static_cast<int>(known), static_cast<int>(poses.size())};
+    return TruthInfo{recording.truth->source,
+                     known_count(*recording.truth),
+                     static_cast<int>(recording.truth->poses.size())};
   }
   if (recording.board && recording.pictures) return examine_board(recording);
   return std::nullopt;
@@ -182,6 +184,29 @@ void add_truth(Table& table, const RecordingInfo& info) {
                         info.truth->frames,
                         info.truth->examined,
                         sampled ? " looked at" : ""));
+  if (const auto& u = info.truth->uncertainty) table.row("  certain to", uncertainty_text(*u));
+}
+
+std::string board_text(const Board& board) {
+  const std::string counts = fmt::format(
+      "{} x {} inner corners, squares of {:g} mm", board.columns, board.rows, board.square_m * 1e3);
+  if (!board.markers) return fmt::format("chessboard, {}", counts);
+  return fmt::format("ChArUco, {}, markers of {:g} mm from {}",
+                     counts,
+                     board.markers->side_m * 1e3,
+                     board.markers->dictionary);
+}
+
+nlohmann::json to_json(const Board& board) {
+  nlohmann::json json = {{"pattern", board.markers ? "charuco" : "chessboard"},
+                         {"columns", board.columns},
+                         {"rows", board.rows},
+                         {"square_m", board.square_m}};
+  if (board.markers) {
+    json["marker_m"] = board.markers->side_m;
+    json["dictionary"] = board.markers->dictionary;
+  }
+  return json;
 }
 
 }  // namespace
@@ -230,14 +255,17 @@ nlohmann::json to_json(const RecordingInfo& info) {
   if (const auto& truth = info.truth) {
     json["ground_truth"] = {
         {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
+    if (const auto& u = truth->uncertainty) {
+      json["ground_truth"]["rms_px"] = u->rms_px;
+      json["ground_truth"]["position_sigma_m"] = u->position_sigma_m;
+      json["ground_truth"]["rotation_sigma_deg"] = u->rotation_sigma_deg;
+      json["ground_truth"]["normal_sigma_deg"] = u->normal_sigma_deg;
+    }
   }
   if (info.plane) {
     json["plane"] = {{"normal", to_json(info.plane->normal)}, {"distance", info.plane->distance}};
   }
-  if (const auto& board = info.board) {
-    json["board"] = {
-        {"columns", board->columns}, {"rows", board->rows}, {"square_m", board->square_m}};
-  }
+  if (info.board) json["board"] = to_json(*info.board);
   if (const auto& tracks = info.tracks) {
     json["tracks"] = {{"count", tracks->tracks},
                       {"observations", tracks->observations},
@@ -267,12 +295,7 @@ std::string to_text(const RecordingInfo& info) {
   } else {
     table.row("plane", "unknown");
   }
-  table.row("board",
-            info.board ? fmt::format("chessboard, {} x {} inner corners, squares of {:g} mm",
-                                     info.board->columns,
-                                     info.board->rows,
-                                     info.board->square_m * 1e3)
-                       : "none");
+  table.row("board", info.board ? board_text(*info.board) : "none");
   if (info.tracks) {
     table.row("tracks",
               fmt::format("{}, {} observations, the longest {} frames",

@@ -34,6 +34,7 @@ struct TruthInfo {
   std::string source;
   int frames = 0;    ///< that have a pose, of those looked at
   int examined = 0;  ///< fewer than the recording has where the board is sought in a sample only
+  std::optional<PoseUncertainty> uncertainty{};  ///< medians, of a truth from a board
 };
 
 struct TracksInfo {
@@ -61,8 +62,8 @@ struct RecordingInfo {
   std::vector<std::string> notes;
 };
 
-/// Looks for the board in every frame (of a long recording: in a regular sample), which takes some
-/// 20 ms a frame. Throws InputError for pictures that cannot be decoded.
+/// Looks for the board in every frame (of more than 300: in a regular sample), which takes some 20
+/// ms a frame and processor, once. Throws InputError for pictures that cannot be decoded.
 RecordingInfo describe(const Recording& recording);
 
 nlohmann::json to_json(const RecordingInfo& info);

@@ -5,13 +5,20 @@
 #include "engine/recording/recording.h"
 
 #include <filesystem>
+#include <string>
 
 namespace gpo {
 
-/// board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}. Throws InputError.
+/// board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, columns and rows of inner
+/// corners; or {pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, dictionary:
+/// DICT_5X5_100}, squares in x and y. Throws InputError.
 Board read_board(const std::filesystem::path& file);
 
 /// plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
 Plane read_plane(const std::filesystem::path& file);
+
+/// What the two read.
+std::string board_yaml(const Board& board);
+std::string plane_yaml(const Plane& plane);
 
 }  // namespace gpo

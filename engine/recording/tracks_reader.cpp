@@ -34,25 +34,20 @@ std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                     csv_integer(table, row, 1),
                     {csv_number(table, row, 2), csv_number(table, row, 3)}});
   }
+  const auto key = [](const TrackObservation& o) { return std::tuple(o.frame, o.track); };
   std::vector<std::size_t> order(read.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t i) { return std::tuple(read[i].frame, read[i].track, i); };
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
-  std::vector<TrackObservation> sorted;
-  sorted.reserve(read.size());
-  for (const std::size_t i : order) {
-    const bool again = !sorted.empty() && sorted.back().frame == read[i].frame &&
-                       sorted.back().track == read[i].track;
-    if (again) {
-      csv_fail(table,
-               table.rows[i].line,
-               "track " + std::to_string(read[i].track) + " a second time in frame " +
-                   std::to_string(read[i].frame),
-               "one row a frame and track");
-    }
-    sorted.push_back(read[i]);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return key(read[i]); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (key(read[order[i]]) != key(read[order[i - 1]])) continue;
+    csv_fail(table,
+             table.rows[order[i]].line,
+             "track " + std::to_string(read[order[i]].track) + " a second time in frame " +
+                 std::to_string(read[order[i]].frame),
+             "one row a frame and track");
   }
-  return sorted;
+  std::ranges::sort(read, {}, key);
+  return read;
 }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/geometry/pose.h"
+#include "engine/recording/recording.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,20 +14,46 @@
 
 namespace gpo {
 
-/// Body poses over time, as EuRoC stores them.
-struct BodyPath {
-  std::vector<std::int64_t> timestamps_ns;  ///< strictly ascending
-  std::vector<Pose> T_world_body;
-  std::int64_t median_period_ns = 0;
+/// Poses over time of the frame that a truth file measures: the body, a camera, a set of markers.
+struct PosePath {
+  std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
+  std::vector<Pose> poses;                              ///< in the truth's world [m]
+  std::int64_t longest_gap_ns = 0;                      ///< over which it is interpolated
   std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< where the file has the columns
 };
 
-/// state_groundtruth_estimate0/data.csv or mocap0/data.csv: time stamp, p, q_wxyz, and in EuRoC's
-/// own files v, b_w, b_a. Throws InputError.
-BodyPath read_body_path(const std::filesystem::path& file);
+/// EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz, and in
+/// EuRoC's own files v, b_w, b_a. Gaps of up to three median periods may be interpolated. Throws
+/// InputError.
+PosePath read_euroc_path(const std::filesystem::path& file);
+
+/// TUM's groundtruth.txt: seconds, p, q_xyzw, separated by blanks. Throws InputError.
+PosePath read_tum_path(const std::filesystem::path& file);
 
 /// The pose at a time, slerp and linear between the two samples around it; nothing where these are
-/// more than three (median) sample periods apart, or the time is outside of the path.
-std::optional<Pose> pose_at(const BodyPath& path, std::int64_t time_ns);
+/// further apart than the longest gap, or the time is outside of the path.
+std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
+
+/// Where the measured frame is, and how its clock runs.
+struct TruthMounting {
+  Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
+  std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
+};
+
+/// Camera poses at the frames' times. `source` is for people.
+GroundTruth camera_truth(const PosePath& path,
+                         const TruthMounting& mounting,
+                         std::string source,
+                         const std::vector<std::int64_t>& frame_times_ns);
+
+/// The optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth file.
+/// Throws InputError.
+void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
+
+/// Of a groundtruth.txt beside the recording, with the hand-eye calibration `T_truth_camera` and
+/// the clock of groundtruth.yaml, if there is one; nothing without groundtruth.txt. Throws
+/// InputError.
+std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+                                        const std::vector<std::int64_t>& frame_times_ns);
 
 }  // namespace gpo

@@ -13,17 +13,15 @@
 
 namespace gpo {
 
-/// A video whose every frame was counted and timed by decoding it once.
 struct VideoFile {
-  std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, first as stored
+  std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, the first is 0
   std::shared_ptr<const FrameCache> pictures;
 };
 
-/// Throws InputError where it cannot be opened, is cut, or has another size than the camera.
-/// Frames come out exactly as sequential decoding gives them, in whatever order they are asked for.
-VideoFile open_video(const std::filesystem::path& file,
-                     const Camera& camera,
-                     std::size_t cache_bytes);
+/// Opens a video without decoding it; times are the container's, also of a variable frame rate. The
+/// camera's size is the video's where the calibration does not tell it. Throws InputError where it
+/// cannot be opened, is cut, or has another size than the camera.
+VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
 
 /// Whether the file's name ends in mp4, avi, mov or mkv.
 bool is_video_name(const std::filesystem::path& file);

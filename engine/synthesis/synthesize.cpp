@@ -4,6 +4,10 @@
 
 #include "engine/error.h"
 #include "engine/output_file.h"
+#include "engine/output_folder.h"
+#include "engine/recording/calibration_file.h"
+#include "engine/recording/euroc_writer.h"
+#include "engine/recording/sidecar_files.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
 
@@ -31,35 +35,20 @@ std::string join(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
 
-std::string transformation(const Pose& pose) {
-  std::string rows;
-  for (int i = 0; i < 3; ++i) {
-    rows += fmt::format("         {}, {}, {}, {},\n",
-                        pose.R_wc(i, 0),
-                        pose.R_wc(i, 1),
-                        pose.R_wc(i, 2),
-                        pose.p_wc[i]);
-  }
-  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
-}
-
 std::string camera_yaml(const Recipe& recipe) {
   const Camera& camera = recipe.camera;
-  const char* model = camera.distortion == Distortion::none          ? "none"
-                      : camera.distortion == Distortion::equidistant ? "equidistant"
-                                                                     : "radial-tangential";
   std::string text = fmt::format(
       "# Synthesized: exact.\nsensor_type: camera\ncomment: synthesized\n\n"
       "# Camera in the axes of the body (the IMU).\n{}\n"
       "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
       "intrinsics: {}  # fx, fy, cx, cy\n"
       "distortion_model: {}\ndistortion_coefficients: {}\n",
-      transformation(recipe.T_body_camera),
+      transformation_yaml(recipe.T_body_camera),
       recipe.frame_rate,
       camera.width,
       camera.height,
       join(std::vector{camera.fx, camera.fy, camera.cx, camera.cy}),
-      model,
+      distortion_name(camera.distortion),
       join(camera.coefficients));
   if (recipe.picture.rolling_shutter > 0) {
     text += fmt::format("rolling_shutter: {}  # [s] from first to last row; stamp: middle row\n",
@@ -75,7 +64,7 @@ std::string imu_yaml(const GyroscopeRecipe& gyroscope) {
       "gyroscope_noise_density: {}  # [rad/s/sqrt(Hz)]\n"
       "gyroscope_random_walk: 0.0\naccelerometer_noise_density: 0.0\n"
       "accelerometer_random_walk: 0.0\n",
-      transformation(Pose{}),
+      transformation_yaml(Pose{}),
       gyroscope.rate,
       gyroscope.noise_density);
   if (gyroscope.calibrated_bias) {
@@ -217,36 +206,10 @@ void write_recording(const Recipe& recipe,
              "# The desk, in the world of the ground truth.\nnormal: [0, 0, 1]\ndistance: 0\n");
   if (recipe.desk.board) {
     const BoardRecipe& board = *recipe.desk.board;
-    write_file(folder / "board.yaml",
-               fmt::format("# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\n"
-                           "square: {}\n",
-                           board.columns,
-                           board.rows,
-                           board.square));
+    write_file(folder / "board.yaml", board_yaml({board.columns, board.rows, board.square}));
   }
   write_pictures(recipe, mav / "cam0", progress, threads);
 }
-
-/// A folder beside the output that goes away unless it became the output.
-struct TemporaryFolder {
-  fs::path path;
-  explicit TemporaryFolder(fs::path where) : path(std::move(where)) {
-    std::error_code error;
-    fs::remove_all(path, error);
-    fs::create_directories(path, error);
-    if (error) {
-      throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
-                                   path.string(),
-                                   error.message()));
-    }
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
 
 }  // namespace
 
@@ -274,15 +237,9 @@ void synthesize(const Recipe& recipe,
                 const fs::path& output,
                 const SynthesisProgress& progress,
                 int threads) {
-  const fs::path target = fs::absolute(output / "").parent_path();
-  if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target))) {
-    throw InputError(fmt::format(
-        "{}: found something there already, expected no folder or an empty one", output.string()));
-  }
-  const TemporaryFolder unfinished(target.string() + ".unfinished");
-  write_recording(recipe, unfinished.path, progress, threads);
-  fs::remove(target);
-  fs::rename(unfinished.path, target);
+  UnfinishedFolder unfinished(output);
+  write_recording(recipe, unfinished.path(), progress, threads);
+  unfinished.finish();
 }
 
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/initializers/methods.h"
+#include "engine/recording/board_truth.h"
 #include "engine/recording/timestamps.h"
 #include "ui/panels/uncertainty_facts.h"
 
@@ -39,6 +40,18 @@ ResultRow metric(std::string label,
   return {std::move(label), text(*value), "", std::move(meaning)};
 }
 
+/// How sure a truth from the board is; nothing where it is from a file.
+std::optional<ResultRow> truth_row(const Inspection& inspection) {
+  if (!inspection.truth) return std::nullopt;
+  const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
+  if (!uncertainty) return std::nullopt;
+  return ResultRow{"Truth",
+                   "\u00b1" + angle_text(uncertainty->normal_sigma_deg),
+                   "normal",
+                   "The truth is from the board, certain to " + uncertainty_text(*uncertainty) +
+                       ". Of errors in the calibration this knows nothing"};
+}
+
 ResultGroup metrics_group(const Inspection& inspection) {
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
   const std::string why = why_no_metric(inspection);
@@ -52,24 +65,27 @@ ResultGroup metrics_group(const Inspection& inspection) {
     pne.note = "bound " + angle_text(*e.pne_bound_deg);
     pne.tooltip += ". The Cramer-Rao bound says how small it can be with these tracks";
   }
-  return {"AGAINST THE TRUTH",
-          {pne,
-           metric("PNE aligned",
-                  e.pne_aligned_deg,
-                  angle_text,
-                  "Plane normal error after aligning the camera paths, the paper's way",
-                  why_unaligned),
-           metric("PDE",
-                  e.pde_m,
-                  length_text,
-                  "Plane distance error, from the reference camera, in the scale of the alignment",
-                  why_unaligned),
-           metric("ATE",
-                  e.ate_m,
-                  length_text,
-                  "Absolute trajectory error: root mean square distance of the aligned camera "
-                  "centers to the true ones",
-                  why_unaligned)}};
+  ResultGroup group{
+      "AGAINST THE TRUTH",
+      {pne,
+       metric("PNE aligned",
+              e.pne_aligned_deg,
+              angle_text,
+              "Plane normal error after aligning the camera paths, the paper's way",
+              why_unaligned),
+       metric("PDE",
+              e.pde_m,
+              length_text,
+              "Plane distance error, from the reference camera, in the scale of the alignment",
+              why_unaligned),
+       metric("ATE",
+              e.ate_m,
+              length_text,
+              "Absolute trajectory error: root mean square distance of the aligned camera "
+              "centers to the true ones",
+              why_unaligned)}};
+  if (const auto row = truth_row(inspection)) group.rows.push_back(*row);
+  return group;
 }
 
 ResultGroup result_group(const Inspection& inspection) {
@@ -164,7 +180,7 @@ std::string why_no_rotations(const Recording& recording, RotationSource source) 
   }
   const bool truth = recording.truth || (recording.board && recording.pictures);
   if (source == RotationSource::truth && !truth) {
-    return "The recording has neither ground truth nor a chessboard to compute it from";
+    return "The recording has neither ground truth nor a board to compute it from";
   }
   return "";
 }

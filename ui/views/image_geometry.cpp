@@ -30,17 +30,6 @@ double fitting_scale(const Camera& camera, const ScreenRect& rect) {
   return std::max(rect.size.cwiseQuotient(size_of(camera)).minCoeff(), 1e-6);
 }
 
-/// Raw pixel; nothing where the lens model folds back, far outside of what was calibrated.
-std::optional<Vector2d> visible_pixel(const Camera& camera, const Vector3d& point_c) {
-  const Vector2d raw = project(camera, point_c);
-  if (!raw.allFinite()) return std::nullopt;
-  if (camera.distortion == Distortion::none) return raw;
-  const Vector2d back = undistort(camera, raw);
-  const Vector2d ideal = project_undistorted(camera, point_c);
-  if (!((back - ideal).norm() < 0.01)) return std::nullopt;
-  return raw;
-}
-
 /// The longest stretch of the segment that the camera sees.
 std::vector<Vector2d> segment_in_picture(const Camera& camera,
                                          Vector3d a_c,
@@ -55,9 +44,9 @@ std::vector<Vector2d> segment_in_picture(const Camera& camera,
   std::vector<Vector2d> longest, run;
   for (int i = 0; i <= kPiecesOfAnEdge; ++i) {
     const double s = static_cast<double>(i) / kPiecesOfAnEdge;
-    const Vector3d point_c = (1 - s) * a_c + s * b_c;
-    if (const auto pixel = visible_pixel(camera, point_c))
-      run.push_back(*pixel);
+    const Vector2d raw_px = project(camera, (1 - s) * a_c + s * b_c);
+    if (raw_px.allFinite())
+      run.push_back(raw_px);
     else
       run.clear();
     if (run.size() > longest.size()) longest = run;

@@ -5,10 +5,10 @@
 #include "engine/error.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
+#include "engine/user_folders.h"
 #include "ui/workbench/session_file.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <nlohmann/json.hpp>
 
@@ -19,13 +19,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRecent = 10;
-
-fs::path state_folder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  const char* home = std::getenv("HOME");
-  if (state != nullptr && *state == '/') return fs::path(state) / "gpo-inspector";
-  return fs::path(home != nullptr ? home : ".") / ".local" / "state" / "gpo-inspector";
-}
 
 void write_quietly(const fs::path& file, const std::string& text) {
   std::error_code none;
@@ -45,11 +38,11 @@ Json read_quietly(const fs::path& file) {
   }
 }
 
-fs::path recent_list() { return state_folder() / "recent.json"; }
+fs::path recent_list() { return user_state_folder() / "recent.json"; }
 
 }  // namespace
 
-fs::path last_session_file() { return state_folder() / "last-session.json"; }
+fs::path last_session_file() { return user_state_folder() / "last-session.json"; }
 
 void save_last_session(const WorkbenchState& state) {
   if (state.recording) write_quietly(last_session_file(), session_text(state));

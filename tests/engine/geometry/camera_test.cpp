@@ -32,6 +32,22 @@ std::vector<Camera> cameras() {
           radial_tangential({0.13729, -0.30795, -0.005645, 0.004256}),
           radial_tangential({-0.28, 0.07, 0.0002, 0.00002, -0.01}),
           radial_tangential({0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003}),
+          radial_tangential(
+              {0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003, 1e-3, -2e-3, 5e-4, 1e-3}),
+          radial_tangential({0.1,
+                             -0.05,
+                             0.001,
+                             -0.002,
+                             0.01,
+                             0.02,
+                             -0.01,
+                             0.003,
+                             1e-3,
+                             -2e-3,
+                             5e-4,
+                             1e-3,
+                             0.02,
+                             -0.03}),
           equidistant()};
 }
 
@@ -70,6 +86,75 @@ TEST(Camera, UndistortIsTheInverseOfDistort) {
       }
     }
   }
+}
+
+Eigen::Vector2d opencv_undistorted(const Camera& camera, const Eigen::Vector2d& raw) {
+  const std::vector<cv::Point2d> pixels{{raw.x(), raw.y()}};
+  cv::Mat K;
+  cv::eigen2cv(intrinsic_matrix(camera), K);
+  std::vector<cv::Point2d> ideal;
+  const cv::TermCriteria exact(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 500, 1e-12);
+  if (camera.distortion == Distortion::equidistant) {
+    cv::fisheye::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
+  } else {
+    cv::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
+  }
+  return {ideal[0].x, ideal[0].y};
+}
+
+TEST(Camera, UndistortsAsOpenCvDoes) {
+  for (const Camera& camera : cameras()) {
+    if (camera.distortion == Distortion::none) continue;
+    for (double u = 0.2 * camera.width; u < 0.8 * camera.width; u += 37) {
+      for (double v = 0.2 * camera.height; v < 0.8 * camera.height; v += 41) {
+        const Eigen::Vector2d raw(u, v);
+        EXPECT_LT((undistort(camera, raw) - opencv_undistorted(camera, raw)).norm(), 1e-4)
+            << u << " " << v << " " << camera.coefficients.size();
+      }
+    }
+  }
+}
+
+/// r (1 + k1 r^2) rises up to r = 1 / sqrt(-3 k1), where the picture ends at 2/3 of that.
+TEST(Camera, DropsWhatIsBeyondTheValidRadius) {
+  const double k1 = -0.5;
+  const double fold = 1 / std::sqrt(-3 * k1);
+  const Camera camera = radial_tangential({k1, 0, 0, 0});
+  const Eigen::Vector2d center(camera.cx, camera.cy);
+  for (const double r : {0.5 * fold, 0.999 * fold}) {
+    const Eigen::Vector3d point(r, 0, 1);
+    const Eigen::Vector2d raw = project(camera, point);
+    EXPECT_NEAR(raw.x(), camera.cx + camera.fx * r * (1 + k1 * r * r), 1e-9);
+    EXPECT_LT((undistort(camera, raw) - project_undistorted(camera, point)).norm(), 1e-6);
+  }
+  for (const double r : {1.001 * fold, 2 * fold, 50 * fold}) {
+    EXPECT_FALSE(project(camera, Eigen::Vector3d(0, r, 1)).allFinite()) << r;
+  }
+  const Eigen::Vector2d edge(camera.fx * fold * 2 / 3, 0);
+  EXPECT_TRUE(undistort(camera, center + 0.999 * edge).allFinite());
+  EXPECT_FALSE(undistort(camera, center + 1.001 * edge).allFinite());
+}
+
+/// A polynomial that folds back and rises again: only the first branch is the lens.
+TEST(Camera, DoesNotTakeTheBranchBeyondTheFold) {
+  const Camera camera = radial_tangential({-1.2, 0.5, 0, 0});  // falls between r = 0.58 and 1.09
+  EXPECT_TRUE(project(camera, {0.5, 0, 1}).allFinite());
+  EXPECT_FALSE(project(camera, {0.8, 0, 1}).allFinite());
+  EXPECT_FALSE(project(camera, {1.5, 0, 1}).allFinite());
+  for (double x = camera.cx; x < 20000; x += 10) {
+    const Eigen::Vector2d ideal = undistort(camera, {x, camera.cy});
+    if (ideal.allFinite()) EXPECT_LT((ideal.x() - camera.cx) / camera.fx, 0.62) << x;
+  }
+}
+
+TEST(Camera, DropsWhatIsBeyondTheFisheyesValidAngle) {
+  Camera camera = equidistant();
+  camera.coefficients = {-0.3, 0, 0, 0};  // theta - 0.3 theta^3 rises up to 1.054 rad
+  EXPECT_TRUE(project(camera, {std::tan(1.05), 0, 1}).allFinite());
+  EXPECT_FALSE(project(camera, {std::tan(1.06), 0, 1}).allFinite());
+  const double edge = camera.fx * 1.0541 * 2 / 3;
+  EXPECT_TRUE(undistort(camera, {camera.cx + 0.99 * edge, camera.cy}).allFinite());
+  EXPECT_FALSE(undistort(camera, {camera.cx + 1.01 * edge, camera.cy}).allFinite());
 }
 
 TEST(Camera, SaysNanWhereTheModelHasNoInverse) {

@@ -77,6 +77,72 @@ TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
   EXPECT_THAT(camera.coefficients, ElementsAre(-0.29, 0.1, 1e-3, -2e-4, 0.013));
 }
 
+TEST(CalibrationFile, ReadsFileStorageOfAnyFormatAndNames) {
+  const TestFolder folder;
+  const cv::Mat K = (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
+  const cv::Mat k =
+      (cv::Mat_<double>(1, 12) << -0.29, 0.1, 1e-3, -2e-4, 0.013, 1, 2, 3, 4, 5, 6, 7);
+  struct Names {
+    const char *matrix, *coefficients;
+  };
+  for (const char* file : {"camera.xml", "camera.yml", "camera.json"}) {
+    for (const Names& names : {Names{"camera_matrix", "distortion_coefficients"},
+                               {"cameraMatrix", "distCoeffs"},
+                               {"Camera_Matrix", "Distortion_Coefficients"},
+                               {"K", "D"}}) {
+      SCOPED_TRACE(std::string(file) + " " + names.matrix);
+      {
+        cv::FileStorage storage((folder.path() / file).string(), cv::FileStorage::WRITE);
+        storage << "calibration_time"
+                << "Thu 01 Jan 2026 <12:00>"
+                << "image_size" << cv::Size(640, 480) << names.matrix << K << names.coefficients
+                << k;
+      }
+      const Camera camera = read_calibration(folder.path() / file).camera;
+      EXPECT_EQ(camera.width, 640);
+      EXPECT_EQ(camera.height, 480);
+      EXPECT_DOUBLE_EQ(camera.fx, 533.25);
+      EXPECT_DOUBLE_EQ(camera.cy, 231.125);
+      ASSERT_EQ(camera.coefficients.size(), 12U);
+      EXPECT_DOUBLE_EQ(camera.coefficients[0], -0.29);
+      EXPECT_DOUBLE_EQ(camera.coefficients[11], 7);
+    }
+  }
+}
+
+TEST(CalibrationFile, NamesTheLineOfBadXml) {
+  const TestFolder folder;
+  const auto message = [&](const std::string& content) {
+    return error_of([&] { read_calibration(folder.write("camera.xml", content)); });
+  };
+  EXPECT_THAT(message("<?xml version=\"1.0\"?>\n<opencv_storage>\n<K>\n</opencv_storage>\n"),
+              testing::AllOf(HasSubstr("camera.xml:"), HasSubstr("expected XML")));
+  EXPECT_THAT(message(""), HasSubstr("expected XML"));
+  EXPECT_THAT(message("<opencv_storage><K>1 2 3</K></opencv_storage>"),
+              HasSubstr("camera.xml: key `K`: found 3 numbers, expected 9 (a 3x3 matrix)"));
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  EXPECT_THAT(message(deep), HasSubstr("expected XML"));
+}
+
+TEST(CalibrationFile, FindsTheNamesThatPeopleAndToolsGive) {
+  for (const char* name : {"camera.yaml",
+                           "camera.yml",
+                           "sensor.yaml",
+                           "camchain-imucam.yaml",
+                           "camchain-imucam-2026-01-01.yaml",
+                           "desk-camchain.yaml",
+                           "calibration.xml",
+                           "out_camera_data.xml"}) {
+    const TestFolder folder;
+    folder.write("notes.yaml", "");
+    EXPECT_THAT(error_of([&] { calibration_in(folder.path()); }),
+                HasSubstr("found no calibration, expected camera.yaml"));
+    folder.write(name, "");
+    EXPECT_EQ(calibration_in(folder.path()), folder.path() / name);
+  }
+}
+
 TEST(CalibrationFile, ReadsKalibrsChain) {
   const TestFolder folder;
   const auto calibration = read_calibration(folder.write("camera.yaml", R"(cam0:
@@ -136,8 +202,8 @@ INSTANTIATE_TEST_SUITE_P(
                        ":17: key `distortion_coefficients`: found 4 numbers, expected none for "
                        "distortion model none"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, 3]"),
-                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5 or 8 "
-                       "(k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
+                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 "
+                       "or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
         BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, .nan, 4]"),
                        ":17: key `distortion_coefficients`: found \".nan\", expected finite "
                        "numbers"},

@@ -22,7 +22,7 @@ const std::vector<std::string> kGyro = {"timestamp", "wx", "wy", "wz"};
 
 std::vector<std::int64_t> times_of(const TestFolder& folder,
                                    const std::string& content,
-                                   TimeUnit unit = TimeUnit::by_value) {
+                                   TimeUnit unit = TimeUnit::by_frame_rate) {
   return csv_time_stamps(
       read_csv(folder.write("t.txt", content), {"timestamp"}, CsvColumns::exactly), unit);
 }
@@ -79,17 +79,61 @@ TEST(CsvTable, TakesTheUnitOfTimeFromTheHeader) {
                 ElementsAre(500000000, 7000000000))
         << name;
   }
-  EXPECT_THAT(error_of([&] { times_of(folder, "timestamp_ms\n1\n2\n"); }),
-              EndsWith("t.txt: found time stamps in \"ms\", expected ns or s"));
+  for (const char* name : {"timestamp [ms]", "time_ms", "# Time[millisec]"}) {
+    EXPECT_THAT(times_of(folder, std::string(name) + "\n0.5\n7\n"), ElementsAre(500000, 7000000))
+        << name;
+  }
+  EXPECT_THAT(times_of(folder, "t_us\n1\n2\n"), ElementsAre(1000, 2000));
 }
 
-TEST(CsvTable, GuessesTheUnitOfTimeByItsSize) {
+TEST(CsvTable, TellsTheUnitOfTimeByTheRate) {
   const TestFolder folder;
   EXPECT_THAT(times_of(folder, "1403636579763555584\n1403636579763555585\n"),
               ElementsAre(1403636579763555584, 1403636579763555585));
   EXPECT_THAT(times_of(folder, "timestamp\n1\n2\n"), ElementsAre(1000000000, 2000000000));
   EXPECT_THAT(times_of(folder, "# my camera\n1403636579.5\n"), ElementsAre(1403636579500000000));
   EXPECT_THAT(times_of(folder, "0\n33333333\n", TimeUnit::nanoseconds), ElementsAre(0, 33333333));
+  // The clock of a phone that was started 28 minutes ago, 30 Hz, in every unit.
+  EXPECT_THAT(times_of(folder, "1700.1\n1700.133\n"), ElementsAre(1700100000000, 1700133000000));
+  EXPECT_THAT(times_of(folder, "1700100\n1700133\n"), ElementsAre(1700100000000, 1700133000000));
+  EXPECT_THAT(times_of(folder, "1700100000\n1700133000\n"),
+              ElementsAre(1700100000000, 1700133000000));
+  EXPECT_THAT(times_of(folder, "1700100000000\n1700133000000\n"),
+              ElementsAre(1700100000000, 1700133000000));
+  // A gyroscope of 1 kHz in milliseconds steps by one, and so does a camera of 1 Hz in seconds.
+  EXPECT_THAT(times_of(folder, "1\n2\n", TimeUnit::by_sample_rate), ElementsAre(1000000, 2000000));
+  EXPECT_THAT(times_of(folder, "0.005\n0.01\n", TimeUnit::by_sample_rate),
+              ElementsAre(5000000, 10000000));
+}
+
+TEST(CsvTable, ReadsColumnsSeparatedByBlanks) {
+  const TestFolder folder;
+  const auto file = folder.write("rgb.txt",
+                                 "# color images\n# file: 'desk.bag'\n# timestamp filename\n"
+                                 "1305031102.175304 rgb/1.png  \n1305031102.211214\trgb/2.png");
+  const CsvTable table = read_csv(file, {"timestamp", ""}, CsvColumns::exactly, Separator::blanks);
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(csv_cell(table, table.rows[0], 1), "rgb/1.png");
+  EXPECT_EQ(csv_cell(table, table.rows[1], 1), "rgb/2.png");
+  EXPECT_THAT(csv_time_stamps(table, TimeUnit::seconds),
+              ElementsAre(1305031102175304000, 1305031102211214000));
+}
+
+TEST(CsvTable, KnowsRatesByManyNames) {
+  const TestFolder folder;
+  for (const char* x :
+       {"wx", "gx[rad/s]", "gyro_x", "omega_x (rad/s)", "rotationRateX", "w_RS_S_x"}) {
+    const std::string name = x;
+    const auto axis = [&](char c) {
+      std::string other = name;
+      other[name.find_first_of("xX", 1)] = name.find('X') != std::string::npos ? char(c - 32) : c;
+      return other;
+    };
+    const auto file = folder.write(
+        "gyro.csv",
+        "Timestamp[nanosec]," + name + "," + axis('y') + "," + axis('z') + "\n1,2,3,4\n");
+    EXPECT_NO_THROW(read_csv(file, kGyro, CsvColumns::exactly)) << name;
+  }
 }
 
 TEST(CsvTable, NamesTheLineOfATimeThatDoesNotAscend) {
@@ -114,7 +158,7 @@ TEST_P(CsvTableErrors, NameFileAndLine) {
   const auto file = folder.write("gyro.csv", GetParam().content);
   const auto read = [&] {
     const CsvTable table = read_csv(file, kGyro, CsvColumns::exactly);
-    csv_time_stamps(table, TimeUnit::by_value);
+    csv_time_stamps(table, TimeUnit::by_sample_rate);
     for (const auto& row : table.rows) {
       for (int i = 1; i < 4; ++i) csv_number(table, row, i);
     }

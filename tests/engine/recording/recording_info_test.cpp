@@ -110,6 +110,11 @@ TEST(RecordingInfo, LooksForTheBoardInASampleOfALongRecording) {
   EXPECT_EQ(info.truth->examined, 60);
   EXPECT_EQ(info.truth->frames, 30);
   EXPECT_THAT(to_text(info), HasSubstr("chessboard (board.yaml), 30 of 60 frames looked at\n"));
+  EXPECT_THAT(to_text(info), HasSubstr("  certain to  "));
+  const auto truth = to_json(info)["ground_truth"];
+  EXPECT_LT(truth["rms_px"], 0.2);
+  EXPECT_LT(truth["position_sigma_m"], 2e-3);
+  EXPECT_LT(truth["normal_sigma_deg"], truth["rotation_sigma_deg"]);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/core.hpp>
 
 namespace gpo::test {
@@ -23,9 +24,10 @@ inline double board_gray(const Board& board, double x, double y) {
   return parity % 2 == 0 ? 25 : 230;
 }
 
-/// A picture of the board (its frame as in board_points) by casting 4 x 4 rays a pixel through the
-/// exact lens model: no interpolation that could shift a corner.
-inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
+/// A picture of the plane z = 0, whose gray at a point [m] is `gray(x, y)`, by casting 4 x 4 rays a
+/// pixel through the exact lens model: no interpolation that could shift a corner.
+template <class Gray>
+cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   constexpr int kSamples = 4;
   const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
   cv::Mat picture(camera.height, camera.width, CV_8UC1);
@@ -41,13 +43,51 @@ inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose
         const Eigen::Vector3d ray(
             (ideal.x() - camera.cx) / camera.fx, (ideal.y() - camera.cy) / camera.fy, 1);
         const auto point = intersect(plane, pose, ray);
-        sum += point ? board_gray(board, point->x(), point->y()) : 110;
+        sum += point ? gray(point->x(), point->y()) : 110;
       }
       picture.at<std::uint8_t>(v, u) =
           static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
     }
   }
   return picture;
+}
+
+/// A picture of a chessboard (its frame as in board_points).
+inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
+  return render_plane(camera, pose, [&](double x, double y) { return board_gray(board, x, y); });
+}
+
+/// A picture of a print of a ChArUco board, `texture`, whose pixels are its squares' without
+/// margin.
+inline cv::Mat render_print(const cv::Mat& texture,
+                            const Board& board,
+                            const Camera& camera,
+                            const Pose& pose) {
+  const double texels = texture.cols / ((board.columns + 1) * board.square_m);
+  return render_plane(camera, pose, [&](double x, double y) -> double {
+    const int u = static_cast<int>(std::floor((x + board.square_m) * texels));
+    const int v = static_cast<int>(std::floor((y + board.square_m) * texels));
+    const int margin = texture.cols / (2 * (board.columns + 1));
+    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin) {
+      return 110;
+    }
+    const bool print = u >= 0 && v >= 0 && u < texture.cols && v < texture.rows;
+    return print ? 25 + 0.8 * texture.at<std::uint8_t>(v, u) : 229;
+  });
+}
+
+/// OpenCV's own drawing of a ChArUco board.
+inline cv::Mat opencv_charuco(const Board& board, int dictionary) {
+  constexpr int kTexels = 60;
+  const auto drawn =
+      cv::aruco::CharucoBoard::create(board.columns + 1,
+                                      board.rows + 1,
+                                      static_cast<float>(board.square_m),
+                                      static_cast<float>(board.markers->side_m),
+                                      cv::aruco::getPredefinedDictionary(dictionary));
+  cv::Mat texture;
+  drawn->draw({kTexels * (board.columns + 1), kTexels * (board.rows + 1)}, texture, 0, 1);
+  return texture;
 }
 
 /// A camera that looks at the middle of the board from `distance` [m], tilted and rolled [deg].

@@ -107,6 +107,17 @@ TEST(Results, SayHowInliersWereTold) {
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
 }
 
+TEST(Results, SayHowSureATruthFromTheBoardIs) {
+  Inspection inspection = inspected();
+  EXPECT_FALSE(rows_of(&inspection).contains("Truth"));
+  WindowTruth truth;
+  truth.uncertainties = {PoseUncertainty{0.2, 4e-4, 0.06, 0.05}, std::nullopt};
+  inspection.truth = std::make_shared<const WindowTruth>(truth);
+  const ResultRow row = rows_of(&inspection).at("Truth");
+  EXPECT_EQ(row.value, "\u00b10.050\u00b0");
+  EXPECT_THAT(row.tooltip, HasSubstr("certain to 0.4 mm, 0.06 deg, its normal 0.05 deg"));
+}
+
 TEST(Settings, ThatDoNothingSayWhy) {
   Settings settings;
   for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"}) {

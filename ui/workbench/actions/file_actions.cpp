@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/error.h"
 #include "engine/inspection/report.h"
+#include "engine/inspection/trajectory.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
 #include "ui/workbench/actions/tables.h"
@@ -73,6 +74,25 @@ Action export_of(std::string what, std::string title, std::string (*text)(const 
     if (!state.inspection) throw InputError("nothing is computed yet that could be written");
     check_writable(arguments[0]);
     write_file(arguments[0], text(*state.inspection));
+    say(state, "saved " + arguments[0]);
+  };
+  return action;
+}
+
+/// Camera poses of the current inspection: FILE [tum|euroc|kitti]
+Action trajectory_export(std::string what,
+                         std::string title,
+                         std::string tooltip,
+                         Trajectory (*trajectory)(const Inspection&)) {
+  Action action{"export " + what, std::move(title), "File", {}, std::move(tooltip)};
+  action.arguments = "FILE [tum|euroc|kitti]";
+  action.run = [what, trajectory](State& state, const Arguments& arguments) {
+    expect_count(("export " + what).c_str(), arguments, 1, 2);
+    if (!state.inspection) throw InputError("nothing is computed yet that could be written");
+    const auto format =
+        arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
+    check_writable(arguments[0]);
+    write_file(arguments[0], to_text(trajectory(*state.inspection), format));
     say(state, "saved " + arguments[0]);
   };
   return action;
@@ -175,7 +195,14 @@ void add_file_actions(std::vector<Action>& table) {
   video.arguments = "FILE [FPS]";
   video.run = export_video;
   table.push_back(video);
-  table.push_back(export_of("trajectory", "Export camera poses (TUM)", to_tum));
+  table.push_back(trajectory_export("trajectory",
+                                    "Export camera poses (TUM, EuRoC, KITTI)",
+                                    "Writes the estimated camera poses, for evo and others",
+                                    estimated_trajectory));
+  table.push_back(trajectory_export("true-trajectory",
+                                    "Export true camera poses (TUM, EuRoC, KITTI)",
+                                    "Writes the true camera poses of the window's frames",
+                                    true_trajectory));
   table.push_back(export_of("points", "Export map points (PLY)", to_ply));
   table.push_back(export_of("result", "Export the whole result (JSON)", whole_result));
   Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {

@@ -1,0 +1,43 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/choice.h"
+#include "engine/inspection/inspection.h"
+
+#include <array>
+#include <string>
+
+namespace gpo {
+
+/// Camera poses over time.
+struct Trajectory {
+  std::vector<std::int64_t> timestamps_ns;
+  std::vector<Pose> cameras;  ///< as many
+  std::string world;          ///< axes and unit, for people
+  bool complete = true;       ///< every frame of the window has a pose
+};
+
+/// tum: seconds, p, q_xyzw; euroc: nanoseconds, p, q_wxyz with commas; kitti: the 12 numbers of
+/// (R | p) row by row, without times. evo reads all of them.
+enum class TrajectoryFormat { tum, euroc, kitti };
+
+template <>
+struct ChoiceKeys<TrajectoryFormat> {
+  static constexpr const char* option = "trajectory format";
+  static constexpr std::array keys{"tum", "euroc", "kitti"};
+};
+
+/// World = reference camera, unit = distance of the plane. Throws InputError for an initialization
+/// that failed.
+Trajectory estimated_trajectory(const Inspection& inspection);
+
+/// The true poses of the same window, of the frames that have one [m]. Throws InputError where no
+/// truth is known.
+Trajectory true_trajectory(const Inspection& inspection);
+
+/// Throws InputError for an incomplete trajectory in KITTI's format, which cannot say which frames
+/// are missing.
+std::string to_text(const Trajectory& trajectory, TrajectoryFormat format);
+
+}  // namespace gpo

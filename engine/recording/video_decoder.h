@@ -1,0 +1,58 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// When each frame of a video is shown, in units of `unit_s` and in the order of time.
+struct VideoIndex {
+  std::vector<std::int64_t> times;      ///< one a frame, strictly ascending
+  std::vector<std::int64_t> key_times;  ///< of the frames from which decoding can begin
+  double unit_s = 0;
+  cv::Size size;              ///< [px] as shown, that is rotated as the container asks for
+  double declared_count = 0;  ///< frames that the container promises; 0: it does not tell
+  double rate_hz = 0;         ///< average by the container; 0: it does not tell
+};
+
+/// Any frame of a video file, in whatever order they are asked for: each is exactly what decoding
+/// the whole file from its beginning gives. One thread at a time.
+class VideoDecoder {
+ public:
+  /// Reads the container from end to end and decodes nothing; where it does not time its frames,
+  /// each is decoded once to count them. Throws InputError.
+  explicit VideoDecoder(std::filesystem::path file);
+  ~VideoDecoder();
+  VideoDecoder(const VideoDecoder&) = delete;
+  VideoDecoder& operator=(const VideoDecoder&) = delete;
+
+  const VideoIndex& index() const { return index_; }
+  /// CV_8UC3. Throws InputError.
+  cv::Mat decode(int frame);
+
+  /// On the way back so many frames before the one asked for are kept, since stepping backward will
+  /// ask for them next.
+  static constexpr int kKept = 12;
+
+ private:
+  struct Input;
+  int next_frame();
+  int go_to(int frame);
+  [[noreturn]] void fail(int frame);
+
+  std::filesystem::path file_;
+  std::unique_ptr<Input> input_;
+  VideoIndex index_;
+  bool timed_ = true;  ///< a frame is known by its time, otherwise by its count from the beginning
+  int last_ = -1;      ///< frame that was decoded last; -1: none yet
+  std::map<int, cv::Mat> kept_;
+};
+
+}  // namespace gpo

@@ -1,0 +1,339 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/pose.h"
+#include "engine/recording/recording.h"
+#include "tests/app/program.h"
+#include "tests/engine/recording/made_video.h"
+
+#include <functional>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::write_file;
+
+constexpr int kFrames = 30;
+
+/// The bundled recording, which every layout below holds in its own way.
+const Recording& original() {
+  static const auto kDesk = open_recording(desk());
+  return *kDesk;
+}
+
+fs::path picture_file(int frame) {
+  return desk() / "mav0/cam0/data" / fmt::format("{}.jpg", original().timestamps_ns[frame]);
+}
+
+std::int64_t since_start_ns(std::int64_t ns) { return ns - original().timestamps_ns.front(); }
+
+std::string seconds(std::int64_t ns) {
+  return fmt::format("{}.{:09d}", ns / 1000000000, ns % 1000000000);
+}
+
+void copy_pictures(const fs::path& folder, const std::function<std::string(int)>& name) {
+  fs::create_directories(folder);
+  for (int i = 0; i < kFrames; ++i) fs::copy_file(picture_file(i), folder / name(i));
+}
+
+/// Gray pictures in another format; `scale` makes 16 bits of 8.
+void write_gray(const fs::path& folder, const char* ending, int depth, double scale) {
+  for (int i = 0; i < kFrames; ++i) {
+    cv::Mat picture;
+    original().pictures->gray(i).convertTo(picture, depth, scale);
+    ASSERT_TRUE(cv::imwrite((folder / fmt::format("{}.{}", i, ending)).string(), picture));
+  }
+}
+
+const char* const kEurocCamera =
+    "resolution: [640, 480]\ncamera_model: pinhole\nintrinsics: [498.2, 497.6, 322.4, 238.1]\n"
+    "distortion_model: radial-tangential\n"
+    "distortion_coefficients: [0.092, -0.184, 0.0006, -0.0009]\n"
+    "T_BS: [0, -1, 0, 0.021, -1, 0, 0, 0.058, 0, 0, -1, -0.004, 0, 0, 0, 1]\n";
+
+const char* const kKalibrCamera =
+    "cam0:\n  T_cam_imu:\n  - [0, -1, 0, 0.058]\n  - [-1, 0, 0, 0.021]\n  - [0, 0, -1, -0.004]\n"
+    "  - [0, 0, 0, 1]\n  camera_model: pinhole\n  intrinsics: [498.2, 497.6, 322.4, 238.1]\n"
+    "  distortion_model: radtan\n  distortion_coeffs: [0.092, -0.184, 0.0006, -0.0009]\n"
+    "  resolution: [640, 480]\n  timeshift_cam_imu: 0.0\n";
+
+void write_opencv_camera(const fs::path& file) {
+  cv::FileStorage storage(file.string(), cv::FileStorage::WRITE);
+  storage << "image_width" << 640 << "image_height" << 480 << "camera_matrix"
+          << (cv::Mat_<double>(3, 3) << 498.2, 0, 322.4, 0, 497.6, 238.1, 0, 0, 1)
+          << "distortion_coefficients"
+          << (cv::Mat_<double>(1, 5) << 0.092, -0.184, 0.0006, -0.0009, 0);
+}
+
+/// TUM's file: camera poses, times as `time` makes them of nanoseconds.
+void write_truth(const fs::path& folder, const std::function<std::string(std::int64_t)>& time) {
+  std::string text = "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n";
+  for (int i = 0; i < original().frame_count(); ++i) {
+    const Pose& camera = original().truth->poses[i].value();
+    const Eigen::Quaterniond q(camera.R_wc);
+    text += fmt::format("{} {} {} {} {} {} {} {}\n",
+                        time(original().timestamps_ns[i]),
+                        camera.p_wc.x(),
+                        camera.p_wc.y(),
+                        camera.p_wc.z(),
+                        q.x(),
+                        q.y(),
+                        q.z(),
+                        q.w());
+  }
+  write_file(folder / "groundtruth.txt", text);
+  write_file(folder / "plane.yaml", "normal: [0, 0, 1]\ndistance: 0\n");
+}
+
+/// The gyroscope in its own axes; its bias is the one that the bundled recording is calibrated
+/// with.
+void write_gyroscope(const fs::path& file,
+                     const std::string& header,
+                     const std::function<std::string(std::int64_t)>& time,
+                     double unit = 1) {
+  const Gyroscope& gyroscope = original().gyroscope.value();
+  std::string text = header + "\n";
+  for (std::size_t i = 0; i < gyroscope.timestamps_ns.size(); ++i) {
+    const Eigen::Vector3d w = unit * (gyroscope.rates_rad_s[i] - gyroscope.bias_rad_s);
+    text += fmt::format(
+        "{},{},{},{},0,0,9.81\n", time(gyroscope.timestamps_ns[i]), w.x(), w.y(), w.z());
+  }
+  write_file(file, text);
+}
+
+void write_frame_times(const fs::path& file,
+                       const std::string& header,
+                       const std::function<std::string(std::int64_t)>& time) {
+  std::string text = header + "\n";
+  for (int i = 0; i < kFrames; ++i) text += time(original().timestamps_ns[i]) + "\n";
+  write_file(file, text);
+}
+
+std::string nanoseconds(std::int64_t ns) { return std::to_string(ns); }
+std::string milliseconds_of_a_day(std::int64_t ns) {
+  return fmt::format("{:.6f}", static_cast<double>(since_start_ns(ns) + 36'000'000'000'000) * 1e-6);
+}
+std::string seconds_since_start(std::int64_t ns) {
+  return fmt::format("{:.9f}", static_cast<double>(since_start_ns(ns)) * 1e-9);
+}
+
+struct Fixture {
+  const char* name;
+  const char* layout;  ///< as `info` calls it
+  bool gyroscope;
+  bool same_pixels;  ///< not compressed anew
+  std::function<void(const fs::path& folder)> make;
+};
+std::ostream& operator<<(std::ostream& stream, const Fixture& fixture) {
+  return stream << fixture.name;
+}
+
+const std::vector<Fixture>& fixtures() {
+  static const std::vector<Fixture> kFixtures = {
+      {"euroc_without_mav0",
+       "EuRoC",
+       true,
+       true,
+       [](const fs::path& folder) {
+         fs::copy(desk() / "mav0", folder, fs::copy_options::recursive);
+         fs::copy(desk() / "plane.yaml", folder);
+       }},
+      {"euroc_without_a_list",
+       "EuRoC",
+       true,
+       true,
+       [](const fs::path& folder) {
+         fs::copy(desk(), folder, fs::copy_options::recursive);
+         fs::remove(folder / "mav0/cam0/data.csv");
+       }},
+      {"tum_vi",
+       "EuRoC",
+       true,
+       true,
+       [](const fs::path& folder) {
+         fs::copy(desk(), folder, fs::copy_options::recursive);
+         fs::rename(folder / "mav0/state_groundtruth_estimate0", folder / "mav0/mocap0");
+         fs::remove(folder / "mav0/cam0/sensor.yaml");
+         fs::create_directories(folder / "dso");
+         write_file(folder / "dso/camchain.yaml", kKalibrCamera);
+       }},
+      {"tum_rgbd",
+       "TUM RGB-D",
+       false,
+       true,
+       [](const fs::path& folder) {
+         std::string list = "# color images\n# file: 'desk.bag'\n# timestamp filename\n";
+         for (int i = 0; i < kFrames; ++i) {
+           list += fmt::format("{} rgb/{}.jpg\n", seconds(original().timestamps_ns[i]), i);
+         }
+         copy_pictures(folder / "rgb", [](int i) { return fmt::format("{}.jpg", i); });
+         write_file(folder / "rgb.txt", list);
+         write_opencv_camera(folder / "camera.yaml");
+         write_truth(folder, seconds);
+       }},
+      {"images_and_seconds",
+       "pictures",
+       true,
+       true,
+       [](const fs::path& folder) {
+         copy_pictures(folder / "images", [](int i) { return fmt::format("frame{}.jpg", i); });
+         write_file(folder / "camera.yaml", kEurocCamera);
+         write_frame_times(folder / "frame_timestamps.txt", "timestamp", seconds_since_start);
+         write_gyroscope(folder / "gyro.csv", "timestamp,wx,wy,wz,ax,ay,az", seconds_since_start);
+         write_truth(folder, seconds_since_start);
+       }},
+      {"images_degrees_and_milliseconds",
+       "pictures",
+       true,
+       true,
+       [](const fs::path& folder) {
+         copy_pictures(folder, [](int i) { return fmt::format("{}.jpg", i); });
+         write_file(folder / "camchain-imucam-desk.yaml", kKalibrCamera);
+         write_frame_times(folder / "frame_timestamps.txt", "time_ms", milliseconds_of_a_day);
+         write_gyroscope(folder / "gyro.csv",
+                         "t,gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],acc_x,acc_y,acc_z",
+                         milliseconds_of_a_day,
+                         180 / EIGEN_PI);
+         write_truth(folder, [](std::int64_t ns) {
+           return fmt::format("{:.9f}",
+                              static_cast<double>(since_start_ns(ns)) * 1e-9 + 36000 + 1.5);
+         });
+         write_file(folder / "groundtruth.yaml", "time_offset_s: 1.5\n");
+       }},
+      {"gray_png_of_16_bits",
+       "pictures",
+       false,
+       true,
+       [](const fs::path& folder) {
+         write_gray(folder, "png", CV_16U, 257);
+         write_opencv_camera(folder / "calibration.xml");
+         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
+         write_truth(folder, seconds);
+       }},
+      {"tiff_of_12_bits",
+       "pictures",
+       false,
+       true,
+       [](const fs::path& folder) {
+         write_gray(folder, "tiff", CV_16U, 4095.0 / 255);
+         write_opencv_camera(folder / "camera.yml");
+         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
+         write_truth(folder, seconds);
+       }},
+      {"pgm",
+       "pictures",
+       false,
+       true,
+       [](const fs::path& folder) {
+         write_gray(folder, "pgm", CV_8U, 1);
+         write_opencv_camera(folder / "camera.xml");
+         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
+         write_truth(folder, seconds);
+       }},
+      {"phone",
+       "pictures",
+       true,
+       false,
+       [](const fs::path& folder) {
+         std::vector<cv::Mat> pictures;
+         for (int i = 0; i < kFrames; ++i) pictures.push_back(original().pictures->bgr(i));
+         test::make_video(folder / "movie.mp4", pictures);
+         write_file(folder / "camera.yaml", kEurocCamera);
+         write_frame_times(folder / "frame_timestamps.txt",
+                           "Frame timestamp[nanosec],Unix time[nanosec]",
+                           [](std::int64_t ns) { return fmt::format("{},{}", ns, ns + 5); });
+         write_gyroscope(
+             folder / "gyro_accel.csv",
+             "Timestamp[nanosec], gx[rad/s], gy[rad/s], gz[rad/s], ax[m/s^2], ay[m/s^2], az[m/s^2]",
+             nanoseconds);
+         write_truth(folder, seconds);
+       }},
+  };
+  return kFixtures;
+}
+
+json json_of(const std::string& arguments) {
+  const fs::path file = fresh_folder() / "result.json";
+  const Outcome outcome = program("run " + arguments + " --json " + file.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return outcome.exit_code == 0 ? json::parse(test::read_file(file)) : json();
+}
+
+class Layouts : public testing::TestWithParam<Fixture> {};
+
+TEST_P(Layouts, OpenFromInfoRunAndTheWindow) {
+  const Fixture& fixture = GetParam();
+  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / fixture.name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  fixture.make(folder);
+
+  const Outcome info = program("info --json " + folder.string());
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  const json found = json::parse(info.out);
+  EXPECT_EQ(found["layout"], fixture.layout);
+  EXPECT_EQ(found.contains("gyroscope"), fixture.gyroscope);
+  EXPECT_EQ(found["camera"]["intrinsics"], json::parse("[498.2, 497.6, 322.4, 238.1]"));
+  EXPECT_GE(found["frames"], kFrames);
+  EXPECT_NEAR(found["rate_hz"], 30, 0.1);
+
+  const std::string rotations = fixture.gyroscope ? "gyro" : "averaging";
+  const json expected = json_of(desk().string() + " --rotations " + rotations)["metrics"];
+  const json metrics = json_of(folder.string())["metrics"];
+  EXPECT_NEAR(metrics["pne_deg"], expected["pne_deg"], fixture.same_pixels ? 1e-3 : 0.5);
+  EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels ? 1e-6 : 1e-3);
+
+  const fs::path picture = folder.parent_path() / (std::string(fixture.name) + ".png");
+  const Outcome window =
+      program("snapshot " + folder.string() + " --view window --output " + picture.string());
+  EXPECT_EQ(window.exit_code, 0) << window.err;
+  EXPECT_FALSE(cv::imread(picture.string()).empty());
+  fs::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Layouts, testing::ValuesIn(fixtures()), [](const auto& info) {
+  return info.param.name;
+});
+
+TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
+  const fs::path folder = fresh_folder();
+  write_file(folder / "camera.yaml", kEurocCamera);
+  write_file(folder / "tracks.csv", [] {
+    std::string text = "frame,track,x,y\n";
+    std::srand(1);
+    for (int track = 0; track < 120; ++track) {
+      const Eigen::Vector3d point_w(0.3 * Eigen::Vector2d::Random().homogeneous() -
+                                    0.3 * Eigen::Vector3d::UnitZ());
+      for (int i = 5 + track % 2; i < original().frame_count(); ++i) {
+        const Eigen::Vector3d point_c = to_camera(original().truth->poses[i].value(), point_w);
+        const Eigen::Vector2d px = project(original().camera, point_c);
+        const bool seen =
+            point_c.z() > 0 && px.x() >= 0 && px.x() < 640 && px.y() >= 0 && px.y() < 480;
+        if (seen) text += fmt::format("{},{},{},{}\n", i, track, px.x(), px.y());
+      }
+    }
+    return text;
+  }());
+  write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
+  write_truth(folder, seconds);
+  const json result = json_of(folder.string() + " --start 6 --frames 20");
+  EXPECT_EQ(result["window"]["start"], 6);
+  EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
+  const Outcome early = program("run " + folder.string() + " --frames 20");
+  EXPECT_EQ(early.exit_code, 1) << early.out << early.err;
+}
+
+}  // namespace
+}  // namespace gpo
