@@ -6,13 +6,15 @@
 #include "engine/recording/truth_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 
+constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data + 1, size - 1));
   gpo::fuzz::parse([&] {
     switch (data[0]) {
       case 'g':
-        gpo::read_gyroscope(file, gpo::TimeUnit::by_value);
+        gpo::read_gyroscope(file, gpo::TimeUnit::by_sample_rate);
         break;
       case 'i':
         gpo::read_gyroscope(file, gpo::TimeUnit::nanoseconds);
@@ -24,11 +26,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gpo::read_tracks(file, 30);
         break;
       case 'p':
-        gpo::pose_at(gpo::read_body_path(file), 1'403'636'579'763'555'584);
+        gpo::pose_at(gpo::read_euroc_path(file), kTime_ns);
+        break;
+      case 'm':
+        gpo::pose_at(gpo::read_tum_path(file), kTime_ns);
         break;
       default: {
         const auto table = gpo::read_csv(file, {"timestamp"}, gpo::CsvColumns::exactly);
-        gpo::csv_time_stamps(table, gpo::TimeUnit::by_value);
+        gpo::csv_time_stamps(table, gpo::TimeUnit::by_frame_rate);
       }
     }
   });
