@@ -26,6 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
+/// Containers of one file; playlists, which FFmpeg knows too, would open further files and
+/// addresses.
+constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
 
 template <auto close>
@@ -77,10 +80,13 @@ struct VideoDecoder::Input {
   explicit Input(const fs::path& file) {
     silence_library();
     AVFormatContext* opened = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "format_whitelist", kContainers, 0);
     // Without the protocol's name a path with a colon would be taken for an address.
-    if (avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr) < 0) {
-      fail_to_open(file);
-    }
+    const std::string address = "file:" + file.string();
+    const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
+    av_dict_free(&options);
+    if (error < 0) fail_to_open(file);
     format.reset(opened);
     if (avformat_find_stream_info(opened, nullptr) < 0) fail_to_open(file);
     const AVCodec* decoder = nullptr;

@@ -8,8 +8,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
   gpo::fuzz::parse([&] {
     gpo::VideoDecoder decoder(file);
-    decoder.decode(static_cast<int>(decoder.index().times.size()) - 1);
-    decoder.decode(0);
+    const int count = static_cast<int>(decoder.index().times.size());
+    if (count > 0) decoder.decode(count - 1);
+    if (count > 0) decoder.decode(0);
   });
   return 0;
 }
