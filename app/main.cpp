@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <functional>
+#include <iostream>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -265,6 +266,7 @@ int main_with_errors(int argc, char** argv) {
   try {
     cv::ocl::setUseOpenCL(false);  // its results differ from the CPU's
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
     declare(app, arguments);
     app.parse(argc, argv);
     const int code = dispatch(app, arguments);

@@ -12,6 +12,7 @@ namespace gpo {
 namespace {
 
 constexpr std::size_t kLongestMessage = 1000;
+constexpr std::size_t kLongestEscape = 4;  // "\\x1B"
 
 unsigned byte_at(std::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
@@ -30,6 +31,15 @@ std::size_t printable_length(std::string_view text, std::size_t i) {
   const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
   const bool no_character = (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90);
   return c1_control || overlong || no_character ? 0 : length;
+}
+
+/// Its beginning, which names the file, and its end, which says what was expected.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kEnd = 300;
+  if (text.size() <= kLongestMessage) return text;
+  std::size_t end = text.size() - kEnd;
+  while ((byte_at(text, end) & 0xC0) == 0x80) ++end;  // not within a character
+  return legible(text, kLongestMessage - kEnd - 3) + text.substr(end);
 }
 
 }  // namespace
@@ -51,7 +61,7 @@ std::string legible(std::string_view text, std::size_t most) {
 }
 
 InputError::InputError(std::string_view message)
-    : std::runtime_error(legible(message, kLongestMessage)) {}
+    : std::runtime_error(shortened(legible(message, message.size() * kLongestEscape))) {}
 
 std::string message_of(const std::exception& error) {
   using std::filesystem::filesystem_error;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,5 +12,9 @@ namespace gpo {
 /// JSON as a file's text, with a line end. Names of files may be no UTF-8; what is not becomes the
 /// replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
+
+/// Reads a file of JSON that the program wrote; discarded (`is_discarded`) where it is none, or so
+/// deep that libraries run out of stack. Throws InputError where it cannot be read or is too large.
+nlohmann::ordered_json read_json(const std::filesystem::path& file);
 
 }  // namespace gpo

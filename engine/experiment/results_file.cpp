@@ -17,6 +17,7 @@ namespace gpo {
 namespace {
 
 constexpr std::array kNeeded{"recording", "configuration", "start", "frames", "status"};
+constexpr std::size_t kMostRows = 500'000;
 constexpr const char* kBegin = "recording,configuration,";
 
 /// Cells of one row, and where it begins.
@@ -159,6 +160,10 @@ std::vector<Row> read_results(const std::filesystem::path& file) {
   std::vector<Row> rows;
   while (!text.at_end()) {
     const Line line = text.next();
+    if (rows.size() == kMostRows) {
+      throw InputError(fmt::format(
+          "{}:{}: found more than {} rows, expected fewer", file.string(), line.number, kMostRows));
+    }
     if (line.cells.size() == 1 && line.cells[0].empty()) continue;
     if (line.cells.size() != names.size())
       throw InputError(fmt::format("{}:{}: found {} cells, expected {} as in the header",

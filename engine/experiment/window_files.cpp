@@ -5,7 +5,6 @@
 #include "engine/error.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
-#include "engine/recording/text_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,9 +65,13 @@ void begin_experiment(const fs::path& folder, const Experiment& experiment) {
 
 Experiment read_experiment(const fs::path& folder) {
   const fs::path file = definition_file(folder);
-  const std::string text = read_file(file);
+  const ordered_json json = read_json(file);
+  if (json.is_discarded()) {
+    throw InputError(
+        fmt::format("{}: is not the definition of an experiment (no JSON)", file.string()));
+  }
   try {
-    return experiment_from_json(ordered_json::parse(text));
+    return experiment_from_json(json);
   } catch (const ordered_json::exception& error) {
     throw InputError(fmt::format(
         "{}: is not the definition of an experiment ({})", file.string(), error.what()));
@@ -94,7 +97,7 @@ std::optional<std::vector<Row>> load_window(const fs::path& folder,
   if (!fs::exists(file)) return std::nullopt;
   try {
     std::vector<Row> rows;
-    for (const ordered_json& row : ordered_json::parse(read_file(file))) {
+    for (const ordered_json& row : read_json(file)) {
       rows.push_back(row_from_json(row));
     }
     return belongs(rows, experiment) ? std::optional(std::move(rows)) : std::nullopt;

@@ -105,10 +105,11 @@ Header tiff_header(Bytes bytes, Order order) {
 Header webp_header(Bytes bytes) {
   const Bytes kind = bytes.substr(12, 4);
   if (kind == "VP8X") return PictureHeader{little(bytes, 24, 3) + 1, little(bytes, 27, 3) + 1};
-  if (kind == "VP8L") {
+  if (kind == "VP8L" && little(bytes, 20, 1) == 0x2F) {
     const std::int64_t packed = little(bytes, 21, 4);
     return PictureHeader{(packed & 0x3FFF) + 1, (packed >> 14 & 0x3FFF) + 1};
   }
+  if (kind != "VP8 " || big(bytes, 23, 3) != 0x9D012A) return std::nullopt;
   return PictureHeader{little(bytes, 26, 2) & 0x3FFF, little(bytes, 28, 2) & 0x3FFF};
 }
 
@@ -119,7 +120,8 @@ Header any_header(Bytes bytes) {
   if (bytes.starts_with(Bytes("II*\0", 4))) return tiff_header(bytes, Order::little_endian);
   if (bytes.starts_with(Bytes("MM\0*", 4))) return tiff_header(bytes, Order::big_endian);
   if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return webp_header(bytes);
-  const bool pnm = bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6';
+  const bool pnm = bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
+                   std::isspace(static_cast<unsigned char>(bytes[2])) != 0;
   return pnm ? pnm_header(bytes) : std::nullopt;
 }
 

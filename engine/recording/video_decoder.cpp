@@ -25,6 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
+/// Containers of one file; playlists, which FFmpeg knows too, would open further files and
+/// addresses.
+constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
 
 template <auto close>
@@ -71,10 +74,13 @@ struct VideoDecoder::Input {
     // What it says about broken files becomes our InputError. Others (OpenCV) change the level, too.
     av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* opened = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "format_whitelist", kContainers, 0);
     // Without the protocol's name a path with a colon would be taken for an address.
-    if (avformat_open_input(&opened, ("file:" + file.string()).c_str(), nullptr, nullptr) < 0) {
-      fail_to_open(file);
-    }
+    const std::string address = "file:" + file.string();
+    const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
+    av_dict_free(&options);
+    if (error < 0) fail_to_open(file);
     format.reset(opened);
     if (avformat_find_stream_info(opened, nullptr) < 0) fail_to_open(file);
     const AVCodec* decoder = nullptr;

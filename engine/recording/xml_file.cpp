@@ -31,18 +31,20 @@ YAML::Node words_of(const XMLElement& element) {
   return words.size() == 1 ? YAML::Node(words[0].Scalar()) : YAML::Node();
 }
 
-/// The library refuses documents that nest deeper than 500 elements.
-YAML::Node node_of(const XMLElement& element) {
+/// What nests deeper than any calibration is passed over: yaml-cpp takes the time of all values
+/// again at each level.
+YAML::Node node_of(const XMLElement& element, int depth = 0) {
+  constexpr int kDeepest = 16;
   const XMLElement* child = element.FirstChildElement();
-  if (child == nullptr) return words_of(element);
+  if (child == nullptr || depth == kDeepest) return words_of(element);
   YAML::Node node;
   for (; child != nullptr; child = child->NextSiblingElement()) {
     const std::string name = child->Name();
     if (name == "_") {
       if (node.IsMap()) continue;
-      node.push_back(node_of(*child));
+      node.push_back(node_of(*child, depth + 1));
     } else if (!node.IsSequence()) {
-      node.force_insert(name, node_of(*child));
+      node.force_insert(name, node_of(*child, depth + 1));
     }
   }
   return node;

@@ -18,6 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                   "gyro.csv",
                                   "0.pgm",
                                   "1.pgm",
+                                  "groundtruth.yaml",
                                   "rgb.txt",
                                   "groundtruth.txt",
                                   "rgb/0.pgm",

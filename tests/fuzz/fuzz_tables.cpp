@@ -6,6 +6,8 @@
 #include "engine/recording/truth_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 
+constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data + 1, size - 1));
@@ -24,10 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gpo::read_tracks(file, 30);
         break;
       case 'p':
-        gpo::pose_at(gpo::read_euroc_path(file), 1'403'636'579'763'555'584);
+        gpo::pose_at(gpo::read_euroc_path(file), kTime_ns);
         break;
       case 'm':
-        gpo::pose_at(gpo::read_tum_path(file), 1'403'636'579'763'555'584);
+        gpo::pose_at(gpo::read_tum_path(file), kTime_ns);
         break;
       default: {
         const auto table = gpo::read_csv(file, {"timestamp"}, gpo::CsvColumns::at_least);

@@ -5,7 +5,6 @@
 #include "engine/error.h"
 #include "engine/json_text.h"
 #include "engine/output_file.h"
-#include "engine/recording/text_file.h"
 #include "engine/user_folders.h"
 #include "ui/workbench/session_file.h"
 
@@ -31,11 +30,11 @@ void write_quietly(const fs::path& file, const std::string& text) {
   }
 }
 
-std::string read_quietly(const fs::path& file) {
+Json read_quietly(const fs::path& file) {
   try {
-    return read_file(file, kMostBytesByHand);
+    return read_json(file);
   } catch (const InputError&) {
-    return "";
+    return {};
   }
 }
 
@@ -52,7 +51,7 @@ void save_last_session(const WorkbenchState& state) {
 std::vector<fs::path> recent_files() {
   std::vector<fs::path> files;
   std::error_code none;
-  const Json json = Json::parse(read_quietly(recent_list()), nullptr, false);
+  const Json json = read_quietly(recent_list());
   if (!json.is_array()) return files;
   for (const Json& one : json)
     if (one.is_string() && fs::exists(one.get<std::string>(), none))

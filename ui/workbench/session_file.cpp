@@ -22,7 +22,6 @@ using Eigen::Vector3d;
 
 constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
 Json numbers(const auto& vector) {
   return std::vector<double>(vector.data(), vector.data() + vector.size());
@@ -236,20 +235,6 @@ void read_state(const Reader& read, WorkbenchState& state) {
   if (read.has("bookmarks")) state.bookmarks = read_bookmarks(read);
 }
 
-/// Discarded where it is no JSON, or so deep that libraries run out of stack.
-Json parse_session(const std::string& text) {
-  constexpr int kDeepest = 16;
-  bool too_deep = false;
-  Json json = Json::parse(
-      text,
-      [&](int depth, Json::parse_event_t, const Json&) {
-        too_deep |= depth > kDeepest;
-        return depth <= kDeepest;
-      },
-      false);
-  return too_deep ? Json(Json::value_t::discarded) : json;
-}
-
 }  // namespace
 
 std::string session_text(const WorkbenchState& state) {
@@ -277,7 +262,7 @@ std::string session_text(const WorkbenchState& state) {
 }
 
 SavedSession read_session(const fs::path& file) {
-  const Json json = parse_session(read_file(file, kMostBytes));
+  const Json json = read_json(file);
   if (json.is_discarded()) throw InputError(file.string() + ": not valid JSON; expected a session");
   const Reader read(json, file.string());
   std::string kind, recording;
@@ -325,7 +310,7 @@ void continue_session(WorkbenchState& state, const SavedSession& session) {
 bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
-  return read_file(file, kMostBytes).find(kKind) != std::string::npos;
+  return read_file(file).find(kKind) != std::string::npos;
 }
 
 }  // namespace gpo

@@ -54,7 +54,7 @@ TEST(Yaml, FoundTextIsCutAndLegible) {
   const auto file = folder.write("a.yaml", fmt::format("a: \"x\n{:y>100}\"\n", ""));
   const auto root = load_yaml(file);
   EXPECT_EQ(error_of([&] { number(at(root, "a", "")); }),
-            file.string() + ":1: key `a`: found \"x " + std::string(37, 'y') +
+            file.string() + ":1: key `a`: found \"x " + std::string(38, 'y') +
                 "...\", expected a finite number");
 }
 
