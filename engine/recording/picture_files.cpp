@@ -167,6 +167,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
 }
 
 void check_size(const std::filesystem::path& file, const cv::Mat& picture, const Camera& camera) {
+  if (camera.width == 0) return;
   if (picture.cols == camera.width && picture.rows == camera.height) return;
   const auto shown = [](int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);

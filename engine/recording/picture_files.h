@@ -18,7 +18,8 @@ namespace gpo {
 /// half picture is never returned.
 cv::Mat read_picture(const std::filesystem::path& file);
 
-/// Throws InputError where the picture has not the size that the camera was calibrated for.
+/// Throws InputError where the picture has not the size that the camera was calibrated for; a width
+/// of 0 means that it was not, and any will do.
 void check_size(const std::filesystem::path& file, const cv::Mat& picture, const Camera& camera);
 
 std::shared_ptr<const FrameCache> open_picture_files(std::vector<std::filesystem::path> files,

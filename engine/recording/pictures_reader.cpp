@@ -108,6 +108,21 @@ bool holds_pictures(const fs::path& folder) {
   return !videos_in(folder).empty() || !numbered_pictures(folder).empty();
 }
 
+std::shared_ptr<const FrameCache> open_pictures(const fs::path& path, std::size_t cache_bytes) {
+  const Camera uncalibrated;
+  if (const auto video = video_at(path)) {
+    if (is_video_name(*video)) return open_video(*video, uncalibrated, cache_bytes).pictures;
+    throw InputError(path.string() +
+                     ": found a file that is no video, expected a folder or mp4, avi, mov, mkv");
+  }
+  for (const char* below : {"", "cam0/data", "mav0/cam0/data", "rgb"}) {
+    if (!fs::is_directory(path / below)) continue;
+    auto files = numbered_pictures(path / below);
+    if (!files.empty()) return open_picture_files(std::move(files), uncalibrated, cache_bytes);
+  }
+  throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
+}
+
 Recording read_pictures(const fs::path& path,
                         const std::optional<fs::path>& tracks,
                         std::size_t cache_bytes) {
