@@ -19,7 +19,7 @@ namespace gpo {
 
 /// Exit codes of the contract.
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;    ///< the initialization failed, or a picture differs
+inline constexpr int kFailed = 1;    ///< no initialization, no calibration, or a picture differs
 inline constexpr int kBadInput = 2;  ///< bad input or usage
 
 /// Decoded pictures that are kept [MiB].
@@ -80,10 +80,24 @@ struct ViewArguments {
   std::optional<std::filesystem::path> script;
 };
 
+struct CalibrateArguments {
+  std::filesystem::path recording;   ///< needs no calibration
+  std::optional<std::string> board;  ///< "CxR" inner corners, of a ChArUco board squares; default:
+                                     ///< the recording's board.yaml
+  std::string pattern = "chessboard";
+  std::optional<double> square;           ///< [m]
+  std::optional<double> marker;           ///< [m]
+  std::optional<std::string> dictionary;  ///< OpenCV's name
+  std::string model = "radial-tangential";
+  int coefficients = 4;
+  std::filesystem::path output;  ///< camera.yaml
+};
+
 /// The recording that comes with the program: beside the sources it was built from, else beside the
 /// executable or where it is run.
 std::filesystem::path example_recording();
 
+int calibrate_command(const CalibrateArguments& arguments);
 int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const std::filesystem::path& recording, bool json);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/recording/board_truth.h"
 #include "engine/recording/euroc_writer.h"
@@ -9,12 +10,25 @@
 
 namespace gpo {
 
+namespace {
+
+/// Stored, or computed from a board in view.
+std::optional<GroundTruth> truth_of(const Recording& recording) {
+  if (recording.truth || !recording.board || !recording.pictures) return recording.truth;
+  ProgressBar bar("finding the board");
+  return board_truth(
+      recording, 0, recording.frame_count(), {}, [&](int done, int of) { bar.show(done, of); });
+}
+
+}  // namespace
+
 int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output) {
   const auto opened = open_given(recording);
-  std::optional<GroundTruth> truth = opened->truth;
-  if (!truth && opened->board && opened->pictures)
-    truth = board_truth(*opened, 0, opened->frame_count());
-  write_euroc(*opened, truth, output);
+  const auto truth = truth_of(*opened);
+  {
+    ProgressBar bar("writing " + output.string());
+    write_euroc(*opened, truth, output, [&](int done, int of) { bar.show(done, of); });
+  }
   fmt::print("{}: {} frames\n", output.string(), opened->frame_count());
   return kDone;
 }

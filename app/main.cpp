@@ -192,7 +192,40 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   command->add_option("--output", arguments.output, "Folder to write")->required();
 }
 
+void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Writes the camera.yaml of a video or of pictures that show a printed board");
+  command
+      ->add_option(
+          "recording",
+          arguments.recording,
+          "Video, folder of pictures, or any recording with pictures; needs no calibration")
+      ->required();
+  command->add_option("--board",
+                      arguments.board,
+                      "COLUMNSxROWS inner corners, of a ChArUco board squares, e.g. 9x6; default: "
+                      "the recording's board.yaml");
+  command->add_option("--square", arguments.square, "Side of a square [m]");
+  command->add_option("--pattern", arguments.pattern, "What is printed")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"chessboard", "charuco"}));
+  command->add_option("--marker", arguments.marker, "Of a ChArUco board: side of a marker [m]");
+  command->add_option(
+      "--dictionary", arguments.dictionary, "Of a ChArUco board: OpenCV's name, e.g. DICT_5X5_100");
+  command->add_option("--model", arguments.model, "Model of the lens")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"radial-tangential", "equidistant"}));
+  command
+      ->add_option("--coefficients",
+                   arguments.coefficients,
+                   "Of the radial-tangential model: 4 (k1 k2 p1 p2), 5 or 8")
+      ->capture_default_str()
+      ->check(CLI::IsMember({4, 5, 8}));
+  command->add_option("--output", arguments.output, "camera.yaml to write")->required();
+}
+
 struct Arguments {
+  CalibrateArguments calibrate;
   EvaluateArguments evaluate;
   std::filesystem::path info_recording;
   bool info_json = false;
@@ -228,6 +261,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   add_run(app, arguments.run);
   add_snapshot(app, arguments.snapshot);
   add_evaluate(app, arguments.evaluate);
+  add_calibrate(app, arguments.calibrate);
   CLI::App* synthesize =
       app.add_subcommand("synthesize", "A recording with perfect ground truth, from a recipe");
   synthesize->add_option("recipe", arguments.recipe, "Recipe, a YAML file")->required();
@@ -242,6 +276,7 @@ int dispatch(const CLI::App& app, const Arguments& arguments) {
     return convert_command(arguments.convert_recording, arguments.convert_output);
   if (app.got_subcommand("run")) return run_command(arguments.run);
   if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
+  if (app.got_subcommand("calibrate")) return calibrate_command(arguments.calibrate);
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);

@@ -2,22 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings.h"
 
+#include "app/progress_bar.h"
 #include "engine/synthesis/synthesized.h"
 
-#include <cstdio>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBarLength = 20;
 constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
 
 bool is_recipe(const fs::path& path) {
@@ -36,31 +34,11 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
   return all.size() <= kNamesLength ? all : fmt::format("{} recordings", names.size());
 }
 
-/// One line on standard error that is overwritten as work goes on, and ended at the end.
-struct ProgressBar {
-  std::string title;
-  bool begun = false;
-  explicit ProgressBar(std::string what) : title(std::move(what)) {}
-  ~ProgressBar() {
-    if (begun) std::fputc('\n', stderr);
-  }
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
-  void show(int done, int of) {
-    const int filled = kBarLength * done / of;
-    const std::string bar = std::string(filled, '#') + std::string(kBarLength - filled, '.');
-    fmt::print(stderr, "\rsynthesizing {} [{}] {}/{} frames", title, bar, done, of);
-    std::fflush(stderr);
-    begun = true;
-  }
-};
-
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   const fs::path cache = GPO_RECORDINGS_DIR;
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
-  if (isatty(fileno(stderr)) == 0) return synthesized_recordings(recipes, cache, threads);
-  ProgressBar bar(names_of_missing(recipes, cache));
+  if (!progress_is_watched()) return synthesized_recordings(recipes, cache, threads);
+  ProgressBar bar("synthesizing " + names_of_missing(recipes, cache));
   return synthesized_recordings(
       recipes, cache, threads, [&](int done, int of) { bar.show(done, of); });
 }

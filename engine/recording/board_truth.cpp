@@ -5,17 +5,16 @@
 #include "engine/recording/board_cache.h"
 #include "engine/recording/board_corners.h"
 #include "engine/recording/board_pose.h"
+#include "engine/recording/each_picture.h"
 
 #include <algorithm>
-#include <exception>
 #include <limits>
 #include <mutex>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 namespace gpo {
 
@@ -24,69 +23,6 @@ namespace {
 constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGoodPx = 0.5;  ///< a blurred frame among very sharp ones is no mistake
 constexpr int kMedianFrames = 30;
-
-/// Looks for the board in the pictures of some frames, on all processors.
-class BoardSearch {
- public:
-  BoardSearch(const Recording& recording, std::vector<int> frames, std::stop_token stop)
-      : recording_(recording), frames_(std::move(frames)), stop_(std::move(stop)) {}
-
-  /// Throws what decoding throws; `views` has what was found until then.
-  void run(BoardViews& views, const std::function<void()>& told) {
-    const auto count = static_cast<unsigned>(frames_.size());
-    {
-      std::vector<std::jthread> helpers;
-      for (unsigned i = 1; i < std::min(count, std::thread::hardware_concurrency()); ++i) {
-        helpers.emplace_back([&] { work(views, told); });
-      }
-      work(views, told);
-    }
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  void work(BoardViews& views, const std::function<void()>& told) {
-    try {
-      while (const auto frame = next()) {
-        cv::Mat gray;
-        cv::cvtColor(frame->bgr, gray, cv::COLOR_BGR2GRAY);
-        const Board& board = *recording_.board;
-        const auto pose = board_pose(find_board(gray, board), board, recording_.camera);
-        const std::scoped_lock lock(mutex_);
-        views[frame->index] = pose;
-        told();
-      }
-    } catch (...) {
-      const std::scoped_lock lock(mutex_);
-      error_ = std::current_exception();
-    }
-  }
-
-  struct Frame {
-    int index;
-    cv::Mat bgr;
-  };
-  /// Decoded in the order of the frames: a video goes backward only from its beginning again.
-  std::optional<Frame> next() {
-    const std::scoped_lock lock(decoding_);
-    if (next_ == frames_.size() || stop_.stop_requested() || failed()) return std::nullopt;
-    const int index = frames_[next_++];
-    return Frame{index, recording_.pictures->bgr(index)};
-  }
-
-  bool failed() {
-    const std::scoped_lock lock(mutex_);
-    return error_ != nullptr;
-  }
-
-  const Recording& recording_;
-  std::vector<int> frames_;
-  std::stop_token stop_;
-  std::size_t next_ = 0;
-  std::mutex decoding_;
-  std::mutex mutex_;  ///< of the views and of the error
-  std::exception_ptr error_;
-};
 
 /// From the cache, and from the pictures where the cache has none.
 BoardViews look_at(const Recording& recording,
@@ -103,14 +39,19 @@ BoardViews look_at(const Recording& recording,
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
   BoardViews found;
+  std::mutex mutex;
+  const auto look = [&](int frame, const cv::Mat& gray) {
+    const Board& board = *recording.board;
+    const auto pose = board_pose(find_board(gray, board), board, recording.camera);
+    const std::scoped_lock lock(mutex);
+    found[frame] = pose;
+    if (progress) progress(++done, of);
+  };
   const auto save = [&] {
     if (cache && !found.empty()) save_board_views(*cache, found);
   };
   try {
-    BoardSearch(recording, missing, stop).run(found, [&] {
-      ++done;
-      if (progress) progress(done, of);
-    });
+    for_each_picture(*recording.pictures, missing, stop, look);
   } catch (...) {
     save();
     throw;

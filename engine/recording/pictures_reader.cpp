@@ -126,6 +126,23 @@ bool holds_pictures(const fs::path& folder) {
   return !videos_in(folder).empty() || !pictures_in(folder).empty();
 }
 
+std::shared_ptr<const FrameCache> open_pictures(const fs::path& path, std::size_t cache_bytes) {
+  Recording recording;  // not calibrated: of any size
+  if (const auto video = video_at(path)) {
+    if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).pictures;
+    throw InputError(path.string() +
+                     ": found a file that is no video, expected a folder or mp4, avi, mov, mkv");
+  }
+  for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
+    if (!is_folder(folder)) continue;
+    auto files = pictures_in(folder);
+    if (files.empty()) continue;
+    add_picture_files(recording, std::move(files), cache_bytes);
+    return recording.pictures;
+  }
+  throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
+}
+
 Recording read_pictures(const fs::path& path,
                         const std::optional<fs::path>& tracks,
                         std::size_t cache_bytes) {

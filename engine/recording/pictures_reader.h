@@ -16,6 +16,11 @@ Recording read_pictures(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& tracks,
                         std::size_t cache_bytes);
 
+/// Only the pictures of a video, of a folder with one or with numbered pictures, or of any layout's
+/// folder; of whatever size, without a calibration. Throws InputError where there are none.
+std::shared_ptr<const FrameCache> open_pictures(const std::filesystem::path& path,
+                                                std::size_t cache_bytes);
+
 /// Whether the folder holds a video or numbered pictures.
 bool holds_pictures(const std::filesystem::path& folder);
 

@@ -3,13 +3,8 @@
 #include "engine/synthesis/random.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <numbers>
-#include <thread>
-#include <vector>
 
 namespace gpo {
 namespace {
@@ -73,26 +68,6 @@ double fractal_noise(double x, double y, int octaves, std::uint64_t seed) {
     weight += size;
   }
   return sum / weight;
-}
-
-void in_parallel(int count, int threads, const std::function<void(int i)>& work) {
-  std::atomic<int> next = 0;
-  std::exception_ptr error;
-  std::mutex error_mutex;
-  const auto take_turns = [&] {
-    try {
-      for (int i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(error_mutex);
-      error = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    for (int i = 1; i < std::max(1, threads); ++i) helpers.emplace_back(take_turns);
-    take_turns();
-  }
-  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace gpo

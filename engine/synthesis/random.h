@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 namespace gpo {
 
@@ -24,8 +23,5 @@ class Random {
 /// Smooth noise in [0, 1], about 0.5 in the mean; features of size 1, then 1/2, 1/4 ... weighted by
 /// their size.
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
-
-/// Calls `work(i)` for each i below `count` on some threads, in no particular order.
-void in_parallel(int count, int threads, const std::function<void(int i)>& work);
 
 }  // namespace gpo

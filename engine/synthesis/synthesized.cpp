@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesized.h"
 
+#include "engine/parallel.h"
 #include "engine/recording/text_file.h"
 #include "engine/synthesis/folder_lock.h"
-#include "engine/synthesis/random.h"
 
 #include <algorithm>
 #include <exception>

@@ -1,0 +1,86 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/calibration_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+
+namespace {
+
+std::string row(const std::string& name, const std::string& value) {
+  return fmt::format("{:<12}{}\n", name, value);
+}
+
+/// "[1, 2]", rounded to `digits` significant ones.
+std::string list(const std::vector<double>& values, int digits) {
+  std::string text;
+  for (const double value : values) {
+    text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
+  }
+  return fmt::format("[{}]", text);
+}
+
+std::vector<double> first_four(const std::vector<double>& all) {
+  return {all.begin(), all.begin() + 4};
+}
+std::vector<double> coefficients(const std::vector<double>& all) {
+  return {all.begin() + 4, all.end()};
+}
+
+std::string seen(const CameraCalibration& calibration) {
+  return fmt::format("corners in {:.0f} % of the picture, board slanted by up to {:.0f} deg",
+                     100 * calibration.coverage,
+                     calibration.slant_deg);
+}
+
+}  // namespace
+
+std::string to_yaml(const CameraCalibration& calibration, const std::string& source) {
+  const Camera& camera = calibration.camera;
+  const auto values = parameters(camera);
+  std::string text = fmt::format("# calibrated from {}: {} views of a board, RMS {:.2f} px\n# {}\n",
+                                 source,
+                                 calibration.frames.size(),
+                                 calibration.rms_px,
+                                 seen(calibration));
+  for (const std::string& warning : calibration.warnings) {
+    text += fmt::format("# warning: {}\n", warning);
+  }
+  text += fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      camera.width,
+      camera.height,
+      list(first_four(values), 8),
+      camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
+      list(coefficients(values), 6));
+  return text + fmt::format(
+                    "# standard deviations, from leaving out blocks of time\n"
+                    "intrinsics_sigma: {}\ndistortion_coefficients_sigma: {}\n",
+                    list(first_four(calibration.sigmas), 3),
+                    list(coefficients(calibration.sigmas), 3));
+}
+
+std::string to_text(const CameraCalibration& calibration) {
+  const auto names = parameter_names(calibration.camera);
+  const auto values = parameters(calibration.camera);
+  std::string text = row("views",
+                         fmt::format("{} used; the board was found in {} of {} pictures",
+                                     calibration.frames.size(),
+                                     calibration.found,
+                                     calibration.examined)) +
+                     row("RMS", fmt::format("{:.3f} px", calibration.rms_px));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double sigma = calibration.sigmas[i];
+    text += row(names[i],
+                i < 4 ? fmt::format("{:10.2f} +- {:.2f} px", values[i], sigma)
+                      : fmt::format("{:10.5f} +- {:.5f}", values[i], sigma));
+  }
+  text += row("seen", seen(calibration));
+  for (const std::string& warning : calibration.warnings) text += row("warning", warning);
+  return text;
+}
+
+}  // namespace gpo

@@ -1,0 +1,221 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/calibration_views.h"
+
+#include "engine/error.h"
+#include "engine/recording/board_corners.h"
+#include "engine/recording/board_pose.h"
+#include "engine/recording/each_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include <fmt/format.h>
+#include <opencv2/calib3d.hpp>
+
+namespace gpo {
+
+namespace {
+
+constexpr std::size_t kLeastCorners = 8;
+constexpr double kMostBlurred = 2;  // times the median width of edges
+
+using Feature = Eigen::Matrix<double, 6, 1>;
+
+std::vector<int> regular_sample(int count, int most) {
+  std::vector<int> sample;
+  const int taken = std::min(count, most);
+  for (int i = 0; i < taken; ++i) {
+    sample.push_back(static_cast<int>(std::int64_t{i} * count / taken));
+  }
+  return sample;
+}
+
+std::size_t seen_count(const std::vector<Eigen::Vector2d>& corners) {
+  return std::count_if(
+      corners.begin(), corners.end(), [](const auto& corner) { return corner.allFinite(); });
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Gray by bilinear interpolation; nothing outside of the picture.
+std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& at) {
+  const int u = static_cast<int>(std::floor(at.x()));
+  const int v = static_cast<int>(std::floor(at.y()));
+  if (u < 0 || v < 0 || u + 1 >= gray.cols || v + 1 >= gray.rows) return std::nullopt;
+  const double a = at.x() - u;
+  const double b = at.y() - v;
+  const auto px = [&](int x, int y) { return static_cast<double>(gray.at<std::uint8_t>(y, x)); };
+  return (1 - b) * ((1 - a) * px(u, v) + a * px(u + 1, v)) +
+         b * ((1 - a) * px(u, v + 1) + a * px(u + 1, v + 1));
+}
+
+/// Width of the edge that runs through the middle between two corners: its height by its steepest
+/// slope.
+std::optional<double> edge_width(const cv::Mat& gray,
+                                 const Eigen::Vector2d& a,
+                                 const Eigen::Vector2d& b,
+                                 double reach) {
+  const Eigen::Vector2d along = b - a;
+  const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+  const double half = std::max(2.0, reach * along.norm());
+  const auto at = [&](double t) { return gray_at(gray, (a + b) / 2 + t * across); };
+  const auto low = at(-half);
+  const auto high = at(half);
+  if (!low || !high) return std::nullopt;
+  double slope = 0;
+  for (double t = -half + 0.5; t <= half - 0.5; t += 0.5) {
+    slope = std::max(slope, std::abs(*at(t + 0.5) - *at(t - 0.5)));
+  }
+  constexpr double kLeastContrast = 20;
+  const double contrast = std::abs(*high - *low);
+  if (contrast < kLeastContrast || slope == 0) return std::nullopt;
+  return std::max(1.0, contrast / slope);
+}
+
+/// The larger of the medians along rows and columns, since motion blurs in one direction; infinite
+/// where there is no contrast.
+double edge_width(const cv::Mat& gray,
+                  const std::vector<Eigen::Vector2d>& corners,
+                  const Board& board) {
+  // A marker must not be met beside the edge.
+  const double gap = board.markers ? (1 - board.markers->side_m / board.square_m) / 2 : 1;
+  const double reach = std::min(0.25, 0.9 * gap);
+  std::vector<double> widths[2];
+  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+    const auto add = [&](int direction, int next) {
+      if (!corners[i].allFinite() || !corners[next].allFinite()) return;
+      if (const auto width = edge_width(gray, corners[i], corners[next], reach)) {
+        widths[direction].push_back(*width);
+      }
+    };
+    if (i % board.columns + 1 < board.columns) add(0, i + 1);
+    if (i + board.columns < static_cast<int>(corners.size())) add(1, i + board.columns);
+  }
+  double largest = 0;
+  for (const auto& of_direction : widths) {
+    largest = std::max(
+        largest,
+        of_direction.empty() ? std::numeric_limits<double>::infinity() : median(of_direction));
+  }
+  return largest;
+}
+
+/// Where the board is in the picture, how large, how it is slanted, and when; scaled so that a
+/// distance of 0.1 is a view that differs.
+std::optional<Feature> feature_of(const CalibrationView& view,
+                                  const Board& board,
+                                  cv::Size size,
+                                  int last_frame) {
+  const auto points = board_points(board);
+  const double diagonal = std::hypot(size.width, size.height);
+  const Eigen::Vector3d middle = (points.front() + points.back()) / 2;
+  const double board_size = (points.back() - points.front()).norm();
+  std::vector<cv::Point2d> from;
+  std::vector<cv::Point2d> to;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!view.corners[i].allFinite()) continue;
+    const Eigen::Vector3d point = (points[i] - middle) / board_size;
+    from.emplace_back(point.x(), point.y());
+    to.emplace_back(view.corners[i].x() / diagonal, view.corners[i].y() / diagonal);
+  }
+  const cv::Mat found = cv::findHomography(from, to);
+  if (found.empty()) return std::nullopt;
+  const cv::Matx33d H = cv::Matx33d(found) * (1 / found.at<double>(2, 2));
+  const double area = std::abs((H(0, 0) - H(0, 2) * H(2, 0)) * (H(1, 1) - H(1, 2) * H(2, 1)) -
+                               (H(0, 1) - H(0, 2) * H(2, 1)) * (H(1, 0) - H(1, 2) * H(2, 0)));
+  Feature feature;
+  feature << H(0, 2), H(1, 2), 0.25 * std::log(area), 2 * H(2, 0), 2 * H(2, 1),
+      0.3 * view.frame / std::max(1, last_frame);
+  return feature;
+}
+
+struct Candidate {
+  const CalibrationView* view;
+  Feature feature;
+  double sharpness;                                           ///< 1: as the median, at most 1.5
+  double distance = std::numeric_limits<double>::infinity();  ///< to the nearest chosen one
+  bool chosen = false;
+};
+
+std::vector<Candidate> sharp_candidates(const BoardSearch& search, const Board& board) {
+  std::vector<double> widths;
+  for (const auto& view : search.views) widths.push_back(view.edge_px);
+  const double typical = median(widths);
+  std::vector<Candidate> candidates;
+  for (const auto& view : search.views) {
+    if (view.edge_px > kMostBlurred * typical) continue;
+    const auto feature = feature_of(view, board, search.size, search.views.back().frame);
+    if (!feature) continue;
+    candidates.push_back({&view, *feature, std::min(1.5, typical / view.edge_px)});
+  }
+  return candidates;
+}
+
+}  // namespace
+
+BoardSearch find_calibration_views(const FrameCache& pictures,
+                                   const Board& board,
+                                   int most_frames,
+                                   const std::function<void(int done, int of)>& progress,
+                                   const std::stop_token& stop) {
+  const std::vector<int> frames = regular_sample(pictures.count(), most_frames);
+  BoardSearch search;
+  search.size = pictures.bgr(frames.front()).size();
+  std::mutex mutex;
+  const auto look = [&](int frame, const cv::Mat& gray) {
+    if (gray.size() != search.size) {
+      throw InputError(fmt::format("picture {}: found {}x{} pixels, expected {}x{} as in the first",
+                                   frame,
+                                   gray.cols,
+                                   gray.rows,
+                                   search.size.width,
+                                   search.size.height));
+    }
+    CalibrationView view{frame, find_board(gray, board)};
+    const bool found = seen_count(view.corners) >= kLeastCorners;
+    if (found) view.edge_px = edge_width(gray, view.corners, board);
+    const std::scoped_lock lock(mutex);
+    ++search.examined;
+    if (found) search.views.push_back(std::move(view));
+    if (progress) progress(search.examined, static_cast<int>(frames.size()));
+  };
+  for_each_picture(pictures, frames, stop, look);
+  std::ranges::sort(search.views, {}, &CalibrationView::frame);
+  return search;
+}
+
+std::vector<CalibrationView> choose_views(const BoardSearch& search,
+                                          const Board& board,
+                                          int count) {
+  if (search.views.empty()) return {};
+  std::vector<Candidate> candidates = sharp_candidates(search, board);
+  // The next is always the one that is farthest from all that were chosen; first the sharpest.
+  const auto worth = [](const Candidate& one) {
+    if (one.chosen) return -1.0;
+    return std::isinf(one.distance) ? one.sharpness : one.distance * one.sharpness;
+  };
+  const int taken = std::min(count, static_cast<int>(candidates.size()));
+  for (int i = 0; i < taken; ++i) {
+    Candidate& next = *std::ranges::max_element(candidates, {}, worth);
+    next.chosen = true;
+    for (Candidate& other : candidates) {
+      other.distance = std::min(other.distance, (other.feature - next.feature).norm());
+    }
+  }
+  std::vector<CalibrationView> views;
+  for (const Candidate& one : candidates) {
+    if (one.chosen) views.push_back(*one.view);
+  }
+  return views;
+}
+
+}  // namespace gpo

@@ -1,0 +1,164 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/calibrate.h"
+
+#include "engine/recording/calibration_file.h"
+#include "tests/app/program.h"
+#include "tests/engine/recording/rendered_board.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::BadInput;
+using test::Outcome;
+using test::program;
+using testing::HasSubstr;
+
+const Board kBoard{9, 6, 0.025};
+
+Camera camera() {
+  return {
+      320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
+}
+
+/// Pictures of the board from many sides, without a calibration.
+void write_pictures(const fs::path& folder, int count) {
+  fs::create_directories(folder);
+  for (int i = 0; i < count; ++i) {
+    const double turn = 2.4 * i;
+    const double tilt_deg = 38 * std::sin(turn);
+    Pose pose = test::looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
+    const Eigen::Matrix3d R = pose.R_wc * so3_exp({0, radians(25 * std::cos(turn)), 0});
+    const Eigen::Vector3d aside(0.05 * std::sin(1.7 * i), 0.03 * std::cos(2.9 * i), 0);
+    pose = {R, Eigen::Vector3d(0.1, 0.0625, 0) + aside - (0.3 + 0.02 * (i % 5)) * R.col(2)};
+    cv::imwrite((folder / fmt::format("{:03d}.png", i)).string(),
+                test::render_board(kBoard, camera(), pose));
+  }
+}
+
+std::vector<double> numbers_of(const fs::path& file, const char* key) {
+  return numbers(at(load_yaml(file), key, "numbers"));
+}
+
+TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
+  const fs::path folder = test::fresh_folder();
+  write_pictures(folder / "in", 24);
+  const fs::path output = folder / "in/camera.yaml";
+  const Outcome outcome = program(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
+                                              (folder / "in").string(),
+                                              output.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.out, HasSubstr("RMS "));
+  EXPECT_THAT(outcome.out, HasSubstr(" +- "));
+  const auto found = parameters(read_calibration(output).camera);
+  auto sigmas = numbers_of(output, "intrinsics_sigma");
+  const auto of_lens = numbers_of(output, "distortion_coefficients_sigma");
+  sigmas.insert(sigmas.end(), of_lens.begin(), of_lens.end());
+  const auto truth = parameters(camera());
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_LT(std::abs(found[k] - truth[k]), 3 * sigmas[k]) << k;
+  }
+  EXPECT_LT(sigmas[0], 6);
+  // Now it can be opened, and with a board.yaml has truth.
+  test::write_file(folder / "in/board.yaml",
+                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  const Outcome info = program("info " + (folder / "in").string());
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("certain to"));
+  // The board is known from then on; 8 coefficients, another file.
+  EXPECT_EQ(program(fmt::format("calibrate {} --coefficients 5 --output {}",
+                                (folder / "in").string(),
+                                (folder / "again.yaml").string()))
+                .exit_code,
+            0);
+  EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
+}
+
+TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
+  const fs::path folder = test::fresh_folder();
+  fs::create_directories(folder / "in");
+  for (int i = 0; i < 3; ++i) {
+    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  }
+  const Outcome outcome = program(fmt::format(
+      "calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml", folder.string()));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out,
+              HasSubstr("calibration failed: the board was found, and sharp, in 0 of 3 pictures"));
+  EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
+}
+
+class BadCalibration : public testing::TestWithParam<BadInput> {};
+
+TEST_P(BadCalibration, IsRefusedInOneLine) {
+  const fs::path folder = test::fresh_folder();
+  const BadInput& bad = GetParam();
+  const std::string output = (folder / "camera.yaml").string();
+  expect_refused(
+      program(fmt::format(fmt::runtime("calibrate " + bad.arguments), output)), bad, folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    BadCalibration,
+    testing::Values(
+        BadInput{"assets --board 9y6 --square 0.02 --output {}",
+                 "--board: '9y6', expected COLUMNSxROWS of inner corners, 3 to 100 each"},
+        BadInput{"assets --board 9x2 --square 0.02 --output {}", "--board: '9x2', expected"},
+        BadInput{"assets --board 9x6 --output {}", "--square is required with --board"},
+        BadInput{"assets --board 9x6 --square -1 --output {}",
+                 "--square: -1, expected a length in meters, > 0"},
+        BadInput{"assets --output {}", "--board is required: there is no assets/board.yaml"},
+        BadInput{"assets/fonts --board 9x6 --square 0.02 --output {}",
+                 "assets/fonts: found no pictures, expected a video or numbered pictures"},
+        BadInput{"README.md --board 9x6 --square 0.02 --output {}",
+                 "README.md: found a file that is no video"},
+        BadInput{"no/such --board 9x6 --square 0.02 --output {}",
+                 "no/such: no such file or folder"},
+        BadInput{"assets --board 9x6 --square 0.02 --output {}/no/camera.yaml",
+                 "cannot be written, there is no folder"},
+        BadInput{"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.04 --output {}",
+                 "--marker: 0.04, expected less than the square's side, 0.03"},
+        BadInput{"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.02 --output {}",
+                 "--dictionary: '', expected one of DICT_4X4_50, "},
+        BadInput{
+            "assets --board 9x6 --square 0.02 --model equidistant --coefficients 5 --output {}",
+            "--coefficients: 5, expected 4 with --model equidistant"},
+        BadInput{"assets --board 9x6 --square 0.02 --coefficients 6 --output {}",
+                 "--coefficients"}));
+
+/// The recordings' camera.yaml came from their own board views, too (sigma of f: 3.7 and 0.8 px).
+class RealCalibration : public testing::TestWithParam<std::string> {};
+
+TEST_P(RealCalibration, AgreesWithTheRecordingsOwn) {
+  const fs::path recording = fs::path(GPO_SHARED_DIR) / "data" / GetParam();
+  if (!fs::exists(recording)) GTEST_SKIP() << "the recording is not on this machine";
+  const fs::path output = test::fresh_folder() / "camera.yaml";
+  const Outcome outcome =
+      program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const auto found = parameters(read_calibration(output).camera);
+  const auto expected = parameters(read_calibration(recording / "camera.yaml").camera);
+  auto sigmas = numbers_of(output, "intrinsics_sigma");
+  const auto of_lens = numbers_of(output, "distortion_coefficients_sigma");
+  sigmas.insert(sigmas.end(), of_lens.begin(), of_lens.end());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_LT(std::abs(found[k] - expected[k]), 3 * sigmas[k]) << k << outcome.out;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         RealCalibration,
+                         testing::Values("chessboard-floor", "chessboard-dark"));
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,219 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/calibrate.h"
+
+#include "engine/calibration/calibration_report.h"
+#include "engine/recording/board_pose.h"
+#include "engine/recording/calibration_file.h"
+#include "tests/engine/recording/rendered_board.h"
+#include "tests/engine/recording/test_folder.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const Board kBoard{9, 6, 0.025};
+
+Camera phone() {
+  return {640, 480, 600, 604, 317, 243, Distortion::radial_tangential, {0.12, -0.25, 1e-3, -6e-4}};
+}
+Camera wide() {
+  return {640, 480, 280, 281, 322, 236, Distortion::equidistant, {0.02, -0.01, 0.004, -0.001}};
+}
+
+/// Looks at a place on the board from somewhere, with a slant of at most `slant_deg`.
+Pose pose_from(std::mt19937& random, double distance, double slant_deg) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double slant = radians(slant_deg);
+  const Eigen::Matrix3d R =
+      so3_exp({slant * uniform(random), slant * uniform(random), 0.5 * uniform(random)});
+  const Eigen::Vector3d looked_at(0.1 + 0.12 * uniform(random), 0.06 + 0.1 * uniform(random), 0);
+  return {R, looked_at - distance * (1 + 0.3 * uniform(random)) * R.col(2)};
+}
+
+/// Views as a search would have found them, with noise on the corners.
+BoardSearch simulated(const Camera& camera, int count, int seed, double distance, double slant) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.15);
+  BoardSearch search;
+  search.size = {camera.width, camera.height};
+  while (static_cast<int>(search.views.size()) < count) {
+    CalibrationView view{
+        search.examined++, project_board(kBoard, camera, pose_from(random, distance, slant)), 1.5};
+    bool inside = true;
+    for (auto& corner : view.corners) {
+      corner += Eigen::Vector2d(noise(random), noise(random));
+      inside = inside && corner.x() > 0 && corner.y() > 0 && corner.x() < camera.width - 1 &&
+               corner.y() < camera.height - 1;
+    }
+    if (inside) search.views.push_back(std::move(view));
+  }
+  return search;
+}
+
+/// Largest |error| / standard deviation of the parameters.
+double largest_normalized_error(const CameraCalibration& found, const Camera& truth) {
+  const auto values = parameters(found.camera);
+  const auto expected = parameters(truth);
+  double largest = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    largest = std::max(largest, std::abs(values[k] - expected[k]) / found.sigmas[k]);
+  }
+  return largest;
+}
+
+TEST(Calibrate, FindsTheCameraWithinThreeStandardDeviations) {
+  for (const int seed : {1, 2, 3, 4}) {
+    const auto found = calibrate_camera(simulated(phone(), 40, seed, 0.4, 35), kBoard);
+    ASSERT_TRUE(found.ok) << found.reason;
+    EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
+    EXPECT_LT(found.sigmas[0], 6) << seed;
+    EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
+    EXPECT_EQ(found.found, 40);
+    EXPECT_GT(found.coverage, 0.7);
+    EXPECT_GT(found.slant_deg, 25);
+    EXPECT_TRUE(found.warnings.empty()) << found.warnings.front();
+  }
+}
+
+TEST(Calibrate, FindsAWideLens) {
+  const CalibrationOptions options{.distortion = Distortion::equidistant};
+  for (const int seed : {1, 2}) {
+    const auto found = calibrate_camera(simulated(wide(), 40, seed, 0.2, 35), kBoard, options);
+    ASSERT_TRUE(found.ok) << found.reason;
+    EXPECT_EQ(found.camera.distortion, Distortion::equidistant);
+    // Of eight parameters whose standard deviations are from ten blocks, one may be beyond 3.
+    EXPECT_LT(largest_normalized_error(found, wide()), 4) << seed;
+    EXPECT_LT(found.sigmas[0], 3) << seed;
+  }
+}
+
+TEST(Calibrate, GivesAsManyCoefficientsAsAskedFor) {
+  const BoardSearch search = simulated(phone(), 20, 1, 0.4, 35);
+  for (const int count : {5, 8}) {
+    const auto found = calibrate_camera(search, kBoard, {.coefficients = count});
+    EXPECT_EQ(found.camera.coefficients.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(parameter_names(found.camera).size(), static_cast<std::size_t>(4 + count));
+  }
+}
+
+TEST(Calibrate, LeavesOutViewsThatFitFarWorse) {
+  BoardSearch search = simulated(phone(), 30, 5, 0.4, 35);
+  for (std::size_t i = 0; i < search.views[7].corners.size(); i += 2) {
+    search.views[7].corners[i].x() += 4;
+  }
+  const auto found = calibrate_camera(search, kBoard);
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_THAT(found.frames, testing::Not(testing::Contains(search.views[7].frame)));
+  EXPECT_LT(largest_normalized_error(found, phone()), 3);
+}
+
+TEST(Calibrate, TakesViewsWithHiddenCorners) {
+  BoardSearch search = simulated(phone(), 30, 6, 0.4, 35);
+  for (auto& view : search.views) {
+    for (int i = 0; i < 20; ++i) view.corners[i].x() = std::numeric_limits<double>::quiet_NaN();
+  }
+  const auto found = calibrate_camera(search, kBoard);
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_LT(largest_normalized_error(found, phone()), 3);
+}
+
+TEST(Calibrate, SaysWhyItFails) {
+  const auto few = calibrate_camera(simulated(phone(), 5, 1, 0.4, 35), kBoard);
+  EXPECT_FALSE(few.ok);
+  EXPECT_THAT(few.reason, HasSubstr("the board was found, and sharp, in 5 of "));
+  EXPECT_FALSE(calibrate_camera({}, kBoard).ok);
+  // From straight above a longer lens at a larger distance sees the same.
+  const auto frontal = calibrate_camera(simulated(phone(), 30, 1, 0.4, 1), kBoard);
+  EXPECT_FALSE(frontal.ok);
+  EXPECT_NE(frontal.reason, "");
+}
+
+TEST(Calibrate, WarnsWhereTheBoardStayedInTheMiddle) {
+  BoardSearch search = simulated(phone(), 150, 2, 0.9, 35);
+  std::erase_if(search.views, [](const CalibrationView& view) {
+    return std::ranges::any_of(view.corners, [](const Eigen::Vector2d& corner) {
+      return corner.x() < 140 || corner.x() > 500 || corner.y() < 100 || corner.y() > 380;
+    });
+  });
+  const auto found = calibrate_camera(search, kBoard);
+  ASSERT_TRUE(found.ok) << found.reason;
+  ASSERT_FALSE(found.warnings.empty());
+  EXPECT_THAT(found.warnings.front(), HasSubstr("% of the picture only"));
+}
+
+TEST(ChooseViews, TakesDifferentOnesInOrderOfTimeWithoutTheBlurred) {
+  BoardSearch search = simulated(phone(), 12, 3, 0.4, 35);
+  // Twenty more of the first, one of them sharper, and a blurred one that differs from all.
+  for (int i = 0; i < 20; ++i) search.views.insert(search.views.begin(), search.views.front());
+  for (int i = 0; i < 32; ++i) search.views[i].frame = i <= 20 ? 0 : i;
+  search.views[4].edge_px = 1.4;
+  search.views[4].frame = 1;
+  search.views.back().edge_px = 5;
+  const auto chosen = choose_views(search, kBoard, 11);
+  std::vector<int> frames;
+  for (const auto& view : chosen) frames.push_back(view.frame);
+  EXPECT_TRUE(std::ranges::is_sorted(frames));
+  EXPECT_THAT(frames, ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
+}
+
+TEST(CalibrationViews, KnowHowWideEdgesAre) {
+  Camera camera = phone();
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = camera.fy = 300;
+  camera.cx = 160;
+  camera.cy = 120;
+  const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
+  const FrameCache pictures(3, [&](int index) {
+    cv::Mat picture;
+    const std::vector<cv::Size> blur = {{1, 1}, {7, 1}, {1, 9}};
+    cv::blur(sharp, picture, blur[index]);
+    cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
+    return picture;
+  });
+  std::vector<int> told;
+  const BoardSearch search =
+      find_calibration_views(pictures, kBoard, 10, [&](int done, int) { told.push_back(done); });
+  EXPECT_THAT(told, ElementsAre(1, 2, 3));
+  EXPECT_EQ(search.size, sharp.size());
+  ASSERT_EQ(search.views.size(), 3U);
+  EXPECT_LT(search.views[0].edge_px, 2);
+  EXPECT_GT(search.views[1].edge_px, 3);
+  EXPECT_GT(search.views[2].edge_px, 3);
+}
+
+TEST(CalibrationViews, MustBeOfOneSize) {
+  const FrameCache pictures(
+      2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
+  EXPECT_EQ(test::error_of([&] { find_calibration_views(pictures, kBoard, 10); }),
+            "picture 1: found 65x48 pixels, expected 64x48 as in the first");
+}
+
+TEST(CalibrationReport, IsReadAsACalibration) {
+  CameraCalibration calibration;
+  calibration.ok = true;
+  calibration.camera = phone();
+  calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
+  calibration.frames = {1, 2, 3};
+  calibration.warnings = {"something: to mind"};
+  const test::TestFolder folder;
+  const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
+  EXPECT_EQ(read_calibration(file).camera, phone());
+  EXPECT_THAT(to_yaml(calibration, "a video.mp4"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
+  EXPECT_THAT(to_text(calibration), HasSubstr("fx              600.00 +- 1.50 px\n"));
+  EXPECT_THAT(to_text(calibration), HasSubstr("warning     something: to mind\n"));
+}
+
+}  // namespace
+}  // namespace gpo
