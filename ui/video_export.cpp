@@ -3,6 +3,7 @@
 #include "ui/video_export.h"
 
 #include "engine/error.h"
+#include "engine/recording/video_decoder.h"
 
 #include <utility>
 
@@ -11,6 +12,18 @@
 #include <opencv2/videoio.hpp>
 
 namespace gpo {
+namespace {
+
+/// The writer does not tell a full disk, but the number of frames is written last.
+int frames_in(const std::filesystem::path& file) {
+  try {
+    return static_cast<int>(VideoDecoder(file).index().declared_count);
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
+}  // namespace
 
 VideoExport::VideoExport(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size) {
@@ -40,9 +53,7 @@ void VideoExport::add(const cv::Mat& picture) {
 
 void VideoExport::finish() {
   writer_->release();
-  // The writer does not tell a full disk; the number of frames is written last.
-  const cv::VideoCapture written(unfinished_.path().string(), cv::CAP_FFMPEG);
-  if (count_ == 0 || static_cast<int>(written.get(cv::CAP_PROP_FRAME_COUNT)) != count_) {
+  if (count_ == 0 || frames_in(unfinished_.path()) != count_) {
     throw InputError(file_.string() + ": was not written whole; is the disk full?");
   }
   unfinished_.finish();
