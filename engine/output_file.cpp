@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Where a link leads to, whether that exists or not; a link of itself leads to itself.
+/// Where a link leads to, whether that exists or not.
 fs::path followed(fs::path file) {
   constexpr int kMostLinks = 40;
   std::error_code error;
@@ -61,6 +61,7 @@ void write_whole(const fs::path& path, const fs::path& name, const std::string& 
 
 void check_writable(const fs::path& file) {
   std::error_code error;
+  if (fs::status(file, error).type() == fs::file_type::none) refuse(file, error);
   const fs::path folder = folder_of(followed(file));
   if (!fs::is_directory(folder, error)) {
     throw InputError(fmt::format(
