@@ -12,6 +12,18 @@
 #include <opencv2/videoio.hpp>
 
 namespace gpo {
+namespace {
+
+/// The writer does not tell a full disk, but the number of frames is written last.
+int frames_in(const std::filesystem::path& file) {
+  try {
+    return static_cast<int>(VideoDecoder(file).index().declared_count);
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
+}  // namespace
 
 namespace {
 

@@ -317,7 +317,7 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
     for (int track = 0; track < 120; ++track) {
       const Eigen::Vector3d point_w(0.3 * Eigen::Vector2d::Random().homogeneous() -
                                     0.3 * Eigen::Vector3d::UnitZ());
-      for (int i = 5 + track % 2; i < original().frame_count(); ++i) {
+      for (int i = 5 + track % 2; i < kFrames; ++i) {
         const Eigen::Vector3d point_c = to_camera(original().truth->poses[i].value(), point_w);
         const Eigen::Vector2d px = project(original().camera, point_c);
         const bool seen =

@@ -203,7 +203,7 @@ TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
     open(inspection);
     const cv::Mat first = drawer_picture();
     std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-    cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/timing.png", first);
+    cv::imwrite(GPO_TEST_OUTPUT_DIR "/timing.png", first);
     inspection.timing = {10, 220, 33, 4, 3, 270};
     open(inspection);
     EXPECT_EQ(same_bytes(first, drawer_picture()), !timings);

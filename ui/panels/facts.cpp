@@ -8,7 +8,9 @@
 #include "engine/recording/timestamps.h"
 #include "ui/panels/uncertainty_facts.h"
 
+#include <algorithm>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -152,6 +154,13 @@ ResultGroup nothing(std::string title, std::vector<std::string> labels) {
   return group;
 }
 
+/// Of the first time stamps: it is drawn anew with every frame of the window, and a long recording
+/// has a hundred thousand.
+double rate_at_start_hz(std::span<const std::int64_t> timestamps_ns) {
+  constexpr std::size_t kEnough = 200;
+  return rate_hz(timestamps_ns.first(std::min(timestamps_ns.size(), kEnough)));
+}
+
 }  // namespace
 
 ResultRow dash(std::string label, std::string why) {
@@ -163,11 +172,12 @@ std::vector<std::string> recording_facts(const Recording& recording) {
       recording.name,
       fmt::format("{}\u00d7{}", recording.camera.width, recording.camera.height),
       fmt::format("{} frames", recording.frame_count())};
-  const double frames_hz = rate_hz(recording.timestamps_ns);
+  const double frames_hz = rate_at_start_hz(recording.timestamps_ns);
   if (frames_hz > 0) facts.back() += fmt::format(" at {:.3g} Hz", frames_hz);
-  facts.push_back(recording.gyroscope
-                      ? fmt::format("gyro {:.3g} Hz", rate_hz(recording.gyroscope->timestamps_ns))
-                      : "no gyro");
+  facts.push_back(
+      recording.gyroscope
+          ? fmt::format("gyro {:.3g} Hz", rate_at_start_hz(recording.gyroscope->timestamps_ns))
+          : "no gyro");
   facts.push_back(recording.truth   ? "truth"
                   : recording.board ? "truth from the board"
                                     : "no truth");

@@ -7,8 +7,17 @@
 
 namespace gpo {
 
+namespace {
+
+float slot_width(const TimeAxis& axis) {
+  const int shown = axis.span.count > 0 ? axis.span.count : axis.frames;
+  return (axis.right - axis.left) / static_cast<float>(shown);
+}
+
+}  // namespace
+
 float slot_begin(const TimeAxis& axis, int frame) {
-  return axis.left + (axis.right - axis.left) * static_cast<float>(frame) / axis.frames;
+  return axis.left + slot_width(axis) * static_cast<float>(frame - axis.span.first);
 }
 
 float slot_middle(const TimeAxis& axis, int frame) {
@@ -16,8 +25,8 @@ float slot_middle(const TimeAxis& axis, int frame) {
 }
 
 int frame_at(const TimeAxis& axis, float x) {
-  const float slot = (axis.right - axis.left) / static_cast<float>(axis.frames);
-  return std::clamp(static_cast<int>(std::floor((x - axis.left) / slot)), 0, axis.frames - 1);
+  const auto slot = static_cast<int>(std::floor((x - axis.left) / slot_width(axis)));
+  return std::clamp(axis.span.first + slot, 0, axis.frames - 1);
 }
 
 }  // namespace gpo

@@ -125,6 +125,7 @@ void drag_window_ends(const PanelInput& input,
   const float x = ImGui::GetIO().MousePos.x;
   const auto handle = [&](const char* name, int frame, auto moved) {
     const float at = slot_begin(axis, frame);
+    if (at < bar.x || at > bar.right()) return;
     ImGui::SetCursorScreenPos({at - reach, bar.y});
     ImGui::InvisibleButton(name, {2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
@@ -141,9 +142,33 @@ void drag_window_ends(const PanelInput& input,
   });
 }
 
+void zoom_time(const TimeAxis& axis, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) push(commands, RunAction{"time-line"});
+  if (io.MouseWheel == 0) return;
+  const double share = (io.MousePos.x - axis.left) / (axis.right - axis.left);
+  const TimeSpan span = zoomed(axis.span, axis.frames, share, std::pow(0.8, io.MouseWheel));
+  push(commands,
+       RunAction{span.count > 0 ? fmt::format("time-line {} {}", span.first, span.count)
+                                : "time-line all"});
+}
+
+/// Where the shown part is in the whole recording.
+void draw_overview(ImDrawList& list, const TimeAxis& axis, float bottom, float scale) {
+  if (axis.span.count == 0) return;
+  const TimeAxis whole{axis.left, axis.right, axis.frames};
+  const float top = bottom - std::round(3 * scale);
+  const float left = slot_begin(whole, axis.span.first);
+  const float right = slot_begin(whole, axis.span.first + axis.span.count);
+  list.AddRectFilled({axis.left, top}, {axis.right, bottom}, imgui_color(kHovered));
+  list.AddRectFilled(
+      {left, top}, {std::max(right, left + 3 * scale), bottom}, imgui_color(kAccent));
+}
+
 void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
   const WorkbenchState& state = input.state;
-  const TimeAxis axis{bar.x, bar.right(), state.frame_count()};
+  const TimeAxis axis{
+      bar.x, bar.right(), state.frame_count(), holding(state.time_span, state.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(kRaised));
   if (axis.frames < 1) return;
@@ -155,6 +180,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   if (ImGui::IsItemActive()) {
     push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
+    zoom_time(axis, commands);
     const float x = ImGui::GetIO().MousePos.x;
     const int frame = frame_at(axis, x);
     // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
@@ -163,6 +189,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
     const std::string text = shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
     tooltip(note_at(state.bookmarks, frame) + text);
   }
+  list.PushClipRect({bar.x, bar.y - 8 * input.scale}, {bar.right(), bar.bottom()}, true);
   draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
   if (shown) {
     draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
@@ -171,6 +198,8 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   }
   draw_bookmarks(list, state.bookmarks, axis, bar.y, input.scale);
   draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);
+  draw_overview(list, axis, bar.bottom(), input.scale);
+  list.PopClipRect();
 }
 
 /// How playing goes: its speed and whether it repeats the window.

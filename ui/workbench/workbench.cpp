@@ -163,6 +163,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
         Severity::warning);
   }
   state.settings = fitting;
+  state.time_span = first_time_span(fitting, state.frame_count());
   state.frame = std::max(0, fitting.start + std::min(fitting.frames, state.frame_count()) - 1);
   if (const auto session = std::exchange(state.waiting_session, {}))
     continue_session(state, *session);

@@ -11,6 +11,7 @@
 #include "ui/views/palette.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
+#include "ui/workbench/time_span.h"
 
 #include <filesystem>
 #include <memory>
@@ -110,6 +111,7 @@ struct WorkbenchState {
   double speed = 1;                 ///< of playing, in the recording's own
   bool loop = false;                ///< playing repeats the window
   std::vector<Bookmark> bookmarks;  ///< by frame
+  TimeSpan time_span;               ///< of the time line
 
   Theme theme = Theme::dark;
   ViewToggles view;

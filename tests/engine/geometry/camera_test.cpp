@@ -68,7 +68,8 @@ TEST(Camera, ProjectsAsOpenCvDoes) {
   std::srand(1);
   for (const Camera& camera : cameras()) {
     for (int repeat = 0; repeat < 50; ++repeat) {
-      const Eigen::Vector3d point(0.5 * Eigen::Vector2d::Random().homogeneous());
+      const Eigen::Vector2d ideal = 0.5 * Eigen::Vector2d::Random();
+      const Eigen::Vector3d point = ideal.homogeneous();
       EXPECT_LT((project(camera, point) - opencv_projection(camera, point)).norm(), 1e-8);
     }
   }

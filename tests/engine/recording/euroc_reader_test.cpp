@@ -196,6 +196,10 @@ TEST_F(EurocReader, NamesAMissingPictureAndItsLine) {
 
 TEST_F(EurocReader, NamesMissingFiles) {
   std::filesystem::remove(folder.path() / "mav0/cam0/data.csv");
+  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1, 2, 3));  // by the pictures' names
+  folder.write("mav0/cam0/data/cat7.png", cv::Mat(48, 64, CV_8UC1));
+  EXPECT_THAT(error(), HasSubstr("cat7.png: found another name, expected a time stamp"));
+  std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
   EXPECT_EQ(error(), file("mav0/cam0/data.csv") + ": no such file");
   std::filesystem::remove(folder.path() / "mav0/cam0/sensor.yaml");
   EXPECT_THAT(error(), HasSubstr(": no such file"));

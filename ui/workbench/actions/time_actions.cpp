@@ -175,6 +175,43 @@ void add_window(std::vector<Action>& table) {
   table.push_back(end);
 }
 
+/// [all|window|FIRST COUNT]; without any: all, or from all to the window.
+void show_time(State& s, const Arguments& arguments) {
+  expect_count("time-line", arguments, 0, 2);
+  if (arguments.size() == 2) {
+    const int first = whole_number_in("time-line", arguments);
+    const int count = whole_number_in("time-line", arguments, 1);
+    if (first < 0 || count < 1 || first >= s.frame_count())
+      throw InputError(fmt::format("time-line: {} {}, expected frames of the recording, 0 to {}",
+                                   first,
+                                   count,
+                                   s.frame_count() - 1));
+    s.time_span = zoomed({first, count}, s.frame_count(), 0, 1);
+    return;
+  }
+  const std::string what = arguments.empty()          ? s.time_span.count > 0 ? "all" : "window"
+                           : arguments[0] == "all"    ? "all"
+                           : arguments[0] == "window" ? "window"
+                                                      : "";
+  if (what.empty())
+    throw InputError(
+        fmt::format("time-line: '{}', expected all, window, or two frame numbers", arguments[0]));
+  s.time_span = what == "all" ? TimeSpan{} : around_window(s.settings, s.frame_count());
+}
+
+void add_time_line(std::vector<Action>& table) {
+  Action show{
+      "time-line",
+      "Time line: all, or around the window",
+      "Time",
+      {},
+      "Which frames the time line shows; the wheel over it zooms, a double click shows all, "
+      "or the window"};
+  show.arguments = "[all|window|FIRST COUNT]";
+  show.run = show_time;
+  table.push_back(show);
+}
+
 }  // namespace
 
 void add_time_actions(std::vector<Action>& table) {
@@ -182,6 +219,7 @@ void add_time_actions(std::vector<Action>& table) {
   add_speed(table);
   add_steps(table);
   add_window(table);
+  add_time_line(table);
   add_bookmarks(table);
 }
 

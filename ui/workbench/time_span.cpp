@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/time_span.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+constexpr int kFewest = 10;
+
+TimeSpan within(double first, int count, int frames) {
+  if (count >= frames) return {};
+  const auto least = static_cast<int>(std::lround(first));
+  return {std::clamp(least, 0, frames - count), count};
+}
+
+}  // namespace
+
+TimeSpan around_window(const Settings& settings, int frames) {
+  const int count = std::max(3 * settings.frames, 2 * kFewest);
+  return within(settings.start - (count - settings.frames) / 2, count, frames);
+}
+
+TimeSpan first_time_span(const Settings& settings, int frames) {
+  constexpr int kHairline = 50;  // windows that would fit side by side
+  if (frames < kHairline * settings.frames) return {};
+  return zoomed(around_window(settings, frames), frames, 0.5, 4);
+}
+
+TimeSpan zoomed(const TimeSpan& span, int frames, double share, double factor) {
+  const int shown = span.count > 0 ? span.count : frames;
+  const int count =
+      std::clamp(static_cast<int>(std::lround(shown * factor)), std::min(kFewest, frames), frames);
+  return within(span.first + share * (shown - count), count, frames);
+}
+
+TimeSpan holding(TimeSpan span, int frame) {
+  if (span.count > 0) span.first = std::clamp(span.first, frame - span.count + 1, frame);
+  return span;
+}
+
+}  // namespace gpo
