@@ -238,6 +238,13 @@ void draw_numbers(const PanelInput& input, float left, float top, Commands& comm
   draw_playing(input, commands);
 }
 
+float width_of_longest_time(const PanelInput& input) {
+  if (!input.state.recording) return 0;
+  const auto& times = input.state.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times.back() - times.front()) * 1e-9;
+  return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
+}
+
 }  // namespace
 
 void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
@@ -256,7 +263,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
     icon_button(icon, name, side, input, commands);
     ImGui::SameLine();
   }
-  const float numbers = std::round(136 * s);
+  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 78 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;
