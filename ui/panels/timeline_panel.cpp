@@ -177,10 +177,10 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   drag_window_ends(input, axis, bar, commands);
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
+  if (ImGui::IsItemHovered()) zoom_time(axis, commands);
   if (ImGui::IsItemActive()) {
     push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
-    zoom_time(axis, commands);
     const float x = ImGui::GetIO().MousePos.x;
     const int frame = frame_at(axis, x);
     // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
