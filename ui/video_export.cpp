@@ -25,19 +25,6 @@ int frames_in(const std::filesystem::path& file) {
 
 }  // namespace
 
-namespace {
-
-/// The writer does not tell a full disk, but then the movie does not open.
-int frames_in(const std::filesystem::path& movie) {
-  try {
-    return static_cast<int>(VideoDecoder(movie).index().times.size());
-  } catch (const InputError&) {
-    return 0;
-  }
-}
-
-}  // namespace
-
 VideoExport::VideoExport(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size) {
   const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);

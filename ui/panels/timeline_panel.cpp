@@ -177,10 +177,10 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   drag_window_ends(input, axis, bar, commands);
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
+  if (ImGui::IsItemHovered()) zoom_time(axis, commands);
   if (ImGui::IsItemActive()) {
     push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
-    zoom_time(axis, commands);
     const float x = ImGui::GetIO().MousePos.x;
     const int frame = frame_at(axis, x);
     // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
@@ -238,6 +238,13 @@ void draw_numbers(const PanelInput& input, float left, float top, Commands& comm
   draw_playing(input, commands);
 }
 
+float width_of_longest_time(const PanelInput& input) {
+  if (!input.state.recording) return 0;
+  const auto& times = input.state.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times.back() - times.front()) * 1e-9;
+  return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
+}
+
 }  // namespace
 
 void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
@@ -256,7 +263,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
     icon_button(icon, name, side, input, commands);
     ImGui::SameLine();
   }
-  const float numbers = std::round(136 * s);
+  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 78 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;

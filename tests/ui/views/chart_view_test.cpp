@@ -29,7 +29,7 @@ Chart chart_of(std::vector<double> x, std::vector<double> y, bool logarithmic = 
 
 void keep(const std::string& name, const cv::Mat& picture) {
   std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + name + ".png", picture);
+  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
 }
 
 /// The middle of what is as red as the curve [px], the corner of a pixel being its origin.

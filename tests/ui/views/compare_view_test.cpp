@@ -23,7 +23,7 @@ using Inspections = std::vector<std::shared_ptr<const Inspection>>;
 
 void keep(const std::string& name, const cv::Mat& picture) {
   std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + name + ".png", picture);
+  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
 }
 
 std::shared_ptr<const Inspection> made(const MadeOptions& options, const Settings& other = {}) {
