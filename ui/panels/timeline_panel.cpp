@@ -179,7 +179,9 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   ImGui::InvisibleButton("axis", {bar.width, bar.height});
   if (ImGui::IsItemHovered()) zoom_time(axis, commands);
   if (ImGui::IsItemActive()) {
-    push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
+    // The second press of a double click is not meant for the frame that then is under it.
+    if (ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2)
+      push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
   } else if (ImGui::IsItemHovered()) {
     const float x = ImGui::GetIO().MousePos.x;
     const int frame = frame_at(axis, x);
@@ -263,7 +265,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
     icon_button(icon, name, side, input, commands);
     ImGui::SameLine();
   }
-  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 78 * s));
+  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 92 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;
