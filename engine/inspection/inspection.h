@@ -37,7 +37,7 @@ struct Inspection {
   std::shared_ptr<const Initialization> initialization;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
-  std::vector<FrameMotion> motion;  ///< one a frame of the window; empty without rotations
+  std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
   std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
   std::optional<CubeAnchor>

@@ -71,7 +71,8 @@ struct VideoDecoder::Input {
   std::unique_ptr<SwsContext, ScalerCloser> scaler;
 
   explicit Input(const fs::path& file) {
-    // What it says about broken files becomes our InputError. Others (OpenCV) change the level, too.
+    // What it says about broken files becomes our InputError. Others (OpenCV) change the level,
+    // too.
     av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* opened = nullptr;
     AVDictionary* options = nullptr;

@@ -93,7 +93,8 @@ void make_all(const std::vector<Missing>& missing, int threads, const SynthesisP
 
 fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache) {
   const std::string stem = recipe.stem().string();
-  const std::uint64_t key = hash(fmt::format("{} {}", kFormat, read_file(recipe, kMostBytesByHand)));
+  const std::uint64_t key =
+      hash(fmt::format("{} {}", kFormat, read_file(recipe, kMostBytesByHand)));
   return cache / fmt::format("{}-{:016x}", stem, key) / stem;
 }
 

@@ -19,9 +19,7 @@ namespace {
 constexpr int kFrames = 30;
 constexpr int kLast = kFrames - 1;
 
-std::shared_ptr<const Recording> desk() {
-  return open_recording(GPO_SOURCE_DIR "/sequences/desk");
-}
+std::shared_ptr<const Recording> desk() { return open_recording(GPO_SOURCE_DIR "/sequences/desk"); }
 
 Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
   TrackerOptions options;
