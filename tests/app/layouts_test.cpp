@@ -4,6 +4,7 @@
 #include "engine/recording/recording.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/made_video.h"
+#include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>
 
@@ -306,6 +307,47 @@ TEST_P(Layouts, OpenFromInfoRunAndTheWindow) {
 INSTANTIATE_TEST_SUITE_P(All, Layouts, testing::ValuesIn(fixtures()), [](const auto& info) {
   return info.param.name;
 });
+
+/// The small recipe filmed through a wide lens, for long enough to initialize.
+std::string wide_recipe() {
+  std::string text = small_recipe_text();
+  for (const auto& [from, to] :
+       {std::pair("[160, 120]", "[320, 240]"),
+        std::pair("[125, 124, 80.4, 59.2]", "[150, 149, 160.4, 119.2]"),
+        std::pair("radial-tangential", "equidistant"),
+        std::pair("[0.1, -0.2, 0.001, -0.001]", "[0.0034, 0.0007, -0.002, 0.0002]"),
+        std::pair("count: 4", "count: 20"),
+        std::pair("end: [0.03, -0.35, 0.42]", "end: [0.25, -0.35, 0.42]")}) {
+    const std::string found = from;
+    text.replace(text.find(found), found.size(), to);
+  }
+  return text;
+}
+
+/// TUM-VI's layout with a lens like its own; the calibration is Kalibr's.
+TEST(Layouts, TumViThroughItsWideLens) {
+  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "wide";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  write_file(folder / "wide.yaml", wide_recipe());
+  const fs::path recording = folder / "recording";
+  const Outcome made =
+      program("synthesize " + (folder / "wide.yaml").string() + " --output " + recording.string());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  fs::rename(recording / "mav0/state_groundtruth_estimate0", recording / "mav0/mocap0");
+  fs::remove(recording / "mav0/cam0/sensor.yaml");
+  fs::create_directories(recording / "dso");
+  write_file(recording / "dso/camchain.yaml",
+             "cam0:\n  T_cam_imu: [[0, -1, 0, 0.06], [-1, 0, 0, 0.02], [0, 0, -1, -0.004], "
+             "[0, 0, 0, 1]]\n  camera_model: pinhole\n  intrinsics: [150, 149, 160.4, 119.2]\n"
+             "  distortion_model: equidistant\n"
+             "  distortion_coeffs: [0.0034, 0.0007, -0.002, 0.0002]\n  resolution: [320, 240]\n");
+  const json result =
+      json_of(recording.string() + " --frames 20 --tracking anchored --rotations truth");
+  EXPECT_EQ(result["truth"]["source"], "mocap0/data.csv");
+  EXPECT_LT(result["metrics"]["pne_deg"], 0.3);
+  EXPECT_LT(result["metrics"]["ate_m"], 0.0005);
+}
 
 TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "tracks";

@@ -265,7 +265,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
     icon_button(icon, name, side, input, commands);
     ImGui::SameLine();
   }
-  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 92 * s));
+  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
                       place.height >= 70 * s && place.width >= 700 * s;

@@ -49,7 +49,9 @@ class SessionFile : public testing::Test {
     return "";
   }
 
-  fs::path folder_ = fs::path(GPO_TEST_OUTPUT_DIR) / "sessions";
+  /// Of its own: tests run side by side.
+  fs::path folder_ = fs::path(GPO_TEST_OUTPUT_DIR) / "sessions" /
+                     testing::UnitTest::GetInstance()->current_test_info()->name();
   WorkbenchState state_;
 };
 
