@@ -162,7 +162,7 @@ void add_gyroscope(Recording& recording,
 
 /// TUM-VI keeps Kalibr's calibration in `dso`, beside mav0.
 fs::path calibration_of(const fs::path& folder) {
-  const fs::path cam = folder / "cam0" / "sensor.yaml";
+  fs::path cam = folder / "cam0" / "sensor.yaml";
   const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
   for (const fs::path& file :
        {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}) {

@@ -20,7 +20,8 @@ TimeSpan within(double first, int count, int frames) {
 
 TimeSpan around_window(const Settings& settings, int frames) {
   const int count = std::max(3 * settings.frames, 2 * kFewest);
-  return within(settings.start - (count - settings.frames) / 2, count, frames);
+  const int margin = (count - settings.frames) / 2;
+  return within(settings.start - margin, count, frames);
 }
 
 TimeSpan first_time_span(const Settings& settings, int frames) {

@@ -65,7 +65,9 @@ void export_video(State& state, const Arguments& arguments) {
 }
 
 /// A file of the current inspection.
-Action export_of(std::string what, std::string title, std::string (*text)(const Inspection&)) {
+Action export_of(const std::string& what,
+                 std::string title,
+                 std::string (*text)(const Inspection&)) {
   Action action{"export " + what, std::move(title), "File", {}, ""};
   action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
   action.arguments = "FILE";
@@ -80,7 +82,7 @@ Action export_of(std::string what, std::string title, std::string (*text)(const 
 }
 
 /// Camera poses of the current inspection: FILE [tum|euroc|kitti]
-Action trajectory_export(std::string what,
+Action trajectory_export(const std::string& what,
                          std::string title,
                          std::string tooltip,
                          CameraPath (*path)(const Inspection&)) {
