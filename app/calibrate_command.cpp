@@ -6,8 +6,8 @@
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/error.h"
-#include "engine/output_file.h"
-#include "engine/recording/charuco.h"
+#include "engine/files/output_file.h"
+#include "engine/recording/board/charuco.h"
 #include "engine/recording/pictures_reader.h"
 #include "engine/recording/sidecar_files.h"
 

@@ -3,7 +3,7 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
-#include "engine/recording/board_truth.h"
+#include "engine/recording/board/board_truth.h"
 #include "engine/recording/euroc_writer.h"
 
 #include <fmt/format.h>

@@ -10,8 +10,8 @@
 #include "engine/experiment/summary.h"
 #include "engine/experiment/tables.h"
 #include "engine/experiment/window_files.h"
-#include "engine/json_text.h"
-#include "engine/output_file.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
 #include "ui/views/figure_view.h"
 
 #include <chrono>

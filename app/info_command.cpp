@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
-#include "engine/json_text.h"
+#include "engine/files/json_text.h"
 #include "engine/recording/recording_info.h"
 
 #include <fmt/format.h>

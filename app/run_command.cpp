@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
 #include "engine/inspection/report.h"
-#include "engine/json_text.h"
-#include "engine/output_file.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "app/comparison.h"
 #include "engine/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/output_file.h"
+#include "engine/files/output_file.h"
 #include "ui/views/figure_view.h"
 #include "ui/views/picture_compare.h"
 #include "ui/views/snapshot.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/video_export.h"
+#include "engine/recording/pictures/video_encoder.h"
 #include "ui/workbench/workbench.h"
 
 #include <functional>
@@ -34,7 +34,7 @@ class Movie {
   std::string view_;
   cv::Size size_;
   int first_, frames_, done_ = 0;
-  VideoExport video_;
+  VideoEncoder video_;
 };
 
 }  // namespace gpo

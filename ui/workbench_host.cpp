@@ -3,7 +3,7 @@
 #include "ui/workbench_host.h"
 
 #include "engine/error.h"
-#include "engine/output_file.h"
+#include "engine/files/output_file.h"
 #include "ui/workbench_window.h"
 
 #include <thread>

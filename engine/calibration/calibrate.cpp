@@ -4,7 +4,7 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/parallel.h"
-#include "engine/recording/board_pose.h"
+#include "engine/recording/board/board_pose.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "engine/calibration/calibration_views.h"
 
 #include "engine/error.h"
-#include "engine/recording/board_corners.h"
-#include "engine/recording/board_pose.h"
-#include "engine/recording/each_picture.h"
+#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board_pose.h"
+#include "engine/recording/pictures/each_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "engine/experiment/ranges.h"
 
 #include "engine/error.h"
-#include "engine/recording/text_file.h"
+#include "engine/files/text_file.h"
 
 #include <set>
 #include <sstream>

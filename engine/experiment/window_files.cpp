@@ -3,8 +3,8 @@
 #include "engine/experiment/window_files.h"
 
 #include "engine/error.h"
-#include "engine/json_text.h"
-#include "engine/output_file.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

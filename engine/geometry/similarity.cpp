@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 namespace gpo {
 
@@ -24,10 +24,14 @@ Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
 
 Alignment determined_alignment(const Eigen::Matrix3Xd& path, double reference_length) {
   const Eigen::Matrix3Xd centered = path.colwise() - path.rowwise().mean();
-  const Eigen::Vector3d deviation =
-      Eigen::JacobiSVD<Eigen::Matrix3Xd>(centered).singularValues() / std::sqrt(path.cols());
-  if (!(deviation(0) > 1e-3 * reference_length)) return Alignment::point;
-  return deviation(1) < 0.02 * deviation(0) ? Alignment::line : Alignment::ok;
+  const Eigen::Matrix3d covariance = centered * centered.transpose() / path.cols();
+  const Eigen::Vector3d deviation =  // ascending
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance)
+          .eigenvalues()
+          .cwiseMax(0)
+          .cwiseSqrt();
+  if (!(deviation(2) > 1e-3 * reference_length)) return Alignment::point;
+  return deviation(1) < 0.02 * deviation(2) ? Alignment::line : Alignment::ok;
 }
 
 }  // namespace gpo

@@ -7,9 +7,9 @@
 #include "engine/initializers/growth.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window_rotations.h"
-#include "engine/recording/board_corners.h"
-#include "engine/recording/board_pose.h"
-#include "engine/recording/board_truth.h"
+#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board_truth.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "engine/inspection/report.h"
 
 #include "engine/initializers/methods.h"
-#include "engine/recording/board_truth.h"
+#include "engine/recording/board/board_truth.h"
 
 #include <algorithm>
 

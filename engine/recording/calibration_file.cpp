@@ -3,9 +3,9 @@
 #include "engine/recording/calibration_file.h"
 
 #include "engine/error.h"
-#include "engine/recording/folder.h"
-#include "engine/recording/text_file.h"
-#include "engine/recording/xml_file.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+#include "engine/files/xml_file.h"
 
 #include <algorithm>
 #include <array>

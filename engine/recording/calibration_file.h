@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/yaml_entry.h"
 
 #include <cstdint>
 #include <filesystem>

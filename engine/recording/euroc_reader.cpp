@@ -3,14 +3,14 @@
 #include "engine/recording/euroc_reader.h"
 
 #include "engine/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+#include "engine/files/yaml_entry.h"
 #include "engine/recording/calibration_file.h"
-#include "engine/recording/folder.h"
 #include "engine/recording/gyroscope_file.h"
-#include "engine/recording/picture_files.h"
-#include "engine/recording/text_file.h"
+#include "engine/recording/pictures/picture_files.h"
 #include "engine/recording/tracks_reader.h"
 #include "engine/recording/truth_file.h"
-#include "engine/recording/yaml_entry.h"
 
 #include <algorithm>
 #include <vector>

@@ -3,8 +3,8 @@
 #include "engine/recording/euroc_writer.h"
 
 #include "engine/error.h"
-#include "engine/output_file.h"
-#include "engine/output_folder.h"
+#include "engine/files/output_file.h"
+#include "engine/files/output_folder.h"
 #include "engine/recording/calibration_file.h"
 #include "engine/recording/sidecar_files.h"
 #include "engine/recording/timestamps.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/csv_table.h"
+#include "engine/files/csv_table.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>

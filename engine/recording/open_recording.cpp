@@ -1,13 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/error.h"
+#include "engine/files/folder.h"
 #include "engine/recording/euroc_reader.h"
-#include "engine/recording/folder.h"
+#include "engine/recording/pictures/video_file.h"
 #include "engine/recording/pictures_reader.h"
 #include "engine/recording/recording.h"
 #include "engine/recording/sidecar_files.h"
 #include "engine/recording/tum_reader.h"
-#include "engine/recording/video_file.h"
 
 #include <algorithm>
 #include <utility>

@@ -3,13 +3,13 @@
 #include "engine/recording/pictures_reader.h"
 
 #include "engine/error.h"
+#include "engine/files/folder.h"
 #include "engine/recording/calibration_file.h"
-#include "engine/recording/folder.h"
 #include "engine/recording/gyroscope_file.h"
-#include "engine/recording/picture_files.h"
+#include "engine/recording/pictures/picture_files.h"
+#include "engine/recording/pictures/video_file.h"
 #include "engine/recording/tracks_reader.h"
 #include "engine/recording/truth_file.h"
-#include "engine/recording/video_file.h"
 
 #include <algorithm>
 #include <cmath>

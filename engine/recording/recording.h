@@ -5,7 +5,7 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/frame_cache.h"
+#include "engine/recording/pictures/frame_cache.h"
 
 #include <cstdint>
 #include <filesystem>

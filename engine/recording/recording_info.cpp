@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording_info.h"
 
-#include "engine/recording/board_truth.h"
+#include "engine/recording/board/board_truth.h"
 #include "engine/recording/calibration_file.h"
 #include "engine/recording/timestamps.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/sidecar_files.h"
 
-#include "engine/recording/charuco.h"
-#include "engine/recording/yaml_entry.h"
+#include "engine/files/yaml_entry.h"
+#include "engine/recording/board/charuco.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/tracks_reader.h"
 
-#include "engine/recording/csv_table.h"
+#include "engine/files/csv_table.h"
 
 #include <algorithm>
 #include <numeric>

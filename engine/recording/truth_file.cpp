@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/truth_file.h"
 
+#include "engine/files/csv_table.h"
+#include "engine/files/folder.h"
 #include "engine/recording/calibration_file.h"
-#include "engine/recording/csv_table.h"
-#include "engine/recording/folder.h"
 #include "engine/recording/timestamps.h"
 
 #include <algorithm>

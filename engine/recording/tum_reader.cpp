@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/tum_reader.h"
 
+#include "engine/files/csv_table.h"
+#include "engine/files/folder.h"
 #include "engine/recording/calibration_file.h"
-#include "engine/recording/csv_table.h"
-#include "engine/recording/folder.h"
-#include "engine/recording/picture_files.h"
+#include "engine/recording/pictures/picture_files.h"
 #include "engine/recording/tracks_reader.h"
 #include "engine/recording/truth_file.h"
 

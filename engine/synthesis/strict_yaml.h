@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/yaml_entry.h"
+#include "engine/files/yaml_entry.h"
 
 #include <cstdint>
 #include <filesystem>

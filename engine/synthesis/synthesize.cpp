@@ -3,8 +3,8 @@
 #include "engine/synthesis/synthesize.h"
 
 #include "engine/error.h"
-#include "engine/output_file.h"
-#include "engine/output_folder.h"
+#include "engine/files/output_file.h"
+#include "engine/files/output_folder.h"
 #include "engine/recording/calibration_file.h"
 #include "engine/recording/euroc_writer.h"
 #include "engine/recording/sidecar_files.h"

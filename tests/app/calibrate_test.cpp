@@ -4,7 +4,7 @@
 
 #include "engine/recording/calibration_file.h"
 #include "tests/app/program.h"
-#include "tests/engine/recording/rendered_board.h"
+#include "tests/engine/recording/board/rendered_board.h"
 
 #include <cmath>
 

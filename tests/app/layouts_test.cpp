@@ -3,7 +3,7 @@
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 #include "tests/app/program.h"
-#include "tests/engine/recording/made_video.h"
+#include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>

@@ -5,11 +5,14 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 
@@ -28,6 +31,21 @@ class DrawingTest : public testing::Test {
 
 inline bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+/// For people to look at.
+inline void keep(const std::string& name, const cv::Mat& picture) {
+  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
+  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
+}
+
+/// Pixels of nearly that color.
+inline int count_pixels(const cv::Mat& picture, std::uint32_t rgb, int tolerance = 6) {
+  const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
+  int pixels = 0;
+  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(picture))
+    pixels += cv::norm(cv::Vec3i(bgr) - wanted, cv::NORM_INF) <= tolerance ? 1 : 0;
+  return pixels;
 }
 
 /// Bytes are promised for Mesa's llvmpipe only.

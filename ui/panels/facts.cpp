@@ -4,7 +4,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/initializers/methods.h"
-#include "engine/recording/board_truth.h"
+#include "engine/recording/board/board_truth.h"
 #include "engine/recording/timestamps.h"
 #include "ui/panels/uncertainty_facts.h"
 

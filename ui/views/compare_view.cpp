@@ -22,7 +22,7 @@ using Eigen::Vector2d;
 
 constexpr int kMostColumns = 4;
 // Sizes at text scale 1 [px].
-constexpr double kColumn = 480, kGap = 12, kTop = 38, kHeading = 54, kCaption = 70;
+constexpr double kColumn = 480, kGap = 12, kTopLine = 38, kHeading = 54, kCaption = 70;
 
 struct Grid {
   int columns, rows;
@@ -165,7 +165,7 @@ std::vector<CompareColumn> columns_of(Comparison inspections) {
 
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect, int count, bool top_line) {
   const double scale = overlay_scale();
-  const double top = scale * (top_line ? kTop : 0);
+  const double top = scale * (top_line ? kTopLine : 0);
   std::vector<ColumnPlace> places;
   for (int i = 0; i < count; ++i) places.push_back(column_at(rect, grid(count), i, top, scale));
   return places;
@@ -252,9 +252,9 @@ cv::Size default_compare_size(int columns, const Recording& recording) {
   const double aspect =
       camera.width > 0 ? std::clamp(static_cast<double>(camera.height) / camera.width, 0.4, 1.5)
                        : 0.75;
-  return {
-      static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
-      static_cast<int>(cells.rows * (kHeading + std::round(kColumn * aspect) + kCaption) + kTop)};
+  return {static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
+          static_cast<int>(cells.rows * (kHeading + std::round(kColumn * aspect) + kCaption) +
+                           kTopLine)};
 }
 
 double compare_text_scale(Comparison inspections, cv::Size size) {

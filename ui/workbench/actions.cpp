@@ -3,7 +3,7 @@
 #include "ui/workbench/actions.h"
 
 #include "engine/error.h"
-#include "engine/recording/text_file.h"
+#include "engine/files/text_file.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>

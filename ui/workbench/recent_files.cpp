@@ -3,9 +3,9 @@
 #include "ui/workbench/recent_files.h"
 
 #include "engine/error.h"
-#include "engine/json_text.h"
-#include "engine/output_file.h"
-#include "engine/user_folders.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
+#include "engine/files/user_folders.h"
 #include "ui/workbench/session_file.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/script.h"
 
-#include "engine/recording/text_file.h"
+#include "engine/files/text_file.h"
 
 #include <sstream>
 

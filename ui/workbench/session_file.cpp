@@ -4,8 +4,8 @@
 
 #include "engine/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/json_text.h"
-#include "engine/recording/text_file.h"
+#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "ui/workbench/setting_text.h"
 
 #include <algorithm>

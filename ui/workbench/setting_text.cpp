@@ -39,7 +39,7 @@ bool switch_from(const SettingInfo& info, const std::string& text) {
   return text == "on";
 }
 
-struct Writer {
+struct ToText {
   std::string operator()(const std::string& value) const { return value; }
   std::string operator()(bool value) const { return value ? "on" : "off"; }
   std::string operator()(RotationSource value) const { return to_string(value); }
@@ -60,7 +60,7 @@ struct Writer {
   }
 };
 
-struct Reader {
+struct FromText {
   const SettingInfo& info;
   const std::string& text;
 
@@ -115,13 +115,13 @@ std::vector<std::string> setting_keys() {
 
 std::string setting_text(const Settings& settings, const std::string& key) {
   std::string text;
-  with_value(settings, key, [&](const SettingInfo&, const auto& value) { text = Writer{}(value); });
+  with_value(settings, key, [&](const SettingInfo&, const auto& value) { text = ToText{}(value); });
   return text;
 }
 
 Settings with_setting(Settings settings, const std::string& key, const std::string& text) {
   with_value(settings, key, [&](const SettingInfo& info, auto& value) {
-    Reader{info, text}(value);
+    FromText{info, text}(value);
   });
   return settings;
 }

@@ -3,10 +3,10 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/recording/board_pose.h"
+#include "engine/recording/board/board_pose.h"
 #include "engine/recording/calibration_file.h"
-#include "tests/engine/recording/rendered_board.h"
-#include "tests/engine/recording/test_folder.h"
+#include "tests/engine/recording/board/rendered_board.h"
+#include "tests/engine/test_folder.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/initializers/methods.h"
-#include "tests/engine/recording/test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <set>
 

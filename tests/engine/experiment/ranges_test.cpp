@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/ranges.h"
 
-#include "tests/engine/recording/test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 #include "engine/experiment/results_file.h"
 
 #include "engine/error.h"
-#include "tests/engine/recording/test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
 #include "tests/engine/experiment/made_rows.h"
-#include "tests/engine/recording/test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
 

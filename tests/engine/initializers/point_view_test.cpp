@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kStep = 1e-6;
 
-struct Case {
+struct ViewCase {
   Intrinsics intrinsics;
   Quaterniond q;
   Vector3d p, normal;
@@ -27,9 +27,9 @@ struct Case {
   double rho;
 };
 
-Case random_case(unsigned seed) {
+ViewCase random_case(unsigned seed) {
   std::srand(seed);
-  Case c;
+  ViewCase c;
   c.intrinsics.K << 480, 2, 310, 0, 500, 250, 0, 0, 1;
   c.intrinsics.K_inverse = c.intrinsics.K.inverse();
   c.q = Quaterniond(so3_exp(0.3 * Vector3d::Random()));
@@ -52,7 +52,7 @@ void expect_near(const Vector2d& analytic, const Vector2d& numeric) {
 
 TEST(PointView, JacobiansAgreeWithDifferences) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const Case c = random_case(seed);
+    const ViewCase c = random_case(seed);
     const PointView view = view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho);
     for (int k = 0; k < 3; ++k) {
       expect_near(view.d_position.col(k), difference([&](double h) -> Vector2d {
@@ -74,7 +74,7 @@ TEST(PointView, JacobiansAgreeWithDifferences) {
 
 TEST(PointView, RotationJacobianAgreesWithDifferencesOnTheSphereOfUnitQuaternions) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const Case c = random_case(seed);
+    const ViewCase c = random_case(seed);
     const PointView view = view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho);
     for (int k = 0; k < 3; ++k) {
       const auto turned = [&](double h) {
@@ -91,7 +91,7 @@ TEST(PointView, RotationJacobianAgreesWithDifferencesOnTheSphereOfUnitQuaternion
 
 TEST(PointView, IsTheProjectionOfThePoint) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const Case c = random_case(seed);
+    const ViewCase c = random_case(seed);
     const Vector3d point = c.intrinsics.K_inverse * c.pixel.homogeneous() / c.rho;
     const Vector3d seen = c.intrinsics.K * to_camera({c.q.toRotationMatrix(), c.p}, point);
     const PointView view = view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho);
@@ -101,13 +101,13 @@ TEST(PointView, IsTheProjectionOfThePoint) {
 }
 
 TEST(PointView, TellsAPointBehindTheCamera) {
-  const Case c = random_case(1);
+  const ViewCase c = random_case(1);
   EXPECT_FALSE(view_point(c.intrinsics, c.q, {0, 0, 2}, c.pixel, 1).in_front);
 }
 
 TEST(PlaneDepth, IsWhereTheRayMeetsThePlane) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const Case c = random_case(seed);
+    const ViewCase c = random_case(seed);
     const Vector3d ray = c.intrinsics.K_inverse * c.pixel.homogeneous();
     const auto point = intersect({c.normal, 1}, Pose{}, ray);
     ASSERT_TRUE(point);
@@ -119,7 +119,7 @@ TEST(PlaneDepth, IsWhereTheRayMeetsThePlane) {
 TEST(PlaneDepth, JacobiansAgreeWithDifferences) {
   using Vector1d = Eigen::Matrix<double, 1, 1>;
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const Case c = random_case(seed);
+    const ViewCase c = random_case(seed);
     const PlaneDepth depth = depth_on_plane(c.intrinsics, c.normal, c.pixel);
     const auto rho = [&](const Vector3d& normal, const Vector2d& pixel) {
       return Vector1d(depth_on_plane(c.intrinsics, normal, pixel).inverse_depth);

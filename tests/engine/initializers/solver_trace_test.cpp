@@ -17,13 +17,13 @@ using test::simulate;
 using test::Simulation;
 using test::with_fitted_homographies;
 
-struct Case {
+struct TracedCase {
   std::string method;
   Solver solver = Solver::schur;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<TracedCase> cases() {
+  std::vector<TracedCase> all;
   for (const Method& method : methods()) {
     all.push_back({method.key});
     if (method.key.starts_with("gpo")) all.push_back({method.key, Solver::ceres});
@@ -31,7 +31,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-class EveryTrace : public ::testing::TestWithParam<Case> {
+class EveryTrace : public ::testing::TestWithParam<TracedCase> {
  protected:
   static Initialization run(const Window& window) {
     return find_method(GetParam().method).initialize(window, {.solver = GetParam().solver}, {});

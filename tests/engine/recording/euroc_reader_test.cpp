@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
-#include "test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>

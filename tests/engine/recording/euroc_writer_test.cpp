@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/euroc_writer.h"
 
-#include "test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording_info.h"
 
-#include "engine/recording/board_truth.h"
-#include "rendered_board.h"
+#include "engine/recording/board/board_truth.h"
+#include "tests/engine/recording/board/rendered_board.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

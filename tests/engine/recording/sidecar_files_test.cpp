@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/sidecar_files.h"
 
-#include "test_folder.h"
+#include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

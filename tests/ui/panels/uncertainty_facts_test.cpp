@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::map<std::string, ResultRow> rows_of(const Inspection* inspection) {
+std::map<std::string, ResultRow> uncertainty_rows(const Inspection* inspection) {
   std::map<std::string, ResultRow> rows;
   for (const ResultGroup& group : {verdict_group(*inspection), uncertainty_group(*inspection)}) {
     for (const ResultRow& row : group.rows) rows[row.label] = row;
@@ -25,7 +25,7 @@ std::map<std::string, ResultRow> rows_of(const Inspection* inspection) {
 
 TEST(UncertaintyFacts, UncertaintyIsToldWithUnitsAndModel) {
   const Inspection inspection = made_inspection({.pictures = false, .normal_sigma_deg = 0.31});
-  const auto rows = rows_of(&inspection);
+  const auto rows = uncertainty_rows(&inspection);
   EXPECT_EQ(rows.at("Rotation alone").value, "8.80 px");
   EXPECT_EQ(rows.at("Rotation alone").note, "noise 0.40 px");
   EXPECT_EQ(rows.at("Moved").value, "0.450 d");
@@ -42,7 +42,7 @@ TEST(UncertaintyFacts, UncertaintyIsToldWithUnitsAndModel) {
 
 TEST(UncertaintyFacts, WithoutUncertaintyAreDashesThatSayWhy) {
   const Inspection inspection = made_inspection({.pictures = false});
-  const auto rows = rows_of(&inspection);
+  const auto rows = uncertainty_rows(&inspection);
   for (const char* label : {"Rotation alone", "Moved", "Normal", "Distance ratio"}) {
     EXPECT_EQ(rows.at(label).value, "\u2013");
     EXPECT_THAT(rows.at(label).tooltip, HasSubstr("Not known"));

@@ -27,11 +27,6 @@ Chart chart_of(std::vector<double> x, std::vector<double> y, bool logarithmic = 
   return {"Error", "frame", "error [px]", logarithmic, {{"gpo", kRed, false, x, y, {}, {}}}};
 }
 
-void keep(const std::string& name, const cv::Mat& picture) {
-  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
-}
-
 /// The middle of what is as red as the curve [px], the corner of a pixel being its origin.
 Eigen::Vector2d middle_of_red(const cv::Mat& picture) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

@@ -21,11 +21,6 @@ class CompareView : public DrawingTest {};
 constexpr int kFrame = 24;
 using Inspections = std::vector<std::shared_ptr<const Inspection>>;
 
-void keep(const std::string& name, const cv::Mat& picture) {
-  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
-}
-
 std::shared_ptr<const Inspection> made(const MadeOptions& options, const Settings& other = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
   inspection->settings.ransac = other.ransac;
@@ -52,14 +47,6 @@ cv::Mat column(const cv::Mat& picture, int index) {
   return picture.colRange(index * width, (index + 1) * width);
 }
 
-int count(const cv::Mat& picture, std::uint32_t rgb) {
-  const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
-  int pixels = 0;
-  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(picture))
-    pixels += cv::norm(cv::Vec3i(bgr) - wanted, cv::NORM_INF) <= 6 ? 1 : 0;
-  return pixels;
-}
-
 TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
   const Inspections inspections = three();
   const cv::Mat picture = snapshot_compare(inspections, kFrame);
@@ -69,11 +56,11 @@ TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
     const Settings& settings = inspections[i]->settings;
     const Configuration configuration{settings.method, settings.ransac, settings.rotations};
     const cv::Mat heading = column(picture, i).rowRange(38, 92);
-    EXPECT_GT(count(heading, color_of(configuration)), 150) << "column " << i;
+    EXPECT_GT(count_pixels(heading, color_of(configuration)), 150) << "column " << i;
     const bool ok = inspections[i]->initialization->ok;
     const cv::Mat shown = column(picture, i).rowRange(92, picture.rows - 58);
-    EXPECT_EQ(count(shown, palette::kCubeBase) > 200, ok) << "column " << i;
-    EXPECT_EQ(count(shown, palette::kWarning) > 50, !ok) << "column " << i;
+    EXPECT_EQ(count_pixels(shown, palette::kCubeBase) > 200, ok) << "column " << i;
+    EXPECT_EQ(count_pixels(shown, palette::kWarning) > 50, !ok) << "column " << i;
   }
 }
 
@@ -110,7 +97,8 @@ TEST_F(CompareView, MoreThanFourWrapIntoRows) {
   const cv::Mat picture = snapshot_compare(seven, kFrame);
   keep("compare_seven", picture);
   // The eighth place is empty.
-  EXPECT_EQ(count(picture(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)), palette::kPanel),
+  EXPECT_EQ(count_pixels(picture(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)),
+                         palette::kPanel),
             490 * 400);
 }
 
@@ -124,8 +112,8 @@ TEST_F(CompareView, NineStandInThreeRows) {
   keep("compare_nine", picture);
   const cv::Mat first = picture(cv::Rect(12, 38, 480, 54));
   const cv::Mat last = picture(cv::Rect(12 + 2 * 492, 38 + 2 * (picture.rows - 38) / 3, 480, 54));
-  EXPECT_GT(count(first, palette::kGood), 30);  // ready
-  EXPECT_GT(count(last, palette::kBad), 8);     // degenerate
+  EXPECT_GT(count_pixels(first, palette::kGood), 30);  // ready
+  EXPECT_GT(count_pixels(last, palette::kBad), 8);     // degenerate
 }
 
 TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {

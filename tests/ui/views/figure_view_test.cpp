@@ -86,17 +86,8 @@ Figure small_figure(std::vector<double> y, bool band = false, bool dotted = fals
   return {"small", "", {{"chart", "x [-]", "y [-]", false, {curve}}}};
 }
 
-bool near(const cv::Vec3b& bgr, std::uint32_t rgb, int tolerance = 12) {
-  return std::abs(bgr[0] - static_cast<int>(rgb & 0xFF)) <= tolerance &&
-         std::abs(bgr[1] - static_cast<int>(rgb >> 8 & 0xFF)) <= tolerance &&
-         std::abs(bgr[2] - static_cast<int>(rgb >> 16)) <= tolerance;
-}
-
-int count(const cv::Mat& picture, std::uint32_t rgb) {
-  int pixels = 0;
-  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(picture)) pixels += near(bgr, rgb) ? 1 : 0;
-  return pixels;
-}
+/// Anti-aliased curves are thin.
+int colored(const cv::Mat& picture, std::uint32_t rgb) { return count_pixels(picture, rgb, 12); }
 
 /// Within the axes of a figure with one chart, above the legend.
 cv::Mat plot_area(const cv::Mat& picture) {
@@ -109,7 +100,7 @@ std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
   const cv::Mat area = plot_area(picture);
   for (int i = 0; i < columns; ++i)
     pixels.push_back(
-        count(area.colRange(i * area.cols / columns, (i + 1) * area.cols / columns), kGreen));
+        colored(area.colRange(i * area.cols / columns, (i + 1) * area.cols / columns), kGreen));
   return pixels;
 }
 
@@ -123,7 +114,7 @@ TEST_F(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
     for (const CurveStyle& style : curve_styles(figure)) {
       const cv::Mat column = picture(cv::Rect(500 * chart, 40, 500, 340));
       if (style.name.starts_with("bound") && chart != 1) continue;
-      EXPECT_GT(count(column, style.rgb), 30) << style.name << " in chart " << chart;
+      EXPECT_GT(colored(column, style.rgb), 30) << style.name << " in chart " << chart;
     }
 }
 
@@ -162,7 +153,7 @@ TEST_F(FigureView, NanLeavesAGap) {
   EXPECT_GT(green[9], 20);
   const cv::Mat area = plot_area(picture);
   const cv::Mat middle = area.colRange(5 * area.cols / 11, 6 * area.cols / 11);
-  EXPECT_EQ(count(middle, 0xD1ECE3), 0) << "the band goes through the gap";
+  EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
 }
 
 TEST_F(FigureView, OnePointBetweenGapsIsDrawn) {
@@ -176,16 +167,16 @@ TEST_F(FigureView, BoundIsDotted) {
   const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
   const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
   cv::imwrite(kept("figure_bound.png").string(), dotted);
-  const int dots = count(plot_area(dotted), kGreen);
+  const int dots = colored(plot_area(dotted), kGreen);
   EXPECT_GT(dots, 30);
-  EXPECT_LT(dots, count(plot_area(solid), kGreen) / 2);
+  EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
 }
 
 TEST_F(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
   Figure figure = small_figure({1, 0, -1, 10, 100});
   figure.charts[0].logarithmic = true;
   const cv::Mat picture = draw_figure(figure, kSmall);
-  EXPECT_GT(count(plot_area(picture), kGreen), 30);
+  EXPECT_GT(colored(plot_area(picture), kGreen), 30);
 }
 
 TEST_F(FigureView, EmptyFiguresSaySo) {
@@ -195,7 +186,7 @@ TEST_F(FigureView, EmptyFiguresSaySo) {
   const cv::Mat said = draw_figure(no_values, kSmall);
   cv::imwrite(kept("figure_no_values.png").string(), said);
   const cv::Mat middle = plot_area(said)(cv::Rect(100, 100, 180, 130));
-  EXPECT_GT(count(middle, palette::kPaperAxis), 20);
+  EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
   figure_svg(nothing, kSmall);
   figure_svg(no_values, kSmall);
 }

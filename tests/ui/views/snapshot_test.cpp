@@ -22,7 +22,7 @@ std::filesystem::path kept(const std::string& name) {
   return std::filesystem::path(other != nullptr ? other : GPO_TEST_OUTPUT_DIR) / (name + ".png");
 }
 
-void keep(const std::string& name, const cv::Mat& picture) {
+void keep_snapshot(const std::string& name, const cv::Mat& picture) {
   std::filesystem::create_directories(kept(name).parent_path());
   cv::imwrite(kept(name).string(), picture);
 }
@@ -30,7 +30,7 @@ void keep(const std::string& name, const cv::Mat& picture) {
 TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
   const Inspection inspection = made_inspection();
   const cv::Mat picture = snapshot_image(inspection, 34);
-  keep("image", picture);
+  keep_snapshot("image", picture);
   EXPECT_EQ(picture.size(), cv::Size(640, 480));
   if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
   EXPECT_TRUE(same_bytes(picture, snapshot_image(inspection, 34)));
@@ -39,7 +39,7 @@ TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
 TEST_F(Snapshot, SceneHasTheSameBytesAgain) {
   const Inspection inspection = made_inspection({.estimate_error = 2});
   const cv::Mat picture = snapshot_scene(inspection, 24);
-  keep("scene", picture);
+  keep_snapshot("scene", picture);
   EXPECT_EQ(picture.size(), cv::Size(960, 720));
   if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
   EXPECT_TRUE(same_bytes(picture, snapshot_scene(inspection, 24)));
@@ -60,22 +60,24 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
 }
 
 TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
-  keep("image_error",
-       snapshot_image(made_inspection({.estimate_error = 3}), 30, {}, {.residuals = true}));
-  keep("image_large", snapshot_image(made_inspection(), 20, cv::Size(1280, 720)));
-  keep("image_reference", snapshot_image(made_inspection(), 5));
-  keep("image_outside", snapshot_image(made_inspection(), 38));
-  keep("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
-  keep("image_tracks_only",
-       snapshot_image(made_inspection({.pictures = false, .truth = false}), 20));
+  keep_snapshot(
+      "image_error",
+      snapshot_image(made_inspection({.estimate_error = 3}), 30, {}, {.residuals = true}));
+  keep_snapshot("image_large", snapshot_image(made_inspection(), 20, cv::Size(1280, 720)));
+  keep_snapshot("image_reference", snapshot_image(made_inspection(), 5));
+  keep_snapshot("image_outside", snapshot_image(made_inspection(), 38));
+  keep_snapshot("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
+  keep_snapshot("image_tracks_only",
+                snapshot_image(made_inspection({.pictures = false, .truth = false}), 20));
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
-    keep("scene_uncertain_" + std::to_string(times),
-         snapshot_scene(uncertain, 30, {960, 720}, {.uncertainty = times}));
-  keep("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
-  keep("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
-  keep("scene_failed_blind", snapshot_scene(made_inspection({.ok = false, .truth = false}), 20));
-  keep("scene_outside", snapshot_scene(made_inspection(), 2, cv::Size(600, 900)));
+    keep_snapshot("scene_uncertain_" + std::to_string(times),
+                  snapshot_scene(uncertain, 30, {960, 720}, {.uncertainty = times}));
+  keep_snapshot("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
+  keep_snapshot("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
+  keep_snapshot("scene_failed_blind",
+                snapshot_scene(made_inspection({.ok = false, .truth = false}), 20));
+  keep_snapshot("scene_outside", snapshot_scene(made_inspection(), 2, cv::Size(600, 900)));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace gpo {
 namespace {
 
-WorkbenchState opened(int frames) {
+WorkbenchState with_frames(int frames) {
   auto recording = std::make_shared<Recording>();
   for (int i = 0; i < frames; ++i) recording->timestamps_ns.push_back(100'000'000LL * i);
   WorkbenchState state;
@@ -36,7 +36,7 @@ TEST(Actions, HaveUniqueNamesAndKeysAndAreExplained) {
 }
 
 TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
-  WorkbenchState state = opened(60);
+  WorkbenchState state = with_frames(60);
   run_line(state, "frame 40");
   EXPECT_EQ(state.frame, 40);
   run_line(state, "method pba");

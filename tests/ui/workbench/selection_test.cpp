@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using Ids = std::vector<std::int64_t>;
 
-WorkbenchState opened() {
+WorkbenchState with_inspection() {
   const auto inspection = std::make_shared<const Inspection>(made_inspection());
   WorkbenchState state;
   state.settings = inspection->settings;
@@ -40,7 +40,7 @@ TEST(Selection, KeepsIdsAscendingAndTheLastOneInFocus) {
 }
 
 TEST(Selection, OfARectangleHasTheTracksSeenThere) {
-  WorkbenchState state = opened();
+  WorkbenchState state = with_inspection();
   const Tracks& tracks = *state.inspection->tracks;
   run_line(state, "frame 20");
   run_line(state, "select rectangle 0 0 200 150");
@@ -58,7 +58,7 @@ TEST(Selection, OfARectangleHasTheTracksSeenThere) {
 }
 
 TEST(Selection, IsExcludedAndTakenBack) {
-  WorkbenchState state = opened();
+  WorkbenchState state = with_inspection();
   run_line(state, "select outliers");
   const Ids outliers = state.selection.tracks;
   EXPECT_FALSE(outliers.empty());
@@ -75,7 +75,7 @@ TEST(Selection, IsExcludedAndTakenBack) {
 }
 
 TEST(Selection, OutsideOfTheWindowThereIsNothingToSelect) {
-  WorkbenchState state = opened();
+  WorkbenchState state = with_inspection();
   run_line(state, "frame 0");  // the window starts at 5
   EXPECT_THAT(tracks_in_view(state), IsEmpty());
   EXPECT_FALSE(tracks_of_window(state).empty());

@@ -3,7 +3,7 @@
 #include "ui/workbench/session_file.h"
 
 #include "engine/error.h"
-#include "engine/output_file.h"
+#include "engine/files/output_file.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench/recent_files.h"
 

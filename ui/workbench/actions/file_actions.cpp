@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/error.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
 #include "engine/inspection/report.h"
-#include "engine/json_text.h"
-#include "engine/output_file.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"

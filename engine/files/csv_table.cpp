@@ -1,0 +1,291 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/csv_table.h"
+
+#include "engine/error.h"
+#include "engine/files/text_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace {
+
+constexpr std::size_t kMostRows = 8'000'000;
+constexpr std::size_t kMostRemarks = 100;  // above the first row that are kept to look for names
+constexpr std::size_t kLongestShown = 40;
+constexpr std::string_view kBlanks = " \t";
+
+/// Takes the next cell off the front of what is left of a row.
+std::string_view take_cell(std::string_view& rest, Separator separator) {
+  const bool commas = separator == Separator::comma;
+  const std::size_t end = commas ? rest.find(',') : rest.find_first_of(kBlanks);
+  const std::string_view cell = trimmed(rest.substr(0, end));
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  if (!commas) rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  return cell;
+}
+
+int cell_count(std::string_view row, Separator separator) {
+  if (separator == Separator::comma) return 1 + static_cast<int>(std::ranges::count(row, ','));
+  int count = 0;
+  while (!row.empty()) {
+    take_cell(row, separator);
+    ++count;
+  }
+  return count;
+}
+
+std::vector<std::string> split(std::string_view row, Separator separator) {
+  std::vector<std::string> cells;
+  for (int left = cell_count(row, separator); left > 0; --left) {
+    cells.emplace_back(take_cell(row, separator));
+  }
+  return cells;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) {
+    text += (text.empty() ? "" : ",") + (name.empty() ? std::string("...") : name);
+  }
+  return text;
+}
+
+std::string in_quotes(std::string_view text) {
+  return fmt::format(
+      "\"{}{}\"", text.substr(0, kLongestShown), text.size() > kLongestShown ? "..." : "");
+}
+
+/// "W_RS_S_x [rad s^-1]" -> "w_rs_s_x".
+std::string plain_name(const std::string& name) {
+  const std::string_view before_unit = std::string_view(name).substr(0, name.find_first_of("[("));
+  return lower_case(trimmed(before_unit));
+}
+
+/// Rates are called w, g(yro), o(mega) or r(otation rate), with the axis at the end.
+bool same_name(const std::string& header, const std::string& expected) {
+  const std::string name = plain_name(header);
+  if (expected.empty()) return true;
+  if (name.empty()) return false;
+  if (expected == "timestamp") return name[0] == 't' || name.find("time") != std::string::npos;
+  if (expected.size() > 2) return name.starts_with(expected) || expected.starts_with(name);
+  const std::string first = expected[0] == 'w' ? "wgor" : expected.substr(0, 1);
+  return first.find(name[0]) != std::string::npos && name.back() == expected.back();
+}
+
+void check_header(const CsvTable& table, int line, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size() && i < table.header.size(); ++i) {
+    if (!same_name(table.header[i], names[i])) {
+      csv_fail(table,
+               line,
+               "column " + std::to_string(i + 1) + " named " + in_quotes(table.header[i]),
+               in_quotes(names[i]) + " (columns " + joined(names) + ")");
+    }
+  }
+}
+
+void check_count(const CsvTable& table,
+                 const CsvRow& row,
+                 const std::vector<std::string>& names,
+                 CsvColumns columns,
+                 bool cut) {
+  const int count = cell_count(row.text, table.separator);
+  const int named = static_cast<int>(names.size());
+  const int first = table.rows.empty() ? count : table.columns;
+  const bool enough = columns == CsvColumns::exactly ? count == named : count >= named;
+  if (enough && count == first) return;
+  csv_fail(table,
+           row.line,
+           std::to_string(count) + " columns" + (cut ? " (the file seems cut)" : ""),
+           std::string(columns == CsvColumns::at_least && !enough ? "at least " : "") +
+               std::to_string(enough ? first : named) + " (" + joined(names) + ")");
+}
+
+/// A line above the first row, which may name the columns.
+struct HeaderCandidate {
+  std::string_view text;
+  int line = 0;
+  bool comment = false;
+};
+
+void take_header(CsvTable& table,
+                 const std::vector<HeaderCandidate>& candidates,
+                 const std::vector<std::string>& names) {
+  for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
+    auto cells = split(candidate->text, table.separator);
+    const bool as_many = static_cast<int>(cells.size()) == table.columns;
+    // A remark may have as many words as there are columns.
+    if (candidate->comment && !(as_many && same_name(cells[0], names[0]))) continue;
+    table.header = std::move(cells);
+    if (!as_many) {
+      csv_fail(table,
+               candidate->line,
+               std::to_string(table.header.size()) + " names of columns",
+               std::to_string(table.columns) + ", as many as the rows have");
+    }
+    return check_header(table, candidate->line, names);
+  }
+}
+
+/// Decimal places that make nanoseconds of a unit, and how headers call it.
+struct NamedUnit {
+  int decimals;
+  std::vector<std::string_view> names;
+};
+
+const std::vector<NamedUnit>& named_units() {
+  static const std::vector<NamedUnit> kUnits = {
+      {9, {"s", "sec", "secs", "second", "seconds"}},
+      {6, {"ms", "msec", "millis", "millisec", "millisecond", "milliseconds"}},
+      {3, {"us", "usec", "micros", "microsec", "microsecond", "microseconds"}},
+      {0, {"ns", "nsec", "nanos", "nanosec", "nanosecond", "nanoseconds"}}};
+  return kUnits;
+}
+
+std::optional<int> decimals_of_header(const CsvTable& table) {
+  if (table.header.empty()) return std::nullopt;
+  std::string token;
+  for (const char c : lower_case(table.header[0]) + " ") {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      token += c;
+      continue;
+    }
+    for (const NamedUnit& unit : named_units()) {
+      if (std::ranges::find(unit.names, token) != unit.names.end()) return unit.decimals;
+    }
+    token.clear();
+  }
+  return std::nullopt;
+}
+
+double median_step(const CsvTable& table) {
+  constexpr std::size_t kRows = 1000;
+  std::vector<double> steps;
+  std::optional<double> previous;
+  for (std::size_t i = 0; i < std::min(table.rows.size(), kRows); ++i) {
+    const auto time = parse_number(csv_cell(table, table.rows[i], 0));
+    if (time && previous) steps.push_back(*time - *previous);
+    previous = time;
+  }
+  if (steps.empty()) return 0;
+  std::ranges::nth_element(steps, steps.begin() + std::ssize(steps) / 2);
+  return steps[steps.size() / 2];
+}
+
+/// What a camera's or a sensor's rate can be tells thousands of the unit apart.
+int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
+  constexpr double kSurelyNanoseconds = 1e16;
+  constexpr double kShortestFrame = 2;  // in thousandths of the unit
+  constexpr double kShortestSample = 0.2;
+  if (otherwise == TimeUnit::seconds) return 9;
+  if (otherwise == TimeUnit::nanoseconds) return 0;
+  const auto first = parse_number(csv_cell(table, table.rows[0], 0));
+  if (first && *first > kSurelyNanoseconds) return 0;
+  const double step = median_step(table);
+  double shortest = otherwise == TimeUnit::by_frame_rate ? kShortestFrame : kShortestSample;
+  for (const int decimals : {9, 6, 3}) {
+    if (step < shortest) return decimals;
+    shortest *= 1e3;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void csv_fail(const CsvTable& table,
+              int line,
+              const std::string& found,
+              const std::string& expected) {
+  throw InputError(table.file.string() + ":" + std::to_string(line) + ": found " + found +
+                   ", expected " + expected);
+}
+
+CsvTable read_csv(const std::filesystem::path& file,
+                  const std::vector<std::string>& names,
+                  CsvColumns columns,
+                  Separator separator) {
+  CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
+  std::string_view text = *table.text;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  std::vector<HeaderCandidate> above;
+  bool named = false;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    const bool last = end == std::string_view::npos;
+    std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(last ? text.size() : end + 1);
+    const bool comment = line.starts_with('#');
+    if (comment) line = trimmed(line.substr(1));
+    if (line.empty() || (comment && !table.rows.empty())) continue;
+    std::string_view rest = line;
+    const bool names_columns =
+        !comment && !named && table.rows.empty() && !parse_decimal(take_cell(rest, separator), 0);
+    if (comment || names_columns) {
+      named = named || names_columns;
+      if (above.size() == kMostRemarks) above.erase(above.begin());
+      above.push_back({line, number, comment});
+      continue;
+    }
+    const CsvRow row{number, line};
+    check_count(table, row, names, columns, last);
+    if (table.rows.empty()) table.columns = cell_count(line, separator);
+    if (table.rows.size() == kMostRows) {
+      csv_fail(table, number, "one more row", fmt::format("at most {}", kMostRows));
+    }
+    table.rows.push_back(row);
+    if (table.rows.size() == 1) take_header(table, above, names);
+  }
+  if (table.rows.empty()) {
+    throw InputError(file.string() + ": found no rows, expected " + joined(names));
+  }
+  return table;
+}
+
+std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column) {
+  std::string_view rest = row.text;
+  for (; column > 0; --column) take_cell(rest, table.separator);
+  return take_cell(rest, table.separator);
+}
+
+double csv_number(const CsvTable& table, const CsvRow& row, int column) {
+  const std::string_view cell = csv_cell(table, row, column);
+  const auto value = parse_number(cell);
+  if (!value) csv_fail(table, row.line, in_quotes(cell), "a finite number");
+  return *value;
+}
+
+std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column) {
+  const std::string_view cell = csv_cell(table, row, column);
+  const auto value = parse_integer(cell);
+  if (!value) csv_fail(table, row.line, in_quotes(cell), "an integer");
+  return *value;
+}
+
+std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise) {
+  const auto named = decimals_of_header(table);
+  const int decimals = named ? *named : decimals_of_values(table, otherwise);
+  std::vector<std::int64_t> times;
+  times.reserve(table.rows.size());
+  for (const auto& row : table.rows) {
+    const std::string_view cell = csv_cell(table, row, 0);
+    const auto time = parse_decimal(cell, decimals);
+    if (!time) csv_fail(table, row.line, in_quotes(cell), "a time stamp");
+    if (!times.empty() && *time <= times.back()) {
+      csv_fail(table,
+               row.line,
+               "time stamp " + std::string(cell.substr(0, kLongestShown)) +
+                   (*time == times.back() ? ", a repetition of" : ", earlier than") +
+                   " the one before it",
+               "ascending time stamps");
+    }
+    times.push_back(*time);
+  }
+  return times;
+}
+
+}  // namespace gpo

@@ -1,0 +1,28 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/json_text.h"
+
+#include "engine/files/text_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+nlohmann::ordered_json read_json(const std::filesystem::path& file) {
+  using Json = nlohmann::ordered_json;
+  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+  constexpr int kDeepest = 16;
+  bool too_deep = false;
+  const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
+    too_deep |= depth > kDeepest;
+    return depth <= kDeepest;
+  };
+  Json json = Json::parse(read_file(file, kMostBytes), keep, false);
+  return too_deep ? Json(Json::value_t::discarded) : json;
+}
+
+}  // namespace gpo

@@ -1,0 +1,118 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/output_file.h"
+
+#include "engine/error.h"
+
+#include <cerrno>
+#include <fstream>
+#include <random>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
+
+namespace gpo {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::error_code& why) {
+  throw InputError(fmt::format("{}: cannot be written: {}", file.string(), why.message()));
+}
+
+std::error_code last_error() { return {errno, std::generic_category()}; }
+
+/// Where a link leads to, whether that exists or not.
+fs::path followed(fs::path file) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(file, error)); ++i) {
+    const fs::path next = fs::read_symlink(file, error);
+    if (error) break;
+    file = file.parent_path() / next;
+  }
+  return file;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// A terminal, pipe or device: nothing is beside it, and it is never half there.
+bool is_stream(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+void write_whole(const fs::path& path, const fs::path& name, const std::string& content) {
+  errno = 0;
+  std::ofstream stream(path, std::ios::binary);
+  stream << content;
+  stream.close();
+  if (!stream) refuse(name, last_error());
+}
+
+}  // namespace
+
+void check_writable(const fs::path& file) {
+  std::error_code error;
+  if (fs::status(file, error).type() == fs::file_type::none) refuse(file, error);
+  const fs::path folder = folder_of(followed(file));
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(fmt::format(
+        "{}: cannot be written, there is no folder {}", file.string(), folder.string()));
+  }
+  if (fs::is_directory(file, error)) {
+    throw InputError(fmt::format("{}: is a folder, expected a file to write", file.string()));
+  }
+  const fs::path written = is_stream(file) ? file : folder;
+  if (access(written.c_str(), W_OK) != 0) refuse(file, last_error());
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error) return;
+  throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+UnfinishedFile::UnfinishedFile(const fs::path& file) : file_(followed(file)) {
+  check_writable(file);
+  // A name of its own, because shards on several machines may write the same file at once.
+  path_ = file_.parent_path() / fmt::format("{}.{:08x}.partial{}",
+                                            file_.filename().string(),
+                                            std::random_device()(),
+                                            file_.extension().string());
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  std::error_code none;
+  if (!path_.empty()) fs::remove(path_, none);
+}
+
+void UnfinishedFile::finish() {
+  std::error_code error;
+  fs::rename(path_, file_, error);
+  if (error) refuse(file_, error);
+  path_.clear();
+}
+
+void write_file(const fs::path& file, const std::string& content) {
+  if (is_stream(file)) return write_whole(file, file, content);
+  UnfinishedFile unfinished(file);
+  write_whole(unfinished.path(), file, content);
+  unfinished.finish();
+}
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes);
+  write_file(file, std::string(bytes.begin(), bytes.end()));
+}
+
+}  // namespace gpo

@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/output_folder.h"
+
+#include "engine/error.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace fs = std::filesystem;
+
+UnfinishedFolder::UnfinishedFolder(const fs::path& folder)
+    : folder_(fs::absolute(folder / "").parent_path()), path_(folder_.string() + ".unfinished") {
+  std::error_code error;
+  if (fs::exists(folder_, error) &&
+      !(fs::is_directory(folder_, error) && fs::is_empty(folder_, error))) {
+    throw InputError(fmt::format(
+        "{}: found something there already, expected no folder or an empty one", folder.string()));
+  }
+  fs::remove_all(path_, error);
+  fs::create_directories(path_, error);
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
+                                 path_.string(),
+                                 error.message()));
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+void UnfinishedFolder::finish() {
+  std::error_code error;
+  fs::remove(folder_, error);
+  if (!error) fs::rename(path_, folder_, error);
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be written ({})", folder_.string(), error.message()));
+  }
+}
+
+}  // namespace gpo

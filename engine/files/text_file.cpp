@@ -1,0 +1,132 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A sign that from_chars does not know; "+-1" stays wrong.
+std::string_view without_plus(std::string_view text) {
+  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+  return plus ? text.substr(1) : text;
+}
+
+/// The integer of the first `count` digits (missing ones are zeros), rounded by the next one.
+std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int64_t count) {
+  if (count < 0) return 0;
+  std::string kept = digits.substr(0, static_cast<std::size_t>(count));
+  const bool up = static_cast<std::size_t>(count) < digits.size() && digits[count] >= '5';
+  if (count > 40) return std::nullopt;
+  kept.append(static_cast<std::size_t>(count) - kept.size(), '0');
+  const auto value = kept.empty() ? std::optional<std::int64_t>(0) : parse_integer(kept);
+  if (!value || *value >= INT64_MAX / 2) return std::nullopt;  // differences fit too
+  return *value + (up ? 1 : 0);
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& file, std::size_t most_bytes) {
+  using std::filesystem::file_type;
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    throw InputError(fmt::format("{}: found {}, expected {}", file.string(), found, expected));
+  };
+  std::error_code error;
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == file_type::not_found) throw InputError(file.string() + ": no such file");
+  if (type == file_type::none) refuse(error.message(), "a file");
+  if (type == file_type::directory) refuse("a folder", "a file");
+  if (type != file_type::regular) refuse("a pipe or device", "a regular file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse(std::generic_category().message(errno), "a file that can be read");
+  std::string content;
+  for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
+    const std::size_t before = content.size();
+    content.resize(std::min(before + chunk, most_bytes + 1));
+    stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
+    content.resize(before + static_cast<std::size_t>(stream.gcount()));
+    if (content.size() > most_bytes) {
+      refuse(fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
+    }
+  }
+  if (stream.bad()) refuse("an error of the disk", "a file that can be read");
+  return content;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  const auto first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  return result;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  text = without_plus(text);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> parse_integer(std::string_view text) {
+  text = without_plus(text);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
+  const bool negative = !text.empty() && text[0] == '-';
+  text = negative ? text.substr(1) : without_plus(text);
+  std::string digits;
+  std::int64_t before_point = -1;
+  std::size_t i = 0;
+  for (; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && before_point < 0)); ++i) {
+    if (text[i] == '.') {
+      before_point = static_cast<std::int64_t>(digits.size());
+    } else {
+      digits += text[i];
+    }
+  }
+  if (digits.empty()) return std::nullopt;
+  if (before_point < 0) before_point = static_cast<std::int64_t>(digits.size());
+  std::int64_t exponent = 0;
+  if (i < text.size()) {
+    if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+    const auto parsed = parse_integer(text.substr(i + 1));
+    if (!parsed || std::abs(*parsed) > 100) return std::nullopt;
+    exponent = *parsed;
+  }
+  const std::size_t zeros = std::min(digits.find_first_not_of('0'), digits.size());
+  digits.erase(0, zeros);
+  before_point -= static_cast<std::int64_t>(zeros);
+  if (digits.empty()) return 0;
+  const auto value = rounded_integer(digits, before_point + exponent + decimals);
+  return value && negative ? std::optional(-*value) : value;
+}
+
+}  // namespace gpo

@@ -1,0 +1,138 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/yaml_entry.h"
+
+#include "engine/error.h"
+#include "engine/files/text_file.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace {
+
+constexpr std::size_t kLongestQuotation = 40;
+/// No calibration and no recipe comes near; aliases may stand for more than a memory holds.
+constexpr int kMostNodes = 100'000;
+constexpr int kDeepest = 64;
+
+std::string shown(const YAML::Node& node) {
+  if (node.IsScalar()) return fmt::format("\"{}\"", legible(node.Scalar(), kLongestQuotation));
+  if (node.IsSequence()) return fmt::format("a list of {}", node.size());
+  if (node.IsMap()) return "a map";
+  return "nothing";
+}
+
+void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<double>& result) {
+  if (node.IsSequence()) {
+    for (const auto& item : node) append_numbers(entry, item, result);
+    return;
+  }
+  result.push_back(number({entry.file, entry.key, node}, "finite numbers"));
+}
+
+/// Counts what is in a node; an alias counts as what it stands for, and one of itself is deep.
+void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, int& count) {
+  if (depth > kDeepest) {
+    yaml_fail(entry, "lists or maps without end", fmt::format("at most {} in another", kDeepest));
+  }
+  if (++count > kMostNodes) {
+    yaml_fail(entry, "too many values", fmt::format("at most {}", kMostNodes));
+  }
+  if (node.IsSequence()) {
+    for (const auto& item : node) check_extent(entry, item, depth + 1, count);
+  } else if (node.IsMap()) {
+    for (const auto& item : node) {
+      check_extent(entry, item.first, depth + 1, count);
+      check_extent(entry, item.second, depth + 1, count);
+    }
+  }
+}
+
+YAML::Node parsed(const std::filesystem::path& file, const std::string& content) {
+  try {
+    return YAML::Load(content);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format(
+        "{}:{}: found {}, expected YAML", file.string(), error.mark.line + 1, error.msg));
+  }
+}
+
+}  // namespace
+
+YamlEntry load_yaml(const std::filesystem::path& file) {
+  std::string content = read_file(file, kMostBytesByHand);
+  // OpenCV's directive is not YAML's, and yaml-cpp stumbles over it; the line count must stay.
+  if (content.starts_with("%YAML:")) content[0] = '#';
+  YamlEntry whole{file, "", parsed(file, content)};
+  int count = 0;
+  check_extent(whole, whole.node, 0, count);
+  return whole;
+}
+
+void yaml_fail(const YamlEntry& entry, const std::string& found, const std::string& expected) {
+  std::string place = entry.file.string();
+  if (const auto mark = entry.node.Mark(); !mark.is_null()) {
+    place += fmt::format(":{}", mark.line + 1);
+  }
+  if (!entry.key.empty()) place += fmt::format(": key `{}`", entry.key);
+  throw InputError(place + ": found " + found + ", expected " + expected);
+}
+
+void yaml_fail(const YamlEntry& entry, const std::string& expected) {
+  yaml_fail(entry, shown(entry.node), expected);
+}
+
+YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node) {
+  return {map.file, map.key.empty() ? key : map.key + "." + key, node};
+}
+
+std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key) {
+  if (!map.node.IsMap()) yaml_fail(map, "keys and values");
+  const YAML::Node node = map.node[key];
+  return node ? std::optional(below(map, key, node)) : std::nullopt;
+}
+
+YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected) {
+  if (auto entry = find(map, key)) return *entry;
+  // A key that the whole file lacks has no line.
+  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "nothing", expected);
+}
+
+std::string text(const YamlEntry& entry, const std::string& expected) {
+  if (!entry.node.IsScalar()) yaml_fail(entry, expected);
+  return entry.node.Scalar();
+}
+
+double number(const YamlEntry& entry, const std::string& expected) {
+  const auto value = entry.node.IsScalar() ? parse_number(entry.node.Scalar()) : std::nullopt;
+  if (!value) yaml_fail(entry, expected);
+  return *value;
+}
+
+std::int64_t integer(const YamlEntry& entry, const std::string& expected) {
+  const auto value = entry.node.IsScalar() ? parse_integer(entry.node.Scalar()) : std::nullopt;
+  if (!value) yaml_fail(entry, expected);
+  return *value;
+}
+
+std::vector<double> numbers(const YamlEntry& entry) {
+  std::vector<double> result;
+  const bool matrix = entry.node.IsMap() && entry.node["data"];
+  const YAML::Node data = matrix ? entry.node["data"] : entry.node;
+  if (!data.IsSequence()) yaml_fail(entry, shown(data), "a list of numbers");
+  append_numbers(entry, data, result);
+  return result;
+}
+
+std::vector<double> numbers(const YamlEntry& entry,
+                            std::size_t count,
+                            const std::string& expected) {
+  auto result = numbers(entry);
+  if (result.size() != count) {
+    yaml_fail(entry, std::to_string(result.size()) + " numbers", expected);
+  }
+  return result;
+}
+
+}  // namespace gpo

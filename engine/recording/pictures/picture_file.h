@@ -1,0 +1,22 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// Decodes a picture file: blue, green, red, of 8 or 16 bits each. Throws InputError where it is
+/// missing, cut or broken; a half picture is never returned.
+cv::Mat read_picture(const std::filesystem::path& file);
+
+/// How many bits of a picture's pixels are used, judged by the brightest: 8, 10, 12, 14 or 16.
+/// Cameras of 10 or 12 bits store those in pictures of 16.
+int significant_bits(const cv::Mat& picture);
+
+/// CV_8UC3; brighter than `bits` allow is white.
+cv::Mat to_8_bits(const cv::Mat& picture, int bits);
+
+}  // namespace gpo

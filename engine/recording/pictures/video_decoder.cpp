@@ -1,0 +1,268 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/pictures/video_decoder.h"
+
+#include "engine/error.h"
+#include "engine/recording/pictures/libav.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+extern "C" {
+#include <libavutil/display.h>
+}
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMostPixels = 100'000'000;
+/// Containers of one file; playlists, which FFmpeg knows too, would open further files and
+/// addresses.
+constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
+constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
+
+using Format = std::unique_ptr<AVFormatContext, libav::Closer<avformat_close_input>>;
+using libav::Codec;
+using libav::Frame;
+using libav::Packet;
+using libav::Scaler;
+
+[[noreturn]] void fail_to_open(const fs::path& file) {
+  throw InputError(file.string() +
+                   ": found something that cannot be decoded (cut, or no video), expected a video");
+}
+
+/// How often the shown picture is turned clockwise by 90 degrees: phones store what the sensor saw.
+int quarter_turns(const AVStream& stream) {
+  const auto* matrix = reinterpret_cast<const std::int32_t*>(
+      av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
+  if (matrix == nullptr) return 0;
+  const double turns = -av_display_rotation_get(matrix) / 90;
+  return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
+}
+
+}  // namespace
+
+/// A container that is being read, its video stream and its decoder.
+struct VideoDecoder::Input {
+  Format format;
+  AVStream* stream = nullptr;
+  Codec codec;
+  Packet packet{av_packet_alloc()};
+  Frame frame{av_frame_alloc()};
+  Scaler scaler;
+
+  explicit Input(const fs::path& file) {
+    // What it says about broken files becomes our InputError. Others (OpenCV) change the level,
+    // too.
+    av_log_set_level(AV_LOG_QUIET);
+    AVFormatContext* opened = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "format_whitelist", kContainers, 0);
+    // Without the protocol's name a path with a colon would be taken for an address.
+    const std::string address = "file:" + file.string();
+    const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
+    av_dict_free(&options);
+    if (error < 0) fail_to_open(file);
+    format.reset(opened);
+    if (avformat_find_stream_info(opened, nullptr) < 0) fail_to_open(file);
+    const AVCodec* decoder = nullptr;
+    const int best = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    if (best < 0 || decoder == nullptr) fail_to_open(file);
+    stream = opened->streams[best];
+    for (unsigned i = 0; i < opened->nb_streams; ++i) {
+      if (opened->streams[i] != stream) opened->streams[i]->discard = AVDISCARD_ALL;
+    }
+    codec.reset(avcodec_alloc_context3(decoder));
+    codec->thread_count = 0;
+    codec->max_pixels = kMostPixels;
+    if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
+        avcodec_open2(codec.get(), decoder, nullptr) < 0) {
+      fail_to_open(file);
+    }
+  }
+
+  /// The next packet of the stream; false at the end, and where the file is cut.
+  bool read_packet() {
+    for (;;) {
+      av_packet_unref(packet.get());
+      if (av_read_frame(format.get(), packet.get()) < 0) return false;
+      if (packet->stream_index == stream->index) return true;
+    }
+  }
+
+  /// The next frame in the order of time; false at the end.
+  bool decode_frame() {
+    for (;;) {
+      const int received = avcodec_receive_frame(codec.get(), frame.get());
+      if (received == 0) return true;
+      if (received != AVERROR(EAGAIN)) return false;
+      // A packet that cannot be decoded is passed over, as players do.
+      avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
+    }
+  }
+
+  /// Whether it stands at a key frame, at or before that time.
+  bool seek(std::int64_t time) {
+    if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
+    avcodec_flush_buffers(codec.get());
+    return true;
+  }
+
+  cv::Mat picture(const fs::path& file) {
+    const AVFrame& from = *frame;
+    scaler.reset(sws_getCachedContext(scaler.release(),
+                                      from.width,
+                                      from.height,
+                                      static_cast<AVPixelFormat>(from.format),
+                                      from.width,
+                                      from.height,
+                                      AV_PIX_FMT_BGR24,
+                                      SWS_BICUBIC,  // as OpenCV's reader does
+                                      nullptr,
+                                      nullptr,
+                                      nullptr));
+    if (!scaler) fail_to_open(file);
+    cv::Mat bgr(from.height, from.width, CV_8UC3);
+    std::uint8_t* const planes[] = {bgr.data};
+    const int strides[] = {static_cast<int>(bgr.step)};
+    sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
+    const int turns = quarter_turns(*stream);
+    if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
+    return bgr;
+  }
+};
+
+namespace {
+
+/// Times of all packets; nothing where one has none, or two the same.
+struct PacketTimes {
+  std::vector<std::int64_t> all;
+  std::vector<std::int64_t> keys;
+  bool exact = true;
+
+  void add(const AVPacket& packet, bool reordered) {
+    if ((packet.flags & (AV_PKT_FLAG_DISCARD | AV_PKT_FLAG_CORRUPT)) != 0) return;
+    const bool timed = packet.pts != AV_NOPTS_VALUE;
+    exact = exact && (timed || (!reordered && packet.dts != AV_NOPTS_VALUE));
+    const std::int64_t time = timed ? packet.pts : packet.dts;
+    all.push_back(time);
+    if ((packet.flags & AV_PKT_FLAG_KEY) != 0) keys.push_back(time);
+  }
+  void finish() {
+    std::ranges::sort(all);
+    std::ranges::sort(keys);
+    exact = exact && std::ranges::adjacent_find(all) == all.end();
+  }
+};
+
+double declared_count(const AVFormatContext& format, const AVStream& stream) {
+  if (stream.nb_frames > 0) return static_cast<double>(stream.nb_frames);
+  const double rate = av_q2d(stream.avg_frame_rate);
+  return format.duration > 0 && rate > 0
+             ? static_cast<double>(format.duration) / AV_TIME_BASE * rate
+             : 0;
+}
+
+}  // namespace
+
+VideoDecoder::VideoDecoder(fs::path file)
+    : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
+  const AVStream& stream = *input_->stream;
+  const AVCodecParameters& parameters = *stream.codecpar;
+  index_.unit_s = av_q2d(stream.time_base);
+  index_.size = {parameters.width, parameters.height};
+  if (quarter_turns(stream) % 2 == 1) std::swap(index_.size.width, index_.size.height);
+  const double rate = av_q2d(stream.avg_frame_rate);
+  if (std::isfinite(rate)) index_.rate_hz = rate;
+  index_.declared_count = declared_count(*input_->format, stream);
+  PacketTimes times;
+  while (input_->read_packet()) times.add(*input_->packet, parameters.video_delay > 0);
+  times.finish();
+  timed_ = times.exact;
+  index_.times = std::move(times.all);
+  index_.key_times = std::move(times.keys);
+  input_.reset();
+  if (timed_) return;
+  index_.times.clear();
+  const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
+  for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
+    index_.times.push_back(std::llround(frame * period));
+  }
+  input_.reset();
+  last_ = -1;
+}
+
+VideoDecoder::~VideoDecoder() = default;
+
+/// Decodes the frame after the last one; its number, or -1 at the end.
+int VideoDecoder::next_frame() {
+  if (!input_) {
+    input_ = std::make_unique<Input>(file_);
+    last_ = -1;
+  }
+  while (input_->decode_frame()) {
+    if (!timed_) return ++last_;
+    const auto& times = index_.times;
+    const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
+    if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
+    return last_ = static_cast<int>(at - times.begin());
+  }
+  return -1;
+}
+
+/// Goes where decoding on leads to the frame; returns the first that is whole from there on: what a
+/// decoder gives out between a key frame and the frames shown before it may lack its references.
+int VideoDecoder::go_to(int frame) {
+  const auto& keys = index_.key_times;
+  const std::int64_t time = index_.times[frame];
+  auto key = std::ranges::upper_bound(keys, time);
+  if (key != keys.begin()) --key;
+  if (input_ && last_ >= 0 && frame > last_) {
+    const bool key_between = timed_ && key != keys.end() && *key > index_.times[last_];
+    if (!key_between || frame - last_ <= kStepsWorthDecoding) return last_ + 1;
+  }
+  kept_.clear();
+  last_ = -1;
+  const bool seekable = timed_ && key != keys.end() && *key <= time;
+  if (!seekable || !input_ || !input_->seek(*key)) input_ = std::make_unique<Input>(file_);
+  if (!seekable) return 0;
+  return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
+}
+
+cv::Mat VideoDecoder::decode(int frame) {
+  if (const auto kept = kept_.find(frame); kept != kept_.end()) return kept->second;
+  const bool backward = last_ > frame;
+  const int whole = go_to(frame);
+  const int first_kept = backward ? std::max(whole, frame - kKept) : frame;
+  for (int tries = 0;;) {
+    const bool landed = last_ < 0;
+    const int decoded = next_frame();
+    if (landed && decoded > frame && tries++ == 0) {
+      input_ = std::make_unique<Input>(file_);  // it led too far: from the beginning
+      last_ = -1;
+      continue;
+    }
+    if (decoded < 0 || decoded > frame) fail(frame);
+    if (decoded < first_kept) continue;
+    cv::Mat picture = input_->picture(file_);
+    if (decoded == frame) return picture;
+    kept_[decoded] = std::move(picture);
+  }
+}
+
+void VideoDecoder::fail(int frame) {
+  input_.reset();
+  last_ = -1;
+  throw InputError(fmt::format(
+      "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+}
+
+}  // namespace gpo

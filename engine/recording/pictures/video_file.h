@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/recording/pictures/frame_cache.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace gpo {
+
+struct VideoFile {
+  std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, the first is 0
+  std::shared_ptr<const FrameCache> pictures;
+};
+
+/// Opens a video without decoding it; times are the container's, also of a variable frame rate. The
+/// camera's size is the video's where the calibration does not tell it. Throws InputError where it
+/// cannot be opened, is cut, or has another size than the camera.
+VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
+
+/// Whether the file's name ends in mp4, avi, mov or mkv.
+bool is_video_name(const std::filesystem::path& file);
+
+}  // namespace gpo

@@ -1,0 +1,60 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
+
+#include "tests/engine/test_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using test::TestFolder;
+using testing::EndsWith;
+
+std::string error_at(const fs::path& file) {
+  return error_of([&] { read_file(file); });
+}
+
+TEST(TextFile, IsReadByteForByte) {
+  const TestFolder folder;
+  std::string content;
+  for (int i = 0; i < 300'000; ++i) content += static_cast<char>(i % 251);
+  EXPECT_EQ(read_file(folder.write("a", content)), content);
+  EXPECT_EQ(read_file(folder.write("empty", std::string())), "");
+}
+
+TEST(TextFile, LargerThanAllowedIsRefused) {
+  const TestFolder folder;
+  const fs::path file = folder.write("a", std::string((1 << 20) + 1, 'x'));
+  EXPECT_EQ(read_file(file, (1 << 20) + 1).size(), (1U << 20) + 1);
+  EXPECT_THAT(error_of([&] { read_file(file, kMostBytesByHand); }),
+              EndsWith("a: found more than 1 MiB, expected a smaller file"));
+}
+
+TEST(TextFile, WhatIsNoFileIsRefused) {
+  const TestFolder folder;
+  EXPECT_THAT(error_at(folder.path() / "no"), EndsWith("no: no such file"));
+  EXPECT_THAT(error_at(folder.path()), EndsWith(": found a folder, expected a file"));
+  ASSERT_EQ(mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(error_at(folder.path() / "pipe"),
+              EndsWith("pipe: found a pipe or device, expected a regular file"));
+  EXPECT_THAT(error_at("/dev/zero"), EndsWith("found a pipe or device, expected a regular file"));
+  fs::create_symlink("loop", folder.path() / "loop");
+  EXPECT_THAT(error_at(folder.path() / "loop"),
+              EndsWith("loop: found Too many levels of symbolic links, expected a file"));
+}
+
+TEST(TextFile, DifferencesOfDecimalsFitIntoAnInteger) {
+  const auto most = parse_decimal("4611686018427387902", 0);
+  ASSERT_TRUE(most);
+  EXPECT_FALSE(parse_decimal("4611686018427387903", 0));
+  EXPECT_FALSE(parse_decimal("-4611686018427387903", 0));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,127 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/board/board_pose.h"
+
+#include "engine/recording/board/board_corners.h"
+#include "tests/engine/recording/board/rendered_board.h"
+
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using test::kChessboard;
+using test::looking_at;
+using test::rotation_error_deg;
+using test::small_lens;
+
+Camera fisheye() {
+  return {640, 480, 190, 191, 320, 240, Distortion::equidistant, {0.003, 0.0007, -0.002, 0.0002}};
+}
+
+TEST(BoardPose, IsThatOfThePictureThroughALens) {
+  for (const double tilt : {-35.0, 10.0, 40.0}) {
+    const Pose truth = looking_at(kChessboard, 0.35, tilt, 20);
+    const auto corners =
+        find_board(test::render_board(kChessboard, small_lens(), truth), kChessboard);
+    const auto found = board_pose(corners, kChessboard, small_lens());
+    ASSERT_TRUE(found) << tilt;
+    EXPECT_LT(found->uncertainty.rms_px, 0.1);
+    EXPECT_LT((found->pose.p_wc - truth.p_wc).norm(), 1e-3) << tilt;
+    EXPECT_LT(rotation_error_deg(found->pose, truth), 0.15) << tilt;
+  }
+}
+
+TEST(BoardPose, IsExactForExactCorners) {
+  for (const Camera& camera : {small_lens(), fisheye()}) {
+    const Pose truth = looking_at(kChessboard, 0.25, 25, 0);
+    const auto exact = board_pose(project_board(kChessboard, camera, truth), kChessboard, camera);
+    ASSERT_TRUE(exact);
+    EXPECT_LT(exact->uncertainty.rms_px, 1e-6);
+    EXPECT_LT((exact->pose.p_wc - truth.p_wc).norm(), 1e-8);
+  }
+}
+
+TEST(BoardPose, IsNoneForCornersThatDoNotFit) {
+  auto corners = project_board(kChessboard, small_lens(), looking_at(kChessboard, 0.4, 15, 0));
+  corners[20].x() += 40;
+  EXPECT_FALSE(board_pose(corners, kChessboard, small_lens()));
+}
+
+/// All but the corners `seen` are hidden.
+std::vector<Eigen::Vector2d> only(const std::vector<int>& seen, const Pose& pose) {
+  const auto whole = project_board(kChessboard, small_lens(), pose);
+  std::vector<Eigen::Vector2d> corners(
+      whole.size(), Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (const int i : seen) corners[i] = whole[i];
+  return corners;
+}
+
+TEST(BoardPose, NeedsSixCornersThatAreNotOnALine) {
+  const Pose truth = looking_at(kChessboard, 0.4, 25, 30);
+  const auto six = board_pose(only({0, 1, 2, 9, 10, 20}, truth), kChessboard, small_lens());
+  ASSERT_TRUE(six);
+  EXPECT_LT((six->pose.p_wc - truth.p_wc).norm(), 1e-6);
+  EXPECT_FALSE(board_pose(only({0, 1, 2, 9, 10}, truth), kChessboard, small_lens()));
+  EXPECT_FALSE(board_pose(only({0, 1, 2, 3, 4, 5, 6, 7, 8}, truth), kChessboard, small_lens()));
+  EXPECT_FALSE(board_pose(only({0, 1, 2, 3, 4, 5, 6, 7, 8, 22}, truth), kChessboard, small_lens()));
+  EXPECT_FALSE(board_pose(only({0, 10, 20, 30, 40, 50}, truth), kChessboard, small_lens()));
+}
+
+/// Mean of (error / standard deviation)^2 of position, rotation and normal over many noises.
+Eigen::Vector3d mean_normalized_squares(const Camera& camera, const Pose& truth) {
+  constexpr int kSeeds = 400;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 0.3);
+    auto corners = project_board(kChessboard, camera, truth);
+    for (auto& corner : corners) corner += Eigen::Vector2d(noise(random), noise(random));
+    const auto found = board_pose(corners, kChessboard, camera);
+    if (!found) return Eigen::Vector3d::Zero();
+    const PoseUncertainty& u = found->uncertainty;
+    const double position = (found->pose.p_wc - truth.p_wc).norm();
+    const double normal =
+        angle_deg(found->pose.R_wc.transpose().col(2), truth.R_wc.transpose().col(2));
+    sum += Eigen::Vector3d(position / u.position_sigma_m,
+                           rotation_error_deg(found->pose, truth) / u.rotation_sigma_deg,
+                           normal / u.normal_sigma_deg)
+               .cwiseAbs2();
+  }
+  return sum / kSeeds;
+}
+
+TEST(BoardPose, IsAsSureAsItsErrorsAre) {
+  for (const Camera& camera : {small_lens(), fisheye()}) {
+    const Eigen::Vector3d mean =
+        mean_normalized_squares(camera, looking_at(kChessboard, 0.3, 35, 20));
+    EXPECT_GT(mean.minCoeff(), 0.8) << mean.transpose();
+    EXPECT_LT(mean.maxCoeff(), 1.25) << mean.transpose();
+  }
+}
+
+TEST(BoardSymmetries, TakeTheBoardOntoItselfWithItsColors) {
+  const auto count = [](const Board& board) { return board_symmetries(board).size(); };
+  EXPECT_EQ(count({9, 6, 0.025}), 1U);
+  EXPECT_EQ(count({8, 6, 0.025}), 2U);
+  EXPECT_EQ(count({7, 5, 0.025}), 2U);
+  EXPECT_EQ(count({5, 5, 0.025}), 2U);
+  EXPECT_EQ(count({6, 6, 0.025}), 4U);
+  EXPECT_EQ(count({6, 6, 0.025, BoardMarkers{0.02, "DICT_4X4_50"}}), 1U);
+  for (const Board& board : {Board{8, 6, 0.025}, Board{5, 5, 0.03}, Board{6, 6, 0.03}}) {
+    for (const Pose& symmetry : board_symmetries(board)) {
+      for (double x = -0.0131; x < 0.2; x += 0.011) {
+        for (double y = -0.0172; y < 0.2; y += 0.013) {
+          const Eigen::Vector3d turned = to_world(symmetry, {x, y, 0});
+          EXPECT_EQ(test::board_gray(board, x, y), test::board_gray(board, turned.x(), turned.y()));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gpo

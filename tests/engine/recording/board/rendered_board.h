@@ -1,0 +1,115 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/recording.h"
+
+#include <cmath>
+
+#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/core.hpp>
+
+namespace gpo::test {
+
+inline const Board kChessboard{9, 6, 0.025};  // its two ends differ in color
+inline const Board kTwin{8, 6, 0.025};        // turned by 180 degrees it looks the same
+
+inline Camera small_pinhole() { return {320, 240, 300, 302, 158.5, 121.5, Distortion::none, {}}; }
+inline Camera small_lens() {
+  return {
+      320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
+}
+
+inline double rotation_error_deg(const Pose& a, const Pose& b) {
+  return degrees(so3_log(a.R_wc.transpose() * b.R_wc).norm());
+}
+
+/// Gray of the board's plane at a point [m]: squares with a white margin, mid-gray around it.
+inline double board_gray(const Board& board, double x, double y) {
+  const double column = x / board.square_m;
+  const double row = y / board.square_m;
+  if (column < -2 || row < -2 || column > board.columns + 1 || row > board.rows + 1) return 110;
+  if (column < -1 || row < -1 || column > board.columns || row > board.rows) return 230;
+  const int parity = static_cast<int>(std::floor(column)) + static_cast<int>(std::floor(row));
+  return parity % 2 == 0 ? 25 : 230;
+}
+
+/// A picture of the plane z = 0, whose gray at a point [m] is `gray(x, y)`, by casting 4 x 4 rays a
+/// pixel through the exact lens model: no interpolation that could shift a corner.
+template <class Gray>
+cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
+  constexpr int kSamples = 4;
+  const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
+  cv::Mat picture(camera.height, camera.width, CV_8UC1);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      double sum = 0;
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const int row = k / kSamples;
+        const Eigen::Vector2d raw(u - 0.5 + (k % kSamples + 0.5) / kSamples,
+                                  v - 0.5 + (row + 0.5) / kSamples);
+        const Eigen::Vector2d ideal =
+            camera.distortion == Distortion::none ? raw : undistort(camera, raw);
+        const Eigen::Vector3d ray(
+            (ideal.x() - camera.cx) / camera.fx, (ideal.y() - camera.cy) / camera.fy, 1);
+        const auto point = intersect(plane, pose, ray);
+        sum += point ? gray(point->x(), point->y()) : 110;
+      }
+      picture.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
+    }
+  }
+  return picture;
+}
+
+/// A picture of a chessboard (its frame as in board_points).
+inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
+  return render_plane(camera, pose, [&](double x, double y) { return board_gray(board, x, y); });
+}
+
+/// A picture of a print of a ChArUco board, `texture`, whose pixels are its squares' without
+/// margin.
+inline cv::Mat render_print(const cv::Mat& texture,
+                            const Board& board,
+                            const Camera& camera,
+                            const Pose& pose) {
+  const double texels = texture.cols / ((board.columns + 1) * board.square_m);
+  return render_plane(camera, pose, [&](double x, double y) -> double {
+    const int u = static_cast<int>(std::floor((x + board.square_m) * texels));
+    const int v = static_cast<int>(std::floor((y + board.square_m) * texels));
+    const int margin = texture.cols / (2 * (board.columns + 1));
+    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin) {
+      return 110;
+    }
+    const bool print = u >= 0 && v >= 0 && u < texture.cols && v < texture.rows;
+    return print ? 25 + 0.8 * texture.at<std::uint8_t>(v, u) : 229;
+  });
+}
+
+/// OpenCV's own drawing of a ChArUco board.
+inline cv::Mat opencv_charuco(const Board& board, int dictionary) {
+  constexpr int kTexels = 60;
+  const auto drawn =
+      cv::aruco::CharucoBoard::create(board.columns + 1,
+                                      board.rows + 1,
+                                      static_cast<float>(board.square_m),
+                                      static_cast<float>(board.markers->side_m),
+                                      cv::aruco::getPredefinedDictionary(dictionary));
+  cv::Mat texture;
+  drawn->draw({kTexels * (board.columns + 1), kTexels * (board.rows + 1)}, texture, 0, 1);
+  return texture;
+}
+
+/// A camera that looks at the middle of the board from `distance` [m], tilted and rolled [deg].
+inline Pose looking_at(const Board& board, double distance, double tilt_deg, double roll_deg) {
+  const Eigen::Vector3d middle(
+      0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
+  const Eigen::Matrix3d R =
+      so3_exp({radians(tilt_deg), 0.3 * radians(tilt_deg), 0}) * so3_exp({0, 0, radians(roll_deg)});
+  return {R, middle - distance * R.col(2)};
+}
+
+}  // namespace gpo::test

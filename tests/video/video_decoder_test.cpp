@@ -1,0 +1,164 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/pictures/video_decoder.h"
+
+#include "engine/recording/pictures/video_file.h"
+#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/test_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+namespace gpo {
+namespace {
+
+using test::make_video;
+using test::TestFolder;
+using testing::ElementsAre;
+
+/// Something that moves, so that every frame differs from the last one.
+std::vector<cv::Mat> moving(int count, cv::Size size = {96, 64}) {
+  std::vector<cv::Mat> pictures;
+  for (int i = 0; i < count; ++i) {
+    cv::Mat picture(size, CV_8UC3, cv::Scalar(40, 90, 10));
+    cv::circle(picture, {(7 * i) % size.width, (3 * i) % size.height}, 12, {200, 30, 220}, -1);
+    pictures.push_back(picture);
+  }
+  return pictures;
+}
+
+/// An independent reader, from beginning to end.
+std::vector<cv::Mat> by_opencv(const std::filesystem::path& file) {
+  cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
+  std::vector<cv::Mat> frames;
+  for (cv::Mat frame; capture.read(frame);) frames.push_back(frame.clone());
+  return frames;
+}
+
+void expect_same_in_any_order(const std::filesystem::path& file, int frames) {
+  const auto expected = by_opencv(file);
+  ASSERT_EQ(static_cast<int>(expected.size()), frames);
+  VideoDecoder decoder(file);
+  ASSERT_EQ(static_cast<int>(decoder.index().times.size()), frames);
+  const auto same = [&](int frame) {
+    return cv::norm(decoder.decode(frame), expected[frame], cv::NORM_INF) == 0;
+  };
+  for (int i = 0; i < frames; ++i) ASSERT_TRUE(same(i)) << "forward, " << i;
+  for (int i = frames - 1; i >= 0; --i) ASSERT_TRUE(same(i)) << "backward, " << i;
+  for (int i = 0; i < 150; ++i) ASSERT_TRUE(same(i * 37 % frames)) << "jump to " << i * 37 % frames;
+}
+
+TEST(VideoDecoder, GivesOpenCvsPixelsInAnyOrder) {
+  const TestFolder folder;
+  const auto pictures = moving(61);
+  for (const char* name : {"a.mp4", "a.avi", "a.mkv", "a.mov"}) {
+    SCOPED_TRACE(name);
+    make_video(folder.path() / name, pictures);
+    expect_same_in_any_order(folder.path() / name, 61);
+  }
+}
+
+TEST(VideoDecoder, GivesOpenCvsPixelsWhereFramesAreStoredInAnotherOrder) {
+  const TestFolder folder;
+  const auto pictures = moving(61);
+  for (const char* name : {"b.mp4", "b.mkv", "b.mov", "b.avi"}) {
+    SCOPED_TRACE(name);
+    make_video(folder.path() / name, pictures, {.b_frames = true});
+    expect_same_in_any_order(folder.path() / name, 61);
+  }
+}
+
+TEST(VideoDecoder, GivesOpenCvsPixelsOfRealVideos) {
+  for (const char* name : {"chessboard-floor", "chessboard-dark", "painting", "postcard"}) {
+    SCOPED_TRACE(name);
+    const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data" / name / "video.mp4";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "the recordings are not on this machine";
+    cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
+    VideoDecoder sequential(file);
+    const int frames = static_cast<int>(sequential.index().times.size());
+    std::map<int, cv::Mat> some;
+    cv::Mat expected;
+    int frame = 0;
+    for (; capture.read(expected); ++frame) {
+      ASSERT_EQ(cv::norm(sequential.decode(frame), expected, cv::NORM_INF), 0) << frame;
+      if (frame % 17 == 5) some[frame] = expected.clone();
+    }
+    EXPECT_EQ(frame, frames);
+    VideoDecoder jumping(file);
+    for (auto last = some.rbegin(); last != some.rend(); ++last) {
+      EXPECT_EQ(cv::norm(jumping.decode(last->first), last->second, cv::NORM_INF), 0);
+    }
+  }
+}
+
+/// A frame that is gone does not take the others with it.
+TEST(VideoDecoder, GoesOnAfterAFrameThatCannotBeDecoded) {
+  const TestFolder folder;
+  make_video(folder.path() / "whole.mkv", moving(40));
+  const std::string bytes = folder.read("whole.mkv");
+  std::string broken = bytes;
+  std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 3000, '\0');
+  folder.write("broken.mkv", broken);
+  const auto expected = by_opencv(folder.path() / "whole.mkv");
+  VideoDecoder decoder(folder.path() / "broken.mkv");
+  const int frames = static_cast<int>(decoder.index().times.size());
+  EXPECT_LT(frames, 40);
+  const auto same = [&](int frame, const cv::Mat& picture) {
+    return cv::norm(decoder.decode(frame), picture, cv::NORM_INF) == 0;
+  };
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    EXPECT_TRUE(same(frames - 1, expected.back()));
+    EXPECT_TRUE(same(3, expected[3]));
+    for (int i = 0; i < frames; ++i) {
+      EXPECT_THAT(test::error_of([&] { decoder.decode(i); }),
+                  testing::AnyOf("no error", testing::HasSubstr("broken.mkv: frame ")));
+    }
+  }
+}
+
+TEST(VideoFile, TakesVariableTimesFromTheContainer) {
+  const TestFolder folder;
+  for (const char* name : {"v.mkv", "v.mp4"}) {
+    make_video(folder.path() / name, moving(5), {.times_ms = {0, 33, 71, 300, 334}});
+    Camera camera;
+    const auto video = open_video(folder.path() / name, camera, 1 << 20);
+    EXPECT_THAT(video.timestamps_ns, ElementsAre(0, 33000000, 71000000, 300000000, 334000000));
+    EXPECT_EQ(cv::Size(camera.width, camera.height), cv::Size(96, 64));
+  }
+}
+
+/// As players do. OpenCV 4.6 turns it the other way (its issue 22088).
+TEST(VideoFile, TurnsThePictureAsThePhoneWasHeld) {
+  const TestFolder folder;
+  const auto pictures = moving(3);
+  make_video(folder.path() / "plain.mp4", pictures);
+  VideoDecoder plain(folder.path() / "plain.mp4");
+  for (const auto& [degrees, code] : {std::pair(90, cv::ROTATE_90_CLOCKWISE),
+                                      std::pair(180, cv::ROTATE_180),
+                                      std::pair(270, cv::ROTATE_90_COUNTERCLOCKWISE)}) {
+    const auto file = folder.path() / (std::to_string(degrees) + ".mp4");
+    make_video(file, pictures, {.clockwise_degrees = degrees});
+    VideoDecoder turned(file);
+    cv::Mat expected;
+    cv::rotate(plain.decode(1), expected, code);
+    ASSERT_EQ(turned.index().size, expected.size());
+    EXPECT_EQ(cv::norm(turned.decode(1), expected, cv::NORM_INF), 0) << degrees;
+  }
+}
+
+TEST(VideoFile, OpensALongOneWithoutDecodingIt) {
+  const TestFolder folder;
+  constexpr int kFrames = 20000;
+  const auto pictures = moving(1, {32, 32});
+  make_video(folder.path() / "long.mp4", std::vector<cv::Mat>(kFrames, pictures[0]));
+  Camera camera;
+  const auto video = open_video(folder.path() / "long.mp4", camera, 1 << 20);
+  ASSERT_EQ(video.pictures->count(), kFrames);
+  for (const int frame : {0, kFrames - 1, kFrames / 2, 7}) video.pictures->bgr(frame);
+  EXPECT_LE(video.pictures->bytes(), std::size_t{1} << 20);
+}
+
+}  // namespace
+}  // namespace gpo
