@@ -82,11 +82,6 @@ class CsvText {
   int line_ = 1;
 };
 
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-
 template <class Number>
 Number number_of(const std::string& text, const char* expected) {
   if constexpr (std::is_floating_point_v<Number>) {
@@ -99,7 +94,7 @@ Number number_of(const std::string& text, const char* expected) {
 
 template <class Value>
 void read_value(const std::string& text, Value& value) {
-  if constexpr (IsOptional<Value>::value) {
+  if constexpr (is_optional<Value>) {
     value.reset();
     if (!text.empty()) read_value(text, value.emplace());
   } else if constexpr (std::is_same_v<Value, std::string>) {

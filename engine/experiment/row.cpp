@@ -12,16 +12,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-
 template <class Value>
 ordered_json value_json(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
-  } else if constexpr (IsOptional<Value>::value) {
+  } else if constexpr (is_optional<Value>) {
     return value ? value_json(*value) : ordered_json(nullptr);
   } else {
     return value;
@@ -34,7 +29,7 @@ void read_value(const ordered_json& json, Value& value) {
     value = rotation_source(json.get<std::string>());
   } else if constexpr (Choice<Value>) {
     value = choice<Value>(json.get<std::string>());
-  } else if constexpr (IsOptional<Value>::value) {
+  } else if constexpr (is_optional<Value>) {
     value.reset();
     if (!json.is_null()) read_value(json, value.emplace());
   } else {
@@ -54,7 +49,7 @@ template <class Value>
 std::string value_cell(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return to_string(value);
-  } else if constexpr (IsOptional<Value>::value) {
+  } else if constexpr (is_optional<Value>) {
     return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
     return cell(value);

@@ -14,6 +14,12 @@
 
 namespace gpo {
 
+/// Of the fields of a row: whether one may be empty.
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
 /// One configuration on one window: a line of results.csv. What is unknown is empty.
 struct Row {
   std::string recording;      ///< name

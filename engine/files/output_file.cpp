@@ -3,6 +3,7 @@
 #include "engine/files/output_file.h"
 
 #include "engine/error.h"
+#include "engine/files/folder.h"
 
 #include <cerrno>
 #include <fstream>
@@ -36,10 +37,6 @@ fs::path followed(fs::path file) {
     file = file.parent_path() / next;
   }
   return file;
-}
-
-fs::path folder_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 /// A terminal, pipe or device: nothing is beside it, and it is never half there.

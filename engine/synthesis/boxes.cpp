@@ -11,8 +11,6 @@
 namespace gpo {
 namespace {
 
-double ratio_of(const cv::Mat& canvas) { return static_cast<double>(canvas.rows) / canvas.cols; }
-
 /// Page edges of a closed book between its two covers.
 void draw_pages(cv::Mat& canvas, const cv::Scalar& cover, Random& random) {
   for (int row = 0; row < canvas.rows; ++row) {

@@ -31,6 +31,8 @@ cv::Scalar rgb(unsigned hex) {
           255};
 }
 
+double ratio_of(const cv::Mat& canvas) { return static_cast<double>(canvas.rows) / canvas.cols; }
+
 const Palette& pick_palette(Random& random) {
   static const std::array<Palette, 8> palettes = {{
       {rgb(0x264653), rgb(0x2a9d8f), rgb(0xe76f51), rgb(0xf4a261), rgb(0xe9c46a), rgb(0xfaf3dd)},

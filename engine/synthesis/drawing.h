@@ -19,6 +19,8 @@ cv::Scalar rgb(unsigned hex);
 /// Five or six colors that go together, the darkest first, the lightest last.
 const Palette& pick_palette(Random& random);
 cv::Mat blank_canvas(cv::Size size, const cv::Scalar& color);
+/// Height by width.
+double ratio_of(const cv::Mat& canvas);
 /// The part of a canvas, sharing its pixels.
 cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
 

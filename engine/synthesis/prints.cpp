@@ -15,8 +15,6 @@ namespace {
 const cv::Scalar kPaper(228, 236, 240, 255);
 const cv::Scalar kInk(46, 40, 38, 255);
 
-double ratio_of(const cv::Mat& canvas) { return static_cast<double>(canvas.rows) / canvas.cols; }
-
 void bar(
     cv::Mat& canvas, double x, double y, double width, double height, const cv::Scalar& color) {
   part(canvas, x, y, width, height).setTo(color);

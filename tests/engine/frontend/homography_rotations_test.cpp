@@ -3,6 +3,7 @@
 #include "engine/frontend/homography_rotations.h"
 
 #include "engine/geometry/pose.h"
+#include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -18,12 +19,9 @@ namespace {
 
 using Eigen::Matrix3d;
 using test::Motion;
+using test::rotation_error_deg;
 using test::simulate;
 using test::Simulation;
-
-double error_deg(const Matrix3d& a, const Matrix3d& b) {
-  return degrees(so3_log(a.transpose() * b).norm());
-}
 
 TEST(HomographyRotations, WindowIsExactWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
@@ -31,7 +29,7 @@ TEST(HomographyRotations, WindowIsExactWithoutNoise) {
     const auto [R, reason, model, gyro, sigma] = averaged_rotations(s.window);
     ASSERT_EQ(reason, "");
     for (int i = 0; i < 30; ++i)
-      EXPECT_LT(error_deg(R[i], s.cameras[i].R_wc), 0.01) << "frame " << i;
+      EXPECT_LT(rotation_error_deg(R[i], s.cameras[i].R_wc), 0.01) << "frame " << i;
   }
 }
 
@@ -63,8 +61,8 @@ TEST(HomographyRotations, IsFarBetterThanFivePointOnAPlane) {
     const Simulation s = simulate({.motion = Motion::orbit, .seed = seed});
     const auto [R, reason, model, gyro, sigma] = averaged_rotations(s.window);
     ASSERT_EQ(reason, "");
-    averaged.push_back(error_deg(R[29], s.cameras[29].R_wc));
-    five_point.push_back(error_deg(five_point_rotation(s), s.cameras[29].R_wc));
+    averaged.push_back(rotation_error_deg(R[29], s.cameras[29].R_wc));
+    five_point.push_back(rotation_error_deg(five_point_rotation(s), s.cameras[29].R_wc));
   }
   std::ranges::sort(averaged);
   std::ranges::sort(five_point);
@@ -88,7 +86,7 @@ TEST(HomographyRotations, SaysSoRatherThanTakeTheFalseTwin) {
           continue;
         }
         ++told;
-        EXPECT_LT(error_deg(R[29], s.cameras[29].R_wc), 2.0)
+        EXPECT_LT(rotation_error_deg(R[29], s.cameras[29].R_wc), 2.0)
             << static_cast<int>(motion) << " travel " << travel << " seed " << seed;
       }
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotation_averaging.h"
 
-#include "engine/geometry/pose.h"
+#include "tests/engine/rotation_error.h"
 
 #include <cstdlib>
 #include <random>
@@ -13,10 +13,7 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
-
-double error_deg(const Matrix3d& a, const Matrix3d& b) {
-  return degrees(so3_log(a.transpose() * b).norm());
-}
+using test::rotation_error_deg;
 
 std::vector<Matrix3d> random_rotations(int count) {
   std::vector<Matrix3d> R{Matrix3d::Identity()};
@@ -39,7 +36,7 @@ TEST(RotationAveraging, SurvivesAThirdOfGrossOutliers) {
   std::vector<Matrix3d> start{Matrix3d::Identity()};
   for (int j = 1; j < 20; ++j) start.push_back(truth[j] * so3_exp(0.1 * Eigen::Vector3d::Random()));
   const auto R = average_rotations(relative, start);
-  for (int i = 0; i < 20; ++i) EXPECT_LT(error_deg(R[i], truth[i]), 0.1);
+  for (int i = 0; i < 20; ++i) EXPECT_LT(rotation_error_deg(R[i], truth[i]), 0.1);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera_resection.h"
 
+#include "tests/engine/rotation_error.h"
+
 #include <random>
 
 #include <Eigen/Geometry>
@@ -11,6 +13,7 @@ namespace gpo {
 namespace {
 
 using Eigen::Vector3d;
+using test::rotation_error_deg;
 
 struct Scene {
   Eigen::Matrix3d K = (Eigen::Matrix3d() << 480, 0, 310, 0, 500, 250, 0, 0, 1).finished();
@@ -35,10 +38,6 @@ Scene random_scene(std::uint64_t seed, double thickness, double noise_px) {
     s.pixels.col(k) += noise_px * Eigen::Vector2d(noise(random), noise(random));
   }
   return s;
-}
-
-double rotation_error_deg(const Pose& a, const Pose& b) {
-  return degrees(so3_log(a.R_wc.transpose() * b.R_wc).norm());
 }
 
 TEST(CameraResection, IsExactWithoutNoiseOnAPlaneAndOffIt) {

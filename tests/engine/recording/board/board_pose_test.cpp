@@ -4,6 +4,7 @@
 
 #include "engine/recording/board/board_corners.h"
 #include "tests/engine/recording/board/rendered_board.h"
+#include "tests/engine/rotation_error.h"
 
 #include <limits>
 #include <random>

@@ -5,6 +5,7 @@
 #include "engine/error.h"
 #include "engine/recording/board/board_pose.h"
 #include "tests/engine/recording/board/rendered_board.h"
+#include "tests/engine/rotation_error.h"
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>

@@ -23,10 +23,6 @@ inline Camera small_lens() {
       320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
 }
 
-inline double rotation_error_deg(const Pose& a, const Pose& b) {
-  return degrees(so3_log(a.R_wc.transpose() * b.R_wc).norm());
-}
-
 /// Gray of the board's plane at a point [m]: squares with a white margin, mid-gray around it.
 inline double board_gray(const Board& board, double x, double y) {
   const double column = x / board.square_m;
