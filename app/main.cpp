@@ -303,13 +303,14 @@ int main_with_errors(int argc, char** argv) {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
     declare(app, arguments);
+    app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
     const int code = dispatch(app, arguments);
     if (std::fflush(stdout) == 0) return code;
     return complain(fmt::format("standard output: cannot be written: {}",
                                 std::generic_category().message(errno)));
-  } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
     return complain(one_line(error.what()));
   } catch (const std::exception& error) {

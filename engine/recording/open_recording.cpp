@@ -53,6 +53,12 @@ Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   return found;
 }
 
+/// The file stands for its folder; tracks that are named are wanted, even where there are pictures.
+Found find_around(const fs::path& file, OpenOptions options) {
+  if (file.filename() == "tracks.csv" && !options.tracks) options.tracks = file;
+  return find_in_folder(folder_of(file), options);
+}
+
 Found find_recording(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -64,11 +70,16 @@ Found find_recording(const fs::path& path, const OpenOptions& options) {
                      "), expected a recording");
   }
   if (fs::is_directory(status)) return find_in_folder(path, options);
-  if (!fs::is_regular_file(status) || !is_video_name(path)) {
-    throw InputError(path.string() +
-                     ": found a file that is no video, expected a folder or mp4, avi, mov, mkv");
+  const bool file = fs::is_regular_file(status);
+  if (file && (path.filename() == "tracks.csv" || path.filename() == "rgb.txt")) {
+    return find_around(path, options);
   }
-  return {path, folder_of(path), read_pictures, options.tracks};
+  if (file && is_video_name(path)) {
+    return {path, folder_of(path), read_pictures, options.tracks};
+  }
+  throw InputError(path.string() +
+                   ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or "
+                   "mp4, avi, mov, mkv");
 }
 
 void add_sidecars(Recording& recording, const Found& found) {
@@ -116,7 +127,7 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   const Found found = find_recording(path, options);
   Recording recording = found.read(found.path, found.tracks, options.cache_bytes);
   recording.path = path;
-  recording.name = name_of(path);
+  recording.name = name_of(is_video_name(path) || is_folder(path) ? path : found.folder);
   add_sidecars(recording, found);
   add_notes(recording);
   if (recording.pictures) recording.pictures->bgr(0);  // a wrong size or format shows here

@@ -238,11 +238,24 @@ TEST(Info, DeskHasEverything) {
 
 TEST(Help, EveryCommandExplainsItself) {
   EXPECT_EQ(program("--help").exit_code, 0);
-  for (const char* command : {"view", "info", "run", "snapshot", "evaluate", "synthesize"}) {
+  for (const char* command : {"view",
+                              "info",
+                              "run",
+                              "snapshot",
+                              "evaluate",
+                              "synthesize",
+                              "convert",
+                              "calibrate"}) {
     const Outcome outcome = program(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_FALSE(outcome.out.empty()) << command;
   }
+}
+
+TEST(Help, VersionIsTold) {
+  const Outcome outcome = program("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }
 
 TEST(View, WithoutADisplayPointsToSnapshot) {

@@ -293,6 +293,11 @@ TEST_F(EurocReader, UsesTracksOnlyWhenAskedWherePicturesExist) {
   EXPECT_EQ(recording->tracks.size(), 1U);
   EXPECT_EQ(recording->layout, Layout::euroc);
   EXPECT_TRUE(recording->pictures);
+  // The file itself stands for its folder with these tracks.
+  const auto by_file = open_recording(folder.path() / "tracks.csv");
+  EXPECT_EQ(by_file->tracks.size(), 1U);
+  EXPECT_TRUE(by_file->pictures);
+  EXPECT_EQ(by_file->name, recording->name);
 }
 
 TEST_F(EurocReader, TakesTracksWhereThereAreNoPictures) {

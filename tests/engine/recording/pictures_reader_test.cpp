@@ -170,7 +170,7 @@ TEST_F(PicturesReader, NamesWhatAFolderLacks) {
       error(),
       testing::StartsWith(folder.path().string() + ": found no calibration, expected camera.yaml"));
   EXPECT_THAT(error_of([&] { open_recording(folder.write("notes.txt", "")); }),
-              HasSubstr("notes.txt: found a file that is no video, expected a folder or mp4"));
+              HasSubstr("notes.txt: found a file that is no video, expected a folder, "));
 }
 
 TEST_F(PicturesReader, AsksWhichOfTwoVideos) {

@@ -15,18 +15,19 @@ namespace gpo::test {
 namespace {
 
 constexpr AVRational kMillisecond = {1, 1000};
+constexpr AVRational kFrame = {1, 25};
 
 void check(int result, const char* what) {
   if (result < 0) throw std::runtime_error(what);
 }
 
-AVCodecContext* open_encoder(const cv::Mat& picture, bool b_frames) {
+AVCodecContext* open_encoder(const cv::Mat& picture, bool b_frames, AVRational time_base) {
   const AVCodec* codec = avcodec_find_encoder(b_frames ? AV_CODEC_ID_MPEG4 : AV_CODEC_ID_MJPEG);
   AVCodecContext* encoder = avcodec_alloc_context3(codec);
   encoder->width = picture.cols;
   encoder->height = picture.rows;
   encoder->pix_fmt = b_frames ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUVJ420P;
-  encoder->time_base = b_frames ? AVRational{1, 25} : kMillisecond;
+  encoder->time_base = time_base;
   encoder->bit_rate = 4'000'000;
   encoder->gop_size = b_frames ? 12 : 1;
   encoder->max_b_frames = b_frames ? 2 : 0;
@@ -59,7 +60,7 @@ void drain(AVCodecContext* encoder, AVFormatContext* format) {
   AVStream* stream = format->streams[0];
   while (avcodec_receive_packet(encoder, packet) == 0) {
     // Without it the last frame would be cut off by the container's edit list.
-    packet->duration = encoder->time_base.den == 25 ? 1 : 40;
+    packet->duration = encoder->time_base.den == kFrame.den ? 1 : 40;
     av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
     packet->stream_index = 0;
     check(av_interleaved_write_frame(format, packet), "cannot write");
@@ -81,7 +82,8 @@ void make_video(const std::filesystem::path& file,
   av_log_set_level(AV_LOG_QUIET);
   AVFormatContext* format = nullptr;
   check(avformat_alloc_output_context2(&format, nullptr, nullptr, file.c_str()), "no container");
-  AVCodecContext* encoder = open_encoder(pictures[0], options.b_frames);
+  AVCodecContext* encoder =
+      open_encoder(pictures[0], options.b_frames, options.times_ms.empty() ? kFrame : kMillisecond);
   AVStream* stream = avformat_new_stream(format, nullptr);
   stream->time_base = encoder->time_base;
   check(avcodec_parameters_from_context(stream->codecpar, encoder), "no parameters");
@@ -89,9 +91,8 @@ void make_video(const std::filesystem::path& file,
   check(avio_open(&format->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
   check(avformat_write_header(format, nullptr), "no header");
   for (int i = 0; i < static_cast<int>(pictures.size()); ++i) {
-    const int regular = options.b_frames ? i : 40 * i;
     AVFrame* frame =
-        frame_of(pictures[i], *encoder, options.times_ms.empty() ? regular : options.times_ms[i]);
+        frame_of(pictures[i], *encoder, options.times_ms.empty() ? i : options.times_ms[i]);
     check(avcodec_send_frame(encoder, frame), "no frame");
     av_frame_free(&frame);
     drain(encoder, format);
