@@ -31,6 +31,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   if (opened) {
     adopt(state, published.recording);
     survey.open(published.recording);
+    if (link.remembers_files && !link.opening.empty()) remember_file(link.opening);
   }
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
@@ -115,7 +116,7 @@ void synchronize(WorkbenchState& state,
   const bool compute = state.recording && (opened || again || state.settings != link.requested);
   if (open_example) worker.open(example);
   const bool opening = open && open_path(state, worker, *open);
-  if (opening && link.remembers_files) remember_file(*open);
+  if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
   if (compute) {
     worker.request(state.settings);
     link.requested = state.settings;

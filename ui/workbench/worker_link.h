@@ -18,9 +18,10 @@ struct WorkerLink {
   std::optional<Eigen::Vector3d> cube_ray;      ///< to where it was moved
   WorkerStatus worker;
   SurveyStatus survey;
-  std::string error;             ///< the worker's last one that was said
-  bool remembers_files = false;  ///< in the user's list of recent files
-  bool survey_canceled = false;  ///< until something else is computed
+  std::string error;              ///< the worker's last one that was said
+  std::filesystem::path opening;  ///< what is being opened; remembered once it is open
+  bool remembers_files = false;   ///< in the user's list of recent files
+  bool survey_canceled = false;   ///< until something else is computed
 
   bool busy() const { return worker.busy || survey.busy(); }
 };

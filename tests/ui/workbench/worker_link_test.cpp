@@ -3,8 +3,11 @@
 #include "ui/workbench/worker_link.h"
 
 #include "engine/error.h"
+#include "tests/engine/test_folder.h"
+#include "ui/workbench/recent_files.h"
 
 #include <atomic>
+#include <cstdlib>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -23,7 +26,7 @@ using testing::IsEmpty;
 class WorkerLinkTest : public testing::Test {
  protected:
   Worker::Opened open(const std::filesystem::path& path) {
-    if (path == "bad") throw InputError("bad: no such folder");
+    if (path.filename() == "bad") throw InputError("bad: no such folder");
     auto recording = std::make_shared<Recording>();
     recording->name = path.string();
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
@@ -75,6 +78,20 @@ TEST_F(WorkerLinkTest, OpensTheExample) {
   apply(state_, RunAction{"open-example"});
   settle();
   EXPECT_EQ(state_.recording->name, "example");
+}
+
+TEST_F(WorkerLinkTest, RemembersWhatCouldBeOpened) {
+  const test::TestFolder folder;
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  link_.remembers_files = true;
+  for (const char* name : {"good", "bad", "better"}) {
+    std::filesystem::create_directories(folder.path() / name);
+    apply(state_, OpenPath{folder.path() / name});
+    settle();
+  }
+  apply(state_, RunAction{"open-example"});
+  settle();
+  EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
 }
 
 TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
