@@ -74,6 +74,13 @@ FrameErrors frame_errors(const Window& window, int frame) {
 }
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
+  if (window.track_count() < kLeastInliers) {
+    return fmt::format(
+        "too few tracks: {} are seen in frame {}, where the window starts, at least {} are needed",
+        window.track_count(),
+        window.start,
+        kLeastInliers);
+  }
   for (int i = 1; i < window.frame_count(); ++i) {
     const int inliers = window.inlier_count(i);
     if (inliers < kLeastInliers) {

@@ -101,6 +101,8 @@ void add_notes(Recording& recording) {
   auto& notes = recording.notes;
   if (!recording.pictures)
     notes.emplace_back("no pictures: tracks are drawn on a plain background");
+  if (!recording.tracks.empty() && recording.tracks.front().frame > 0)
+    notes.push_back(fmt::format("tracks begin in frame {}", recording.tracks.front().frame));
   if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from rotation averaging");
   const bool from_board = !recording.truth && recording.board && recording.pictures;
   if (from_board) {

@@ -376,6 +376,9 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
   const Outcome early = program("run " + folder.string() + " --frames 20");
   EXPECT_EQ(early.exit_code, 1) << early.out << early.err;
+  EXPECT_THAT(early.out,
+              HasSubstr("too few tracks: 0 are seen in frame 0, where the window starts"));
+  EXPECT_THAT(early.err, HasSubstr("tracks begin in frame 5"));
 }
 
 }  // namespace

@@ -137,8 +137,8 @@ void add_themes(std::vector<Action>& table) {
                           "View",
                           {},
                           "Colors of the window; those of methods and data stay",
-                          [theme](State& s) { s.theme = theme; });
-    action.checked = [theme](const State& s) { return s.theme == theme; };
+                          [theme = theme](State& s) { s.theme = theme; });
+    action.checked = [theme = theme](const State& s) { return s.theme == theme; };
     action.needs_recording = false;
     table.push_back(action);
   }
