@@ -53,10 +53,13 @@ void add_speed(std::vector<Action>& table) {
   table.push_back(speed);
   for (const auto& [name, title, sign, factor] :
        {std::tuple{"faster", "Twice as fast", '+', 2.0}, {"slower", "Half as fast", '-', 0.5}}) {
-    Action action = plain(
-        name, title, "Time", {letter(sign)}, "Changes the speed of playing", [factor = factor](State& s) {
-          s.speed = std::clamp(s.speed * factor, 0.125, 8.0);
-        });
+    Action action =
+        plain(name,
+              title,
+              "Time",
+              {letter(sign)},
+              "Changes the speed of playing",
+              [factor = factor](State& s) { s.speed = std::clamp(s.speed * factor, 0.125, 8.0); });
     action.value = speed.value;
     action.needs_recording = false;
     table.push_back(action);
