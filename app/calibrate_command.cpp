@@ -3,13 +3,13 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
+#include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/error.h"
 #include "engine/files/output_file.h"
 #include "engine/recording/board/charuco.h"
-#include "engine/recording/pictures_reader.h"
-#include "engine/recording/sidecar_files.h"
+#include "engine/recording/layouts/pictures_reader.h"
+#include "engine/recording/layouts/sidecar_files.h"
 
 #include <cstdio>
 

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/comparison.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/figures.h"
 #include "engine/experiment/ranges.h"
 #include "engine/experiment/summary.h"
+#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
 
 #include <algorithm>

@@ -4,7 +4,8 @@
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/recording/board/board_truth.h"
-#include "engine/recording/euroc_writer.h"
+#include "engine/recording/layouts/euroc_writer.h"
+#include "engine/truth/truth.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/recordings.h"
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
 #include "engine/experiment/runner.h"
@@ -12,7 +12,7 @@
 #include "engine/experiment/window_files.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
-#include "ui/views/figure_view.h"
+#include "ui/views/charts/figure_view.h"
 
 #include <chrono>
 #include <cmath>

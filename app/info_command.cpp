@@ -3,7 +3,7 @@
 #include "app/commands.h"
 #include "app/recordings.h"
 #include "engine/files/json_text.h"
-#include "engine/recording/recording_info.h"
+#include "engine/inspection/recording_info.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

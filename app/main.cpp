@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 
 #include <algorithm>

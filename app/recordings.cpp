@@ -3,6 +3,7 @@
 #include "app/recordings.h"
 
 #include "app/progress_bar.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
 
 #include <string>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/worker.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench/script.h"

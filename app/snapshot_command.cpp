@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/comparison.h"
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/files/output_file.h"
-#include "ui/views/figure_view.h"
+#include "ui/views/charts/figure_view.h"
 #include "ui/views/picture_compare.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"

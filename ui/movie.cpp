@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/movie.h"
 
-#include "engine/recording/timestamps.h"
-#include "ui/views/compare_view.h"
+#include "engine/window/timestamps.h"
+#include "ui/views/compare/compare_view.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench_host.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "ui/workbench_window.h"
 

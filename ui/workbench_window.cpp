@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench_window.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "ui/context/framebuffer.h"
 #include "ui/context/gui_style.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/panels/view_options.h"
-#include "ui/views/palette.h"
+#include "ui/look/palette.h"
+#include "ui/panels/panes/view_options.h"
 #include "ui/workbench/layout.h"
 
 #include <GL/glew.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 
+#include "engine/base/parallel.h"
 #include "engine/geometry/pose.h"
-#include "engine/parallel.h"
 #include "engine/recording/board/board_pose.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_views.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/pictures/each_picture.h"

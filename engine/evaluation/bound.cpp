@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/bound.h"
 
-#include "engine/initializers/transfer.h"
+#include "engine/initializers/residuals/transfer.h"
 
 #include <algorithm>
 #include <cmath>

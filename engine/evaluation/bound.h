@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/window.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/window/window.h"
 
 #include <optional>
 #include <span>

@@ -4,7 +4,7 @@
 
 #include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
 
 #include <cmath>
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/window.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/similarity.h"
-#include "engine/initializers/initialization.h"
-#include "engine/recording/recording.h"
+#include "engine/initializers/common/initialization.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
 
 #include <cstdint>
 #include <optional>
@@ -15,14 +15,6 @@
 #include <vector>
 
 namespace gpo {
-
-/// The truth over one window, in the truth's own world.
-struct WindowTruth {
-  std::string source;
-  std::vector<std::optional<Pose>> cameras;                     ///< one a frame of the window [m]
-  std::optional<Plane> plane;                                   ///< [m]
-  std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< as `cameras`; empty: not known
-};
 
 /// What is unknown is empty: ATE, scale and PDE where the true path is a point, the aligned PNE
 /// also where it is a line; all plane errors where the true plane or the reference pose is unknown.

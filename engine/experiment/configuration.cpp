@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/configuration.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/tracking.h"
 #include "engine/inspection/settings.h"
+#include "engine/window/window.h"
 
 #include <cstdint>
 #include <optional>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
 

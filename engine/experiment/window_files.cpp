@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/window_files.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 

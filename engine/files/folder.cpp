@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/folder.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 namespace gpo {
 

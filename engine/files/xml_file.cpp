@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/xml_file.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
 #include <string_view>

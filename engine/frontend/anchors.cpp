@@ -3,6 +3,7 @@
 #include "engine/frontend/anchors.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/window/tracks.h"
 
 #include <cmath>
 #include <limits>

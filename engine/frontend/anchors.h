@@ -3,8 +3,9 @@
 #pragma once
 
 #include "engine/frontend/homography_ransac.h"
-#include "engine/frontend/window.h"
 #include "engine/geometry/camera.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 
 #include <optional>
 #include <vector>

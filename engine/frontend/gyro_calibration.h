@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/frontend/rotations.h"
-#include "engine/frontend/window.h"
 #include "engine/recording/recording.h"
+#include "engine/window/window.h"
 
 #include <span>
 #include <stop_token>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/frontend/rotations.h"
-#include "engine/frontend/window.h"
+#include "engine/window/window.h"
 
 #include <span>
 #include <stop_token>

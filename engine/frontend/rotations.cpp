@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
 
-#include "engine/error.h"
-#include "engine/recording/timestamps.h"
+#include "engine/base/error.h"
+#include "engine/window/timestamps.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/window.h"
 #include "engine/recording/recording.h"
+#include "engine/window/window.h"
 
 #include <cstdint>
 #include <optional>

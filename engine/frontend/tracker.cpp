@@ -227,7 +227,7 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
   return to_matrix(kept);
 }
 
-std::optional<Tracks> track_window(const FrameCache& pictures,
+std::optional<Tracks> track_window(const GrayPictures& gray_at,
                                    const Camera& camera,
                                    int start,
                                    int frames,
@@ -241,7 +241,7 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
   Pyramid before;
   for (int i = 0; i < frames; ++i) {
     if (stop.stop_requested()) return std::nullopt;
-    const cv::Mat gray = pictures.gray(start + i);
+    const cv::Mat gray = gray_at(start + i);
     Pyramid now = build_pyramid(gray, options);
     if (i == 0) {
       tracks.raw_px.push_back(detect_corners(gray, options.detector));
@@ -259,24 +259,6 @@ std::optional<Tracks> track_window(const FrameCache& pictures,
     }
     before = std::move(now);
     if (progress) progress(i + 1, frames);
-  }
-  return tracks;
-}
-
-Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames) {
-  Tracks tracks;
-  tracks.start = start;
-  std::map<std::int64_t, int> column;
-  for (const TrackObservation& o : observations) {
-    if (o.frame != start) continue;
-    column[o.track] = static_cast<int>(tracks.ids.size());
-    tracks.ids.push_back(o.track);
-  }
-  tracks.raw_px.assign(frames, Eigen::Matrix2Xd::Constant(2, tracks.track_count(), kNaN));
-  for (const TrackObservation& o : observations) {
-    const auto it = column.find(o.track);
-    if (o.frame < start || o.frame >= start + frames || it == column.end()) continue;
-    tracks.raw_px[o.frame - start].col(it->second) = o.raw_px;
   }
   return tracks;
 }

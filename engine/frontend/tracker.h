@@ -4,8 +4,8 @@
 
 #include "engine/frontend/anchors.h"
 #include "engine/frontend/tracking.h"
-#include "engine/frontend/window.h"
-#include "engine/recording/recording.h"
+#include "engine/geometry/camera.h"
+#include "engine/window/tracks.h"
 
 #include <functional>
 #include <optional>
@@ -42,6 +42,9 @@ struct TrackerOptions {
                                 ///< picture, it tries again with their brightness made alike [-]
 };
 
+/// A frame of the recording in gray, CV_8UC1. Throws InputError where it cannot be decoded.
+using GrayPictures = std::function<cv::Mat(int frame)>;
+
 /// Told of what is done; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
 
@@ -49,15 +52,12 @@ using FrameProgress = std::function<void(int done, int of)>;
 /// in anchored tracking, those on the plane are then held to their looks in the reference frame. A
 /// track is lost for good in the first frame in which it fails a check or leaves the picture.
 /// Nothing where stopped. Throws InputError for a picture that cannot be decoded.
-std::optional<Tracks> track_window(const FrameCache& pictures,
+std::optional<Tracks> track_window(const GrayPictures& pictures,
                                    const Camera& camera,
                                    int start,
                                    int frames,
                                    const TrackerOptions& options = {},
                                    const std::stop_token& stop = {},
                                    const FrameProgress& progress = {});
-
-/// Other people's tracks that are seen in frame `start`, over `frames` frames; NaN where not seen.
-Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/choice.h"
+#include "engine/base/choice.h"
 
 namespace gpo {
 
@@ -14,16 +14,6 @@ template <>
 struct ChoiceKeys<Tracking> {
   static constexpr const char* option = "--tracking";
   static constexpr std::array keys{"frame-to-frame", "anchored"};
-};
-
-/// Which tracks count as on the plane: in each frame those that agree with its homography (the
-/// paper), or those that agree with the refined homographies in nearly all frames that see them.
-enum class Inliers { per_frame, consistent };
-
-template <>
-struct ChoiceKeys<Inliers> {
-  static constexpr const char* option = "--inliers";
-  static constexpr std::array keys{"per-frame", "consistent"};
 };
 
 }  // namespace gpo

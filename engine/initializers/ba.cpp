@@ -3,10 +3,10 @@
 #include "engine/initializers/ba.h"
 
 #include "engine/geometry/plane_fit.h"
-#include "engine/initializers/bundle_adjustment.h"
+#include "engine/initializers/bundle/bundle_adjustment.h"
+#include "engine/initializers/common/refined_start.h"
+#include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/dbscan.h"
-#include "engine/initializers/refined_start.h"
-#include "engine/initializers/window_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/closed_form.h"
 
-#include "engine/initializers/delivery.h"
-#include "engine/initializers/plane_translations.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
+#include "engine/initializers/plane/delivery.h"
+#include "engine/initializers/plane/plane_translations.h"
 
 #include <cmath>
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/dbscan.h"
 
-#include "engine/initializers/density_clusters.h"
-#include "engine/initializers/homography_candidates.h"
-#include "engine/initializers/map_points.h"
-#include "engine/initializers/plane_translations.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/candidates/density_clusters.h"
+#include "engine/initializers/candidates/homography_candidates.h"
+#include "engine/initializers/common/map_points.h"
+#include "engine/initializers/common/window_checks.h"
+#include "engine/initializers/plane/plane_translations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/fpba.h"
 
+#include "engine/initializers/common/refined_start.h"
 #include "engine/initializers/dbscan.h"
 #include "engine/initializers/pba.h"
-#include "engine/initializers/refined_start.h"
 
 namespace gpo {
 

@@ -3,9 +3,9 @@
 #include "engine/initializers/gpo.h"
 
 #include "engine/initializers/closed_form.h"
-#include "engine/initializers/delivery.h"
-#include "engine/initializers/plane_solver.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
+#include "engine/initializers/plane/delivery.h"
+#include "engine/initializers/plane/plane_solver.h"
 
 #include <fmt/format.h>
 

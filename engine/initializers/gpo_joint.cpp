@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo_joint.h"
 
-#include "engine/initializers/delivery.h"
+#include "engine/initializers/certainty/uncertainty.h"
+#include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/gpo.h"
-#include "engine/initializers/plane_solver.h"
-#include "engine/initializers/plane_weights.h"
-#include "engine/initializers/rolling_shutter.h"
-#include "engine/initializers/uncertainty.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/plane/delivery.h"
+#include "engine/initializers/plane/plane_solver.h"
+#include "engine/initializers/plane/plane_weights.h"
+#include "engine/initializers/plane/rolling_shutter.h"
 
 #include <cmath>
 

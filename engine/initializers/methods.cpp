@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/methods.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/initializers/ba.h"
+#include "engine/initializers/certainty/uncertainty.h"
+#include "engine/initializers/certainty/window_evidence.h"
 #include "engine/initializers/closed_form.h"
 #include "engine/initializers/dbscan.h"
 #include "engine/initializers/fpba.h"
@@ -12,8 +14,6 @@
 #include "engine/initializers/pba.h"
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/pnp_ba.h"
-#include "engine/initializers/uncertainty.h"
-#include "engine/initializers/window_evidence.h"
 
 #include <algorithm>
 #include <array>

@@ -6,8 +6,8 @@
 #include "engine/geometry/median.h"
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/triangulation.h"
-#include "engine/initializers/homography_candidates.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/candidates/homography_candidates.h"
+#include "engine/initializers/common/window_checks.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,8 +3,8 @@
 #include "engine/initializers/pnp_ba.h"
 
 #include "engine/initializers/ba.h"
+#include "engine/initializers/common/refined_start.h"
 #include "engine/initializers/pnp.h"
-#include "engine/initializers/refined_start.h"
 
 namespace gpo {
 

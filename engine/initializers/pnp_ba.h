@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/window.h"
-#include "engine/initializers/initialization.h"
-#include "engine/initializers/watch.h"
+#include "engine/initializers/common/initialization.h"
+#include "engine/initializers/common/watch.h"
+#include "engine/window/window.h"
 
 namespace gpo {
 

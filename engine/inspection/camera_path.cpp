@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/camera_path.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 #include <cstdlib>
 

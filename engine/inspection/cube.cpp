@@ -3,6 +3,7 @@
 #include "engine/inspection/cube.h"
 
 #include "engine/inspection/inspection.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/make_window.h"
 #include "engine/frontend/tracker.h"
-#include "engine/initializers/growth.h"
+#include "engine/frontend/tracking.h"
+#include "engine/initializers/certainty/growth.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window_rotations.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/board/board_truth.h"
+#include "engine/window/tracks.h"
 
 #include <algorithm>
 #include <array>
@@ -92,8 +96,13 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
     if (progress) progress("tracking", done, of);
   };
   const TrackerOptions options{.tracking = tracking};
-  auto tracks =
-      track_window(*recording.pictures, recording.camera, start, frames, options, stop, told);
+  auto tracks = track_window([&](int frame) { return recording.pictures->gray(frame); },
+                             recording.camera,
+                             start,
+                             frames,
+                             options,
+                             stop,
+                             told);
   if (!tracks) return std::nullopt;
   tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
   return tracked;

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/frontend/window.h"
-#include "engine/initializers/initialization.h"
+#include "engine/initializers/common/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/motion.h"
 #include "engine/inspection/settings.h"
 #include "engine/recording/recording.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 
 #include <functional>
 #include <memory>

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/normal_study.h"
 
-#include "engine/initializers/homography_candidates.h"
+#include "engine/initializers/candidates/homography_candidates.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
 
 #include <utility>
 

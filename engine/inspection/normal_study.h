@@ -3,8 +3,9 @@
 #pragma once
 
 #include "engine/initializers/dbscan.h"
-#include "engine/initializers/normal_landscape.h"
+#include "engine/initializers/plane/normal_landscape.h"
 #include "engine/inspection/inspection.h"
+#include "engine/window/window.h"
 
 #include <memory>
 #include <optional>

@@ -4,6 +4,8 @@
 
 #include "engine/initializers/methods.h"
 #include "engine/recording/board/board_truth.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 

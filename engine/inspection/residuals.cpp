@@ -3,7 +3,8 @@
 #include "engine/inspection/residuals.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
+#include "engine/window/window.h"
 
 #include <cmath>
 #include <limits>

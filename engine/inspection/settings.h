@@ -4,7 +4,8 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/frontend/tracking.h"
-#include "engine/initializers/initializer_options.h"
+#include "engine/initializers/common/initializer_options.h"
+#include "engine/window/window.h"
 
 #include <cstdint>
 #include <optional>

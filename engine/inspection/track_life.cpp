@@ -5,6 +5,8 @@
 #include "engine/frontend/consistent_inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/inspection/residuals.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "engine/window/tracks.h"
 
 #include <cstdint>
 #include <optional>

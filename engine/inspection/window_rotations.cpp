@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/window_rotations.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/frontend/gyro_calibration.h"
 #include "engine/frontend/homography_rotations.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
 
 #include <fmt/format.h>
 

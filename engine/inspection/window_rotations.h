@@ -4,8 +4,8 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/frontend/rotations.h"
-#include "engine/frontend/window.h"
 #include "engine/recording/recording.h"
+#include "engine/window/window.h"
 
 #include <stop_token>
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/worker.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <exception>
 #include <utility>

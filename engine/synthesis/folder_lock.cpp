@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/folder_lock.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 #include <cerrno>
 #include <string>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/scene.h"
 
-#include "engine/parallel.h"
+#include "engine/base/parallel.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/textures.h"
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesize.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/output_folder.h"
-#include "engine/recording/calibration_file.h"
-#include "engine/recording/euroc_writer.h"
-#include "engine/recording/sidecar_files.h"
+#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/layouts/euroc_writer.h"
+#include "engine/recording/layouts/sidecar_files.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
 

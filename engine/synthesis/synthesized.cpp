@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesized.h"
 
+#include "engine/base/parallel.h"
 #include "engine/files/text_file.h"
-#include "engine/parallel.h"
 #include "engine/synthesis/folder_lock.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 
-#include "engine/recording/calibration_file.h"
+#include "engine/recording/layouts/calibration_file.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 

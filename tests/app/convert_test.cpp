@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/window/tracks.h"
 #include "tests/app/program.h"
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/pictures/made_video.h"

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
+#include "engine/window/tracks.h"
 #include "tests/app/program.h"
 
 #include <sstream>
@@ -238,14 +239,8 @@ TEST(Info, DeskHasEverything) {
 
 TEST(Help, EveryCommandExplainsItself) {
   EXPECT_EQ(program("--help").exit_code, 0);
-  for (const char* command : {"view",
-                              "info",
-                              "run",
-                              "snapshot",
-                              "evaluate",
-                              "synthesize",
-                              "convert",
-                              "calibrate"}) {
+  for (const char* command :
+       {"view", "info", "run", "snapshot", "evaluate", "synthesize", "convert", "calibrate"}) {
     const Outcome outcome = program(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_FALSE(outcome.out.empty()) << command;

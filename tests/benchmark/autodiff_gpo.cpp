@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/autodiff_gpo.h"
 
-#include "engine/initializers/ceres_solver.h"
-#include "engine/initializers/delivery.h"
-#include "engine/initializers/plane_motion.h"
-#include "engine/initializers/transfer.h"
+#include "engine/initializers/plane/delivery.h"
+#include "engine/initializers/plane/plane_motion.h"
+#include "engine/initializers/residuals/ceres_solver.h"
+#include "engine/initializers/residuals/transfer.h"
 
 #include <memory>
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/tracker.h"
+#include "engine/frontend/tracking.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
@@ -52,7 +54,13 @@ void track(benchmark::State& state, const Recording& recording, Tracking trackin
       if (done > 1) ms.push_back(now - begin);
       begin = now;
     };
-    track_window(*recording.pictures, recording.camera, 0, kFrames, options, {}, step);
+    track_window([&](int frame) { return recording.pictures->gray(frame); },
+                 recording.camera,
+                 0,
+                 kFrames,
+                 options,
+                 {},
+                 step);
   }
   if (!ms.empty()) state.counters["ms"] = median(std::move(ms));
 }
@@ -79,7 +87,8 @@ void undistort_tracks(benchmark::State& state, const Recording& recording) {
 
 /// Between the window's first and last frame, where the most tracks are off the plane.
 void ransac(benchmark::State& state, const Recording& recording) {
-  const auto tracks = track_window(*recording.pictures, recording.camera, 0, kFrames);
+  const auto tracks = track_window(
+      [&](int frame) { return recording.pictures->gray(frame); }, recording.camera, 0, kFrames);
   const Eigen::Matrix2Xd& last = tracks->raw_px.back();
   std::vector<int> seen;
   for (int j = 0; j < last.cols(); ++j) {

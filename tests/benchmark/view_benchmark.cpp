@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/normal_study.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
-#include "ui/views/compare_view.h"
-#include "ui/views/image_view.h"
-#include "ui/views/palette.h"
-#include "ui/views/picture_texture.h"
-#include "ui/views/scene_geometry.h"
+#include "ui/look/palette.h"
+#include "ui/views/compare/compare_view.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/picture/picture_texture.h"
+#include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench_window.h"
 
 #include <thread>

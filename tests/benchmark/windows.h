@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/window.h"
+#include "engine/window/window.h"
 
 #include <compare>
 #include <map>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 #include <filesystem>
 #include <fstream>

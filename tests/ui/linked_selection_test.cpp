@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/panels/view_options.h"
-#include "ui/views/image_view.h"
-#include "ui/views/scene_geometry.h"
+#include "ui/panels/panes/view_options.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench_window.h"
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/made_inspection.h"
 
+#include "engine/truth/truth.h"
+#include "engine/window/tracks.h"
+
 #include <cmath>
 #include <random>
 

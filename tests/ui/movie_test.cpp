@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/movie.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/recording/pictures/video_decoder.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/views/compare_view.h"
+#include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench_host.h"
 

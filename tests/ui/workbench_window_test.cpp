@@ -6,7 +6,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/window_context.h"
-#include "ui/panels/time_axis.h"
+#include "ui/panels/timeline/time_axis.h"
 #include "ui/views/picture_compare.h"
 
 #include <cstdlib>

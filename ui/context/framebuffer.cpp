@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/framebuffer.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 #include <GL/glew.h>
 #include <opencv2/imgproc.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui_style.h"
 
-#include "ui/views/palette.h"
+#include "ui/look/palette.h"
 
 #include <cmath>
 

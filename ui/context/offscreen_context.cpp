@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/offscreen_context.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "ui/context/framebuffer.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/window_picture.h"
 
-#include "ui/views/palette.h"
+#include "ui/look/palette.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "ui/panels/panes.h"
 
 #include "ui/context/gui.h"
+#include "ui/look/palette.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/palette.h"
 #include "ui/workbench/actions.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "ui/panels/widgets.h"
 
 #include "ui/context/gui.h"
-#include "ui/views/palette.h"
+#include "ui/look/palette.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/views/overlay.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/layout.h"
 
 #include <cstdint>

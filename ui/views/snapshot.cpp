@@ -6,9 +6,9 @@
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
-#include "ui/views/normals_view.h"
-#include "ui/views/picture_texture.h"
-#include "ui/views/scene_geometry.h"
+#include "ui/views/normals/normals_view.h"
+#include "ui/views/picture/picture_texture.h"
+#include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/views/compare_view.h"
-#include "ui/views/image_view.h"
-#include "ui/views/scene_view.h"
+#include "ui/views/compare/compare_view.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <memory>
 #include <optional>

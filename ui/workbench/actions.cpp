@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/actions.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "ui/workbench/actions/tables.h"
 

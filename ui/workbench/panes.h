@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/choice.h"
+#include "engine/base/choice.h"
 
 namespace gpo {
 

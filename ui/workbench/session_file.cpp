@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session_file.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/tracks_in_view.h"
 
+#include "engine/window/tracks.h"
+
 #include <algorithm>
 
 namespace gpo {

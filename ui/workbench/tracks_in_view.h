@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/window/tracks.h"
 #include "ui/workbench/workbench.h"
 
 #include <cstdint>

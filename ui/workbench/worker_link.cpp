@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/worker_link.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
 #include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_cache.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/files/user_folders.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/each_picture.h"
 
-#include "engine/parallel.h"
+#include "engine/base/parallel.h"
 
 #include <algorithm>
 #include <mutex>

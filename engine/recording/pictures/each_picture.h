@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/pictures/frame_cache.h"
+#include "engine/recording/frame_cache.h"
 
 #include <functional>
 #include <stop_token>

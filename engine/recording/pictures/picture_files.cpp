@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/picture_files.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/pictures/picture_file.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/video_decoder.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/recording/pictures/libav.h"
 
 #include <algorithm>

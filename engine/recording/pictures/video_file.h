@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/geometry/camera.h"
-#include "engine/recording/pictures/frame_cache.h"
+#include "engine/recording/frame_cache.h"
 
 #include <cstddef>
 #include <cstdint>

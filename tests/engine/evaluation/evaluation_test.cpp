@@ -4,7 +4,8 @@
 
 #include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
-#include "engine/initializers/map_points.h"
+#include "engine/initializers/common/map_points.h"
+#include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 
 #include <random>

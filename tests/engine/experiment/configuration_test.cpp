@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/configuration.h"
 
+#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
+#include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>

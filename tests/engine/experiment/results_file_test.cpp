@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/results_file.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>

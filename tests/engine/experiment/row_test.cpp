@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
+#include "engine/frontend/tracking.h"
 #include "engine/inspection/report.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/window/window.h"
 #include "tests/engine/experiment/made_rows.h"
 
 #include <set>

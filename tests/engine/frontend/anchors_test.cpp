@@ -3,7 +3,10 @@
 #include "engine/frontend/anchors.h"
 
 #include "engine/frontend/tracker.h"
+#include "engine/frontend/tracking.h"
 #include "engine/geometry/median.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/window/tracks.h"
 
 #include <functional>
 #include <map>
@@ -24,7 +27,8 @@ std::shared_ptr<const Recording> desk() { return open_recording(GPO_SOURCE_DIR "
 Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
   TrackerOptions options;
   options.tracking = tracking;
-  return *track_window(pictures, recording.camera, 0, kFrames, options);
+  return *track_window(
+      [&](int frame) { return pictures.gray(frame); }, recording.camera, 0, kFrames, options);
 }
 
 /// The recording's pictures, each changed in place.

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/consistent_inliers.h"
 
+#include "engine/frontend/make_window.h"
 #include "engine/geometry/median.h"
 #include "engine/initializers/gpo.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 
 #include "engine/frontend/homography_rotations.h"
 #include "engine/geometry/pose.h"
+#include "engine/window/gyroscope.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/window/gyroscope.h"
+#include "engine/window/window.h"
 
 #include <cmath>
 #include <random>

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracker.h"
 
-#include "engine/frontend/window.h"
+#include "engine/frontend/make_window.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 
 #include <cmath>
 #include <map>
@@ -37,14 +39,7 @@ cv::Mat blobs(double shift_x, double shift_y) {
   return gray;
 }
 
-FrameCache moving_picture(int frames) {
-  return FrameCache(frames, [](int i) {
-    const cv::Mat gray = blobs(1.3 * i, -0.7 * i);
-    cv::Mat bgr;
-    cv::merge(std::vector<cv::Mat>{gray, gray, gray}, bgr);
-    return bgr;
-  });
-}
+const GrayPictures moving_picture = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
 
 TEST(Detector, SpreadsCornersOverThePictureAndKeepsThemApart) {
   const cv::Mat gray = blobs(0, 0);
@@ -65,8 +60,7 @@ TEST(Detector, FindsNothingInAnEmptyPicture) {
 }
 
 TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
-  const FrameCache pictures = moving_picture(10);
-  const auto tracks = track_window(pictures, kCamera, 0, 10);
+  const auto tracks = track_window(moving_picture, kCamera, 0, 10);
   ASSERT_TRUE(tracks);
   EXPECT_EQ(tracks->frame_count(), 10);
   double squares = 0;
@@ -82,8 +76,7 @@ TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
 }
 
 TEST(Tracker, DropsWhatLeavesThePictureForGood) {
-  const FrameCache pictures = moving_picture(30);
-  const auto tracks = track_window(pictures, kCamera, 0, 30);
+  const auto tracks = track_window(moving_picture, kCamera, 0, 30);
   for (int j = 0; j < tracks->track_count(); ++j) {
     bool lost = false;
     for (int i = 0; i < 30; ++i) {
@@ -99,7 +92,7 @@ TEST(Tracker, DropsWhatLeavesThePictureForGood) {
 }
 
 TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
-  const auto tracks = track_window(moving_picture(30), kCamera, 0, 30);
+  const auto tracks = track_window(moving_picture, kCamera, 0, 30);
   ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
   std::map<LossReason, int> ended;
   for (int j = 0; j < tracks->track_count(); ++j) {
@@ -121,7 +114,7 @@ TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
 }
 
 TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
-  const auto tracks = track_window(moving_picture(10), kCamera, 0, 10);
+  const auto tracks = track_window(moving_picture, kCamera, 0, 10);
   ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
   EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
   for (int i = 1; i < 10; ++i) {
@@ -134,16 +127,14 @@ TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
 }
 
 TEST(Tracker, StopsWhenAsked) {
-  const FrameCache pictures = moving_picture(3);
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(pictures, kCamera, 0, 3, {}, source.get_token()));
+  EXPECT_FALSE(track_window(moving_picture, kCamera, 0, 3, {}, source.get_token()));
 }
 
 TEST(Tracker, TellsItsProgress) {
-  const FrameCache pictures = moving_picture(3);
   std::vector<int> told;
-  track_window(pictures, kCamera, 0, 3, {}, {}, [&](int done, int of) {
+  track_window(moving_picture, kCamera, 0, 3, {}, {}, [&](int done, int of) {
     EXPECT_EQ(of, 3);
     told.push_back(done);
   });
@@ -167,8 +158,7 @@ TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
 }
 
 TEST(MakeWindow, UndistortsAndMarksInliers) {
-  const FrameCache pictures = moving_picture(6);
-  const auto tracks = track_window(pictures, kCamera, 0, 6);
+  const auto tracks = track_window(moving_picture, kCamera, 0, 6);
   const Camera camera{
       kWidth, kHeight, 300, 300, 160, 120, Distortion::radial_tangential, {0.1, 0, 0, 0}};
   const std::vector<std::int64_t> times{0, 1, 2, 3, 4, 5};

@@ -3,6 +3,8 @@
 #include "engine/initializers/ba.h"
 
 #include "engine/geometry/median.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 #include "tests/engine/initializers/perturbed_truth.h"
 #include "tests/engine/simulated_window.h"
 

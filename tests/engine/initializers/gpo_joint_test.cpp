@@ -4,10 +4,11 @@
 
 #include "engine/geometry/median.h"
 #include "engine/initializers/ba.h"
+#include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/methods.h"
 #include "engine/initializers/pba.h"
-#include "engine/initializers/uncertainty.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <map>

@@ -4,7 +4,8 @@
 
 #include "engine/evaluation/bound.h"
 #include "engine/geometry/median.h"
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

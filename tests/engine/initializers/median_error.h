@@ -4,6 +4,7 @@
 
 #include "engine/geometry/median.h"
 #include "engine/initializers/methods.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <vector>

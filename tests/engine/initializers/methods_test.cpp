@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/methods.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

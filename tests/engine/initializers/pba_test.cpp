@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/pba.h"
 
+#include "engine/window/window.h"
 #include "tests/engine/initializers/perturbed_truth.h"
 #include "tests/engine/simulated_window.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/initializers/initialization.h"
+#include "engine/initializers/common/initialization.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cstdint>

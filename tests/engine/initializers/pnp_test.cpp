@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/pnp.h"
 
-#include "engine/initializers/window_checks.h"
+#include "engine/initializers/common/window_checks.h"
 #include "tests/engine/initializers/median_error.h"
 #include "tests/engine/simulated_window.h"
 

@@ -3,6 +3,7 @@
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/gpo_joint.h"
 #include "engine/initializers/methods.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <set>

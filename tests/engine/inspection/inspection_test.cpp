@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
+#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/report.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 

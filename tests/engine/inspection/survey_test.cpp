@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/survey.h"
 
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <chrono>

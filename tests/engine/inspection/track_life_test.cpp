@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/track_life.h"
 
+#include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/gpo.h"
-#include "engine/initializers/window_checks.h"
 #include "engine/inspection/residuals.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/worker.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 
 #include <atomic>
 #include <semaphore>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <gmock/gmock.h>

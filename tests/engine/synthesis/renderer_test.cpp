@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/renderer.h"
 
+#include "engine/window/tracks.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"

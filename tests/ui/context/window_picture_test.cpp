@@ -4,7 +4,7 @@
 
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
-#include "ui/views/picture_texture.h"
+#include "ui/views/picture/picture_texture.h"
 
 #include <functional>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/selection.h"
 
+#include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench/tracks_in_view.h"

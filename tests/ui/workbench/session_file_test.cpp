@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session_file.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench/recent_files.h"

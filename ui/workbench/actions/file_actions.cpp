@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/setting_text.h"

@@ -4,6 +4,7 @@
 
 #include "engine/files/user_folders.h"
 #include "engine/recording/board/board_truth.h"
+#include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 

@@ -3,6 +3,7 @@
 #include "engine/recording/board/board_pose.h"
 
 #include "engine/recording/board/board_corners.h"
+#include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/rotation_error.h"
 

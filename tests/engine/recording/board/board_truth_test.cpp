@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_truth.h"
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/recording/board/board_pose.h"
+#include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/test_folder.h"

@@ -1,0 +1,51 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/base/error.h"
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+
+/// Specialized by an enumeration that a user chooses from: `option` is its name on the command
+/// line, `keys` are its values' in the order of the enumeration, on the command line and in files.
+template <class E>
+struct ChoiceKeys;
+
+template <class E>
+concept Choice = requires {
+  ChoiceKeys<E>::keys;
+};
+
+template <Choice E>
+constexpr const char* to_string(E value) {
+  return ChoiceKeys<E>::keys[static_cast<std::size_t>(value)];
+}
+
+template <Choice E>
+bool is_choice(const std::string& key) {
+  for (const char* known : ChoiceKeys<E>::keys)
+    if (key == known) return true;
+  return false;
+}
+
+/// The value called `key`. Throws InputError that names the known ones.
+template <Choice E>
+E choice(const std::string& key) {
+  const auto& keys = ChoiceKeys<E>::keys;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (key == keys[i]) return static_cast<E>(i);
+  }
+  throw InputError(fmt::format("{}: unknown value '{}', expected one of {}",
+                               ChoiceKeys<E>::option,
+                               key,
+                               fmt::join(keys, ", ")));
+}
+
+}  // namespace gpo

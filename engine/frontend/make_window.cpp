@@ -1,0 +1,68 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/make_window.h"
+
+#include "engine/frontend/consistent_inliers.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gpo {
+namespace {
+
+Eigen::Matrix2Xd undistort_all(const Camera& camera, const Eigen::Matrix2Xd& raw_px) {
+  Eigen::Matrix2Xd points(2, raw_px.cols());
+  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) points.col(j) = undistort(camera, raw_px.col(j));
+  return points;
+}
+
+void add_homography(Window& window, int frame, const RansacOptions& ransac) {
+  std::vector<int> seen;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (window.points_px[0].col(j).allFinite() && window.points_px[frame].col(j).allFinite())
+      seen.push_back(j);
+  }
+  const auto robust = homography_ransac(
+      window.points_px[0](Eigen::all, seen), window.points_px[frame](Eigen::all, seen), ransac);
+  window.inlier.emplace_back(window.track_count(), false);
+  window.H_i1.push_back(
+      robust ? robust->H : Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t k = 0; robust && k < seen.size(); ++k)
+    window.inlier[frame][seen[k]] = robust->inlier[k];
+}
+
+/// Leaves the window as it is where too few tracks are consistent.
+void keep_consistent(Window& window, double threshold_px) {
+  auto kept = consistent_inliers(
+      window.points_px, {window.H_i1, window.inlier}, {.threshold_px = threshold_px});
+  if (!kept) return;
+  window.H_i1 = std::move(kept->H_i1);
+  window.inlier = std::move(kept->inlier);
+  window.inliers = Inliers::consistent;
+}
+
+}  // namespace
+
+Window make_window(const Tracks& tracks,
+                   const Camera& camera,
+                   std::span<const std::int64_t> recording_timestamps_ns,
+                   const RansacOptions& ransac,
+                   Inliers inliers) {
+  Window window;
+  window.start = tracks.start;
+  window.K = intrinsic_matrix(camera);
+  for (int i = 0; i < tracks.frame_count(); ++i) {
+    window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
+    window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
+  }
+  window.H_i1.push_back(Eigen::Matrix3d::Identity());
+  window.inlier.emplace_back(tracks.track_count(), false);
+  for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+  if (inliers == Inliers::consistent && ransac.enabled)
+    keep_consistent(window, ransac.threshold_px);
+  for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
+  window.R_wc.assign(window.frame_count(), Eigen::Matrix3d::Identity());
+  return window;
+}
+
+}  // namespace gpo

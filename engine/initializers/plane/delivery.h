@@ -1,0 +1,15 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/initializers/common/initialization.h"
+#include "engine/initializers/plane/plane_motion.h"
+#include "engine/window/window.h"
+
+namespace gpo {
+
+/// What a method over a plane hands out: the visible one of the two solutions with its cameras and
+/// map points, or a failure where the solution is not to be trusted.
+Initialization deliver(const Window& window, const PlaneMotion& motion, const SolverReport& solver);
+
+}  // namespace gpo

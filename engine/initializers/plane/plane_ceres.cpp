@@ -1,0 +1,223 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/plane/plane_solver.h"
+#include "engine/initializers/residuals/ceres_solver.h"
+#include "engine/initializers/residuals/transfer.h"
+#include "engine/window/window.h"
+
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <ceres/ceres.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+template <int Rows, int Columns>
+using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+
+/// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
+/// rotation: nothing, the bias (3) or bias and time offset (4) that all frames share, or a rotation
+/// vector (3) of its own.
+struct Blocks {
+  Eigen::Quaterniond normal = Eigen::Quaterniond::Identity();
+  std::vector<Vector3d> tau;
+  Eigen::Vector4d bias_offset = Eigen::Vector4d::Zero();
+  std::vector<Vector3d> phi;
+};
+
+/// R_wc of a frame and how it moves: R_wc exp(d_parameters dp).
+struct Rotation {
+  Matrix3d R_wc;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_parameters;
+};
+
+Rotation rotation_at(const Window& window,
+                     const PlaneUnknowns& unknowns,
+                     const Matrix3d& R_wc_start,
+                     int frame,
+                     const double* parameters) {
+  if (unknowns.rotations == RotationModel::free) {
+    const Eigen::Map<const Vector3d> phi(parameters);
+    return {R_wc_start * so3_exp(phi), so3_right_jacobian(phi)};
+  }
+  const GyroSensitivity& gyro = *window.gyro;
+  const int size = unknowns.time_offset ? 4 : 3;
+  Rotation rotation;
+  rotation.d_parameters.resize(3, size);
+  rotation.d_parameters.leftCols<3>() = gyro.d_bias[frame];
+  if (size == 4) rotation.d_parameters.col(3) = gyro.d_offset[frame];
+  Eigen::Vector4d change(
+      parameters[0], parameters[1], parameters[2], size == 4 ? parameters[3] : 0);
+  change.head<3>() -= gyro.bias_rad_s;
+  const Vector3d phi = rotation.d_parameters * change.head(size);
+  rotation.R_wc = window.R_wc[frame] * so3_exp(phi);
+  rotation.d_parameters = so3_right_jacobian(phi) * rotation.d_parameters;
+  return rotation;
+}
+
+/// Transfer errors of all inliers of one frame (paper, eq. 8): one block a frame, not one a point,
+/// is what makes the solve fast.
+class FrameCost : public ceres::CostFunction {
+ public:
+  FrameCost(const Window& window,
+            const PlaneUnknowns& unknowns,
+            const Matrix3d& R_wc,
+            const Eigen::Matrix3Xd& rays_1,
+            int frame)
+      : window_(window), unknowns_(unknowns), R_wc_(R_wc), rays_1_(rays_1), frame_(frame) {
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (window.inlier[frame][j]) inliers_.push_back(j);
+    }
+    *mutable_parameter_block_sizes() = {4, 3};
+    if (unknowns.rotations != RotationModel::known)
+      mutable_parameter_block_sizes()->push_back(rotation_size(unknowns));
+    set_num_residuals(static_cast<int>(2 * inliers_.size()));
+  }
+
+  static int rotation_size(const PlaneUnknowns& unknowns) {
+    return unknowns.rotations == RotationModel::bias && unknowns.time_offset ? 4 : 3;
+  }
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
+    const Eigen::Map<const Vector3d> tau(parameters[1]);
+    const Vector3d normal = direction(q);
+    const Eigen::Matrix<double, 3, 4> d_q = direction_jacobian(q);
+    const bool rotates = unknowns_.rotations != RotationModel::known;
+    const Rotation rotation = rotates
+                                  ? rotation_at(window_, unknowns_, R_wc_, frame_, parameters[2])
+                                  : Rotation{R_wc_, {}};
+    for (std::size_t k = 0; k < inliers_.size(); ++k) {
+      const Transfer transfer =
+          transfer_on_plane(window_.K, rotation.R_wc, rays_1_.col(inliers_[k]), normal, tau);
+      if (!transfer.in_front) return false;
+      Eigen::Map<Eigen::Vector2d> residual(residuals + 2 * k);
+      residual = transfer.pixel - window_.points_px[frame_].col(inliers_[k]);
+      if (jacobians == nullptr) continue;
+      if (jacobians[0] != nullptr) {
+        Eigen::Map<RowMajor<2, 4>> J(jacobians[0] + 8 * k);
+        J = transfer.d_normal * d_q;
+      }
+      if (jacobians[1] != nullptr) {
+        Eigen::Map<RowMajor<2, 3>> J(jacobians[1] + 6 * k);
+        J = transfer.d_tau;
+      }
+      if (rotates && jacobians[2] != nullptr) {
+        const Eigen::Index size = rotation.d_parameters.cols();
+        Eigen::Map<RowMajor<2, Eigen::Dynamic>> J(jacobians[2] + 2 * size * k, 2, size);
+        J = transfer.d_rotation * rotation.d_parameters;
+      }
+    }
+    return true;
+  }
+
+ private:
+  const Window& window_;
+  const PlaneUnknowns& unknowns_;
+  Matrix3d R_wc_;
+  const Eigen::Matrix3Xd& rays_1_;
+  int frame_;
+  std::vector<int> inliers_;
+};
+
+/// Gaussian priors on the bias and the time offset, in pixels of the noise.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(const Vector3d& bias_rad_s, const Eigen::Vector4d& weights, int size)
+      : weights_(weights), size_(size) {
+    prior_ << bias_rad_s, 0;
+    *mutable_parameter_block_sizes() = {size};
+    set_num_residuals(size);
+  }
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    for (int k = 0; k < size_; ++k) {
+      residuals[k] = weights_[k] * (parameters[0][k] - prior_[k]);
+      for (int l = 0; jacobians != nullptr && jacobians[0] != nullptr && l < size_; ++l)
+        jacobians[0][size_ * k + l] = k == l ? weights_[k] : 0;
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Vector4d prior_;
+  Eigen::Vector4d weights_;
+  int size_;
+};
+
+Blocks blocks_of(const PlaneMotion& motion) {
+  Blocks blocks;
+  blocks.normal = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), motion.normal);
+  blocks.tau = motion.tau;
+  blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
+  blocks.phi.assign(motion.tau.size(), Vector3d::Zero());
+  return blocks;
+}
+
+PlaneMotion motion_of(const Window& window,
+                      const PlaneUnknowns& unknowns,
+                      const PlaneMotion& start,
+                      const Blocks& blocks) {
+  PlaneMotion motion = start;
+  motion.normal = direction(blocks.normal).normalized();
+  motion.tau = blocks.tau;
+  motion.bias_rad_s = blocks.bias_offset.head<3>();
+  motion.time_offset_s = blocks.bias_offset(3);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    if (unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
+    if (unknowns.rotations == RotationModel::bias)
+      motion.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, motion));
+  }
+  return motion;
+}
+
+}  // namespace
+
+PlaneSolution solve_plane_with_ceres(const Window& window,
+                                     const PlaneMotion& start,
+                                     const PlaneUnknowns& unknowns,
+                                     const Watch& watch,
+                                     double cost_tolerance) {
+  const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
+  Blocks blocks = blocks_of(start);
+  ceres::Problem problem;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  double* const normal = blocks.normal.coeffs().data();
+  problem.AddParameterBlock(normal, 4, new DirectionManifold);
+  ordering->AddElementToGroup(normal, 1);
+  const bool shared = unknowns.rotations == RotationModel::bias;
+  if (shared) {
+    const int size = FrameCost::rotation_size(unknowns);
+    Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
+    weights.head<3>() /= window.gyro->prior_sigma_rad_s;
+    weights(3) /= kTimeOffsetSigma_s;
+    problem.AddResidualBlock(
+        new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
+    ordering->AddElementToGroup(blocks.bias_offset.data(), 1);
+  }
+  for (int i = 1; i < window.frame_count(); ++i) {
+    std::vector<double*> parameters{normal, blocks.tau[i].data()};
+    if (shared) parameters.push_back(blocks.bias_offset.data());
+    if (unknowns.rotations == RotationModel::free) parameters.push_back(blocks.phi[i].data());
+    problem.AddResidualBlock(
+        new FrameCost(window, unknowns, start.R_wc[i], rays_1, i), nullptr, parameters);
+    ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
+    if (unknowns.rotations == RotationModel::free)
+      ordering->AddElementToGroup(blocks.phi[i].data(), 1);
+  }
+  const SolverReport solver = solve_by_schur(
+      problem, std::move(ordering), {.cost = cost_tolerance}, watch, [&blocks]() -> Vector3d {
+        return direction(blocks.normal).normalized();
+      });
+  return {motion_of(window, unknowns, start, blocks), solver};
+}
+
+}  // namespace gpo

@@ -1,0 +1,48 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
+#include "engine/initializers/plane/plane_kernel.h"
+#include "engine/initializers/plane/plane_observations.h"
+#include "engine/window/window.h"
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// The unknowns of an optimization over a plane: world = reference camera, plane distance 1. Of the
+/// two solutions with the same pictures, (n, tau) and (-n, -tau), `facing` is the one that is seen.
+struct PlaneMotion {
+  Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
+  std::vector<Eigen::Vector3d> tau;                      ///< one a frame, -p_wc
+  std::vector<Eigen::Matrix3d> R_wc;                     ///< one a frame
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< where the rotations depend on it
+  double time_offset_s = 0;  ///< added to the gyroscope's own, where they depend on it
+};
+
+/// The window's rotations, all translations zero, the normal along z: where the paper starts.
+PlaneMotion resting(const Window& window);
+/// A solution's plane and cameras.
+PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras);
+
+/// With the sign that puts most inliers in front of the reference camera.
+PlaneMotion facing(const Window& window, PlaneMotion motion);
+std::vector<Pose> cameras_of(const PlaneMotion& motion);
+
+/// What a gyroscope's rotation R_wc of a frame turns into with the motion's bias and time offset is
+/// R_wc exp(this), to first order.
+Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion);
+
+/// Where a frame's errors are linearized.
+FrameState frame_state(const PlaneObservations& observations, const PlaneMotion& motion, int frame);
+
+/// Two orthonormal directions in which a normal moves, and where it comes to.
+Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
+Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2d& u_rad);
+
+}  // namespace gpo

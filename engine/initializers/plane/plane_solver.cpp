@@ -1,0 +1,319 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/plane/plane_solver.h"
+
+#include "engine/initializers/plane/plane_kernel.h"
+#include "engine/initializers/plane/plane_weights.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace gpo {
+namespace {
+
+constexpr int kMostIterations = 300;
+constexpr int kUsualIterations = 16;
+constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
+constexpr double kRounding = 1e-12;     // relative change of the cost that says nothing
+constexpr int kMostHiddenSteps = 5;     // along a valley so flat that rounding fills it
+constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, where Gauss-Newton fails
+constexpr double kMostDamping = 1e12;
+
+/// How many unknowns the frames share and how many each has of its own.
+template <int Shared, int Own>
+struct Split {
+  static constexpr int kShared = Shared;
+  static constexpr int kOwn = Own;
+};
+using KnownRotations = Split<2, 3>;     // normal | t
+using UnknownBias = Split<5, 3>;        // normal, bias | t
+using UnknownBiasOffset = Split<6, 3>;  // normal, bias, time offset | t
+using FreeRotations = Split<2, 6>;      // normal | phi, t
+
+/// Normal equations of a frame over shared and own unknowns, from those over (u, phi, t).
+template <class S>
+struct SplitNormals {
+  Eigen::Matrix<double, S::kShared, S::kShared> ss;
+  Eigen::Matrix<double, S::kShared, S::kOwn> so;
+  Eigen::Matrix<double, S::kOwn, S::kOwn> oo;
+  Eigen::Matrix<double, S::kShared, 1> s;
+  Eigen::Matrix<double, S::kOwn, 1> o;
+};
+
+/// The columns of what the frames share, of (u, phi).
+template <class S>
+Eigen::Matrix<double, 5, S::kShared> shared_columns(const Window& window,
+                                                    const PlaneMotion& motion,
+                                                    int frame) {
+  Eigen::Matrix<double, 5, S::kShared> M = Eigen::Matrix<double, 5, S::kShared>::Zero();
+  M.template topLeftCorner<2, 2>().setIdentity();
+  if constexpr (S::kShared > 2) {
+    const GyroSensitivity& gyro = *window.gyro;
+    const Eigen::Matrix3d turned = so3_right_jacobian(gyro_correction_rad(window, frame, motion));
+    M.template block<3, 3>(2, 2) = turned * gyro.d_bias[frame];
+    if constexpr (S::kShared == 6)
+      M.template bottomRightCorner<3, 1>() = turned * gyro.d_offset[frame];
+  }
+  return M;
+}
+
+template <class S>
+SplitNormals<S> split(const FrameNormals& f,
+                      const Window& window,
+                      const PlaneMotion& motion,
+                      int frame) {
+  if constexpr (S::kShared == 2) {
+    return {f.JtJ.topLeftCorner<2, 2>(),
+            f.JtJ.topRightCorner<2, S::kOwn>(),
+            f.JtJ.bottomRightCorner<S::kOwn, S::kOwn>(),
+            f.Jtr.head<2>(),
+            f.Jtr.tail<S::kOwn>()};
+  } else {
+    const Eigen::Matrix<double, 5, S::kShared> M = shared_columns<S>(window, motion, frame);
+    return {M.transpose() * f.JtJ.topLeftCorner<5, 5>() * M,
+            M.transpose() * f.JtJ.topRightCorner<5, 3>(),
+            f.JtJ.bottomRightCorner<3, 3>(),
+            M.transpose() * f.Jtr.head<5>(),
+            f.Jtr.tail<3>()};
+  }
+}
+
+/// All frames linearized at a state.
+struct Linearized {
+  std::vector<FrameNormals> frames;
+  double cost = 0;  ///< with the priors' share
+  bool in_front = true;
+};
+
+template <class S>
+class PlaneProblem {
+ public:
+  using SharedVector = Eigen::Matrix<double, S::kShared, 1>;
+  using SharedMatrix = Eigen::Matrix<double, S::kShared, S::kShared>;
+  using OwnVector = Eigen::Matrix<double, S::kOwn, 1>;
+
+  struct Step {
+    SharedVector shared;
+    std::vector<OwnVector> own;
+    double length = 0;    ///< largest component
+    double norm = 0;      ///< over all unknowns
+    double decrease = 0;  ///< of the cost, expected
+  };
+
+  /// A frame's own unknowns are -(rest + gain shared).
+  struct Eliminated {
+    Eigen::Matrix<double, S::kOwn, S::kShared> gain;
+    OwnVector rest;
+    OwnVector gradient;
+  };
+
+  PlaneProblem(const Window& window,
+               const PlaneObservations& observations,
+               const PlaneUnknowns& unknowns)
+      : window_(window), observations_(observations), unknowns_(unknowns) {}
+
+  int frame_count() const { return window_.frame_count(); }
+  int unknown_count() const { return S::kShared + S::kOwn * (frame_count() - 1); }
+
+  Linearized linearize(const PlaneMotion& motion) const {
+    constexpr Rotating rotating = S::kShared + S::kOwn > 5 ? Rotating::yes : Rotating::no;
+    Linearized all;
+    all.frames.resize(frame_count());
+    all.cost = prior_cost(motion);
+    for (int i = 1; i < frame_count(); ++i) {
+      const FrameObservations& f = observations_.frames[i];
+      const FrameState state = frame_state(observations_, motion, i);
+      all.frames[i] =
+          f.weight.empty() ? frame_normals(f, state, rotating) : frame_normals_by_matrix(f, state);
+      all.cost += all.frames[i].cost;
+      all.in_front = all.in_front && all.frames[i].in_front;
+    }
+    return all;
+  }
+
+  /// The damped Gauss-Newton step: own unknowns eliminated, the shared ones solved for, the own
+  /// ones substituted back.
+  Step step(const Linearized& at, const PlaneMotion& motion, double damping) const {
+    SharedMatrix reduced = SharedMatrix::Zero();
+    SharedVector right = SharedVector::Zero();
+    add_priors(motion, reduced, right);
+    SharedVector gradient = right;
+    SharedVector diagonal = reduced.diagonal();
+    std::vector<Eliminated> frames(frame_count());
+    for (int i = 1; i < frame_count(); ++i) {
+      SplitNormals<S> f = split<S>(at.frames[i], window_, motion, i);
+      f.oo.diagonal() *= 1 + damping;
+      const Eigen::LLT<Eigen::Matrix<double, S::kOwn, S::kOwn>> factor(f.oo);
+      frames[i] = {factor.solve(f.so.transpose()), factor.solve(f.o), f.o};
+      reduced += f.ss - f.so * frames[i].gain;
+      right += f.s - f.so * frames[i].rest;
+      gradient += f.s;
+      diagonal += f.ss.diagonal();
+    }
+    reduced.diagonal() += damping * diagonal;
+    Step step;
+    step.shared = reduced.llt().solve(-right);
+    step.length = step.shared.cwiseAbs().maxCoeff();
+    double squares = step.shared.squaredNorm();
+    step.decrease = -0.5 * gradient.dot(step.shared);
+    step.own.assign(frame_count(), OwnVector::Zero());
+    for (int i = 1; i < frame_count(); ++i) {
+      step.own[i] = -(frames[i].rest + frames[i].gain * step.shared);
+      step.length = std::max(step.length, step.own[i].cwiseAbs().maxCoeff());
+      step.decrease -= 0.5 * frames[i].gradient.dot(step.own[i]);
+      squares += step.own[i].squaredNorm();
+    }
+    step.norm = std::sqrt(squares);
+    return step;
+  }
+
+  /// Largest component of the cost's gradient.
+  double gradient(const Linearized& at, const PlaneMotion& motion) const {
+    SharedVector shared = prior_gradient(motion);
+    double largest = 0;
+    for (int i = 1; i < frame_count(); ++i) {
+      const Eigen::Matrix<double, 8, 1>& Jtr = at.frames[i].Jtr;
+      if constexpr (S::kShared == 2) {
+        shared += Jtr.head<2>();
+      } else {
+        shared += shared_columns<S>(window_, motion, i).transpose() * Jtr.head<5>();
+      }
+      largest = std::max(largest, Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
+    }
+    return std::max(largest, shared.cwiseAbs().maxCoeff());
+  }
+
+  PlaneMotion moved(const PlaneMotion& from, const Step& step) const {
+    PlaneMotion to = from;
+    to.normal = moved_normal(from.normal, step.shared.template head<2>());
+    if constexpr (S::kShared > 2) to.bias_rad_s += step.shared.template segment<3>(2);
+    if constexpr (S::kShared == 6) to.time_offset_s += step.shared(5);
+    for (int i = 1; i < frame_count(); ++i) {
+      to.tau[i] += from.R_wc[i] * step.own[i].template tail<3>();
+      if constexpr (S::kOwn == 6) {
+        to.R_wc[i] = from.R_wc[i] * so3_exp(step.own[i].template head<3>());
+      } else if constexpr (S::kShared > 2) {
+        to.R_wc[i] = window_.R_wc[i] * so3_exp(gyro_correction_rad(window_, i, to));
+      }
+    }
+    return to;
+  }
+
+ private:
+  double prior_cost(const PlaneMotion& motion) const {
+    double cost = 0;
+    if constexpr (S::kShared > 2) {
+      cost += 0.5 * bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s).squaredNorm();
+    }
+    if constexpr (S::kShared == 6) {
+      cost += 0.5 * offset_weight() * motion.time_offset_s * motion.time_offset_s;
+    }
+    return cost;
+  }
+
+  SharedVector prior_gradient(const PlaneMotion& motion) const {
+    SharedVector gradient = SharedVector::Zero();
+    if constexpr (S::kShared > 2) {
+      gradient.template segment<3>(2) =
+          bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s);
+    }
+    if constexpr (S::kShared == 6) gradient(5) = offset_weight() * motion.time_offset_s;
+    return gradient;
+  }
+
+  void add_priors(const PlaneMotion& motion, SharedMatrix& JtJ, SharedVector& Jtr) const {
+    if constexpr (S::kShared > 2) JtJ.diagonal().template segment<3>(2).array() += bias_weight();
+    if constexpr (S::kShared == 6) JtJ(5, 5) += offset_weight();
+    Jtr += prior_gradient(motion);
+  }
+
+  double bias_weight() const {
+    const double ratio = unknowns_.sigma_px / window_.gyro->prior_sigma_rad_s;
+    return ratio * ratio;
+  }
+  double offset_weight() const {
+    const double ratio = unknowns_.sigma_px / kTimeOffsetSigma_s;
+    return ratio * ratio;
+  }
+
+  const Window& window_;
+  const PlaneObservations& observations_;
+  const PlaneUnknowns& unknowns_;
+};
+
+template <class S>
+PlaneSolution minimize(const PlaneProblem<S>& problem,
+                       const PlaneMotion& start,
+                       const Watch& watch) {
+  PlaneSolution solution{start, {}};
+  SolverReport& report = solution.solver;
+  report.unknowns = problem.unknown_count();
+  report.termination = "no_convergence";
+  Linearized at = problem.linearize(start);
+  report.initial_cost = at.cost;
+  if (!at.in_front || !std::isfinite(at.cost)) report.termination = "failure";
+  report.trace.reserve(kUsualIterations);
+  report.trace.push_back({at.cost, problem.gradient(at, start), 0, start.normal});
+  double damping = 0;
+  int hidden_steps = 0;
+  while (report.termination == "no_convergence" && report.iterations < kMostIterations &&
+         !watch.stop_requested()) {
+    ++report.iterations;
+    const auto step = problem.step(at, solution.motion, damping);
+    const PlaneMotion moved = problem.moved(solution.motion, step);
+    Linearized there = problem.linearize(moved);
+    // What rounding leaves of the cost cannot tell whether the last steps are good; they are.
+    const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
+    const bool better = there.in_front && (there.cost <= at.cost || hidden);
+    hidden_steps += hidden ? 1 : 0;
+    const bool settled = step.length < kSettled || hidden_steps == kMostHiddenSteps;
+    if (better) {
+      solution.motion = moved;
+      at = std::move(there);
+      damping = damping > kFirstDamping ? damping / 10 : 0;
+      report.trace.push_back({at.cost, problem.gradient(at, moved), step.norm, moved.normal});
+    } else {
+      damping = std::max(10 * damping, kFirstDamping);
+      report.trace.push_back(report.trace.back());
+      report.trace.back().step = 0;
+    }
+    watch.tell(report.iterations, at.cost);
+    if (settled) report.termination = "convergence";
+    if (!(damping < kMostDamping)) report.termination = "failure";
+  }
+  report.final_cost = at.cost;
+  return solution;
+}
+
+template <class S>
+PlaneSolution solve_split(const Window& window,
+                          const PlaneObservations& observations,
+                          const PlaneMotion& start,
+                          const PlaneUnknowns& unknowns,
+                          const Watch& watch) {
+  return minimize(PlaneProblem<S>(window, observations, unknowns), start, watch);
+}
+
+}  // namespace
+
+PlaneSolution solve_plane(const Window& window,
+                          const PlaneObservations& observations,
+                          const PlaneMotion& start,
+                          const PlaneUnknowns& unknowns,
+                          const Watch& watch) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto solve = unknowns.rotations == RotationModel::known  ? solve_split<KnownRotations>
+                     : unknowns.rotations == RotationModel::free ? solve_split<FreeRotations>
+                     : unknowns.time_offset                      ? solve_split<UnknownBiasOffset>
+                                                                 : solve_split<UnknownBias>;
+  PlaneSolution solution = solve(window, observations, start, unknowns, watch);
+  solution.solver.residuals = 2 * observations.count();
+  solution.solver.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return solution;
+}
+
+}  // namespace gpo

@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/initializers/common/initializer_options.h"
+#include "engine/initializers/plane/plane_motion.h"
+#include "engine/initializers/plane/plane_observations.h"
+
+namespace gpo {
+
+/// Whether the options ask for weights other than one.
+bool is_weighted(const InitializerOptions& options);
+
+/// Weights of iteratively reweighted least squares at a solution: of the Huber loss, with its knee
+/// at 1.345 standard deviations of a coordinate's noise `sigma_px`; of Sampson's error,
+/// r^T (I + J J^T)^-1 r with J the transfer's Jacobian over the reference pixel (Hartley &
+/// Zisserman 4.2.6), scaled so that a camera at rest keeps weight one.
+void reweigh(const PlaneMotion& motion,
+             const InitializerOptions& options,
+             double sigma_px,
+             PlaneObservations& observations);
+
+/// The normal equations of a frame of which each observation has a weight matrix of its own.
+FrameNormals frame_normals_by_matrix(const FrameObservations& observations,
+                                     const FrameState& state);
+
+}  // namespace gpo

@@ -1,0 +1,204 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/euroc_reader.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+#include "engine/files/yaml_entry.h"
+#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/layouts/gyroscope_file.h"
+#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/truth_file.h"
+#include "engine/recording/pictures/picture_files.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace gpo {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The pictures of cam0: those that data.csv lists, or where there is none those in data, named by
+/// their time stamps.
+struct PictureList {
+  std::vector<std::int64_t> timestamps_ns;
+  std::vector<fs::path> files;
+  std::optional<CsvTable> table;  ///< data.csv
+};
+
+PictureList listed_pictures(const fs::path& cam) {
+  PictureList list;
+  list.table = read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least);
+  list.timestamps_ns = csv_time_stamps(*list.table, TimeUnit::nanoseconds);
+  list.files.reserve(list.table->rows.size());
+  for (const auto& row : list.table->rows) {
+    list.files.push_back(cam / "data" / csv_cell(*list.table, row, 1));
+  }
+  return list;
+}
+
+PictureList named_pictures(const fs::path& cam) {
+  PictureList list;
+  list.files = numbered_pictures(cam / "data");
+  for (const auto& file : list.files) {
+    const auto time = parse_integer(file.stem().string());
+    if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back())) {
+      throw InputError(file.string() +
+                       ": found another name, expected a time stamp in nanoseconds, since there is "
+                       "no cam0/data.csv");
+    }
+    list.timestamps_ns.push_back(*time);
+  }
+  return list;
+}
+
+PictureList read_picture_list(const fs::path& folder) {
+  const fs::path cam = folder / "cam0";
+  if (!is_file(cam / "data.csv") && is_folder(cam / "data")) {
+    auto named = named_pictures(cam);
+    if (!named.files.empty()) return named;
+  }
+  return listed_pictures(cam);
+}
+
+void add_pictures(Recording& recording,
+                  PictureList list,
+                  bool may_be_missing,
+                  std::size_t cache_bytes) {
+  for (std::size_t i = 0; i < list.files.size(); ++i) {
+    if (is_file(list.files[i])) continue;
+    if (may_be_missing) return;
+    csv_fail(*list.table,
+             list.table->rows[i].line,
+             "the name of a missing picture",
+             "the file " + list.files[i].string());
+  }
+  add_picture_files(recording, std::move(list.files), cache_bytes);
+}
+
+/// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has
+/// them.
+struct ImuCalibration {
+  Eigen::Matrix3d R_body_gyro = Eigen::Matrix3d::Identity();
+  std::optional<Eigen::Vector3d> bias_rad_s;
+  std::optional<double> bias_sigma_rad_s;
+};
+
+double positive_number(const YamlEntry& entry, const std::string& expected) {
+  const double value = number(entry, expected);
+  if (value <= 0) yaml_fail(entry, expected);
+  return value;
+}
+
+ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::string>& notes) {
+  ImuCalibration result;
+  if (!is_file(file)) {
+    notes.emplace_back("no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
+    return result;
+  }
+  const auto root = load_yaml(file);
+  if (const auto T_BS = find(root, "T_BS")) result.R_body_gyro = rigid_motion(*T_BS).R_wc;
+  if (const auto bias = find(root, "gyroscope_bias")) {
+    const auto b = numbers(*bias, 3, "3 (x, y, z) in rad/s");
+    result.bias_rad_s = Eigen::Vector3d(b[0], b[1], b[2]);
+  }
+  if (const auto sigma = find(root, "gyroscope_bias_sigma"))
+    result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
+  return result;
+}
+
+/// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
+std::optional<fs::path> truth_folder(const fs::path& folder) {
+  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
+    if (is_file(folder / name / "data.csv")) return folder / name;
+  }
+  return std::nullopt;
+}
+
+/// Returns the mean of the gyroscope's bias, where the truth has it.
+std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& folder) {
+  const auto source = truth_folder(folder);
+  if (!source) {
+    recording.truth = truth_beside(folder, recording.timestamps_ns);
+    return std::nullopt;
+  }
+  PosePath path = read_euroc_path(*source / "data.csv");
+  TruthMounting mounting{recording.T_body_camera.value_or(Pose{})};
+  if (const auto sensor = if_file(*source / "sensor.yaml")) {
+    read_truth_clock(*sensor, path, mounting);
+    if (const auto T_BS = find(load_yaml(*sensor), "T_BS")) {
+      mounting.T_measured_camera = inverse(rigid_motion(*T_BS)) * mounting.T_measured_camera;
+    }
+  }
+  recording.truth = camera_truth(
+      path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
+  return path.mean_gyro_bias_rad_s;
+}
+
+void add_gyroscope(Recording& recording,
+                   const fs::path& folder,
+                   std::int64_t time_offset_ns,
+                   const std::optional<Eigen::Vector3d>& true_mean_bias_rad_s) {
+  const auto file = if_file(folder / "imu0" / "data.csv");
+  if (!file) return;
+  Gyroscope gyroscope = read_gyroscope(*file, TimeUnit::nanoseconds);
+  const auto imu = read_imu_calibration(folder / "imu0" / "sensor.yaml", recording.notes);
+  gyroscope.R_gyro_camera =
+      imu.R_body_gyro.transpose() * recording.T_body_camera.value_or(Pose{}).R_wc;
+  gyroscope.time_offset_ns = time_offset_ns;
+  if (imu.bias_rad_s) {
+    gyroscope.bias_rad_s = *imu.bias_rad_s;
+    gyroscope.bias_source = "imu0/sensor.yaml";
+  } else if (true_mean_bias_rad_s) {
+    gyroscope.bias_rad_s = *true_mean_bias_rad_s;
+    gyroscope.bias_source = "mean of the ground truth's";
+  }
+  if (imu.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *imu.bias_sigma_rad_s;
+  recording.gyroscope = std::move(gyroscope);
+}
+
+/// TUM-VI keeps Kalibr's calibration in `dso`, beside mav0.
+fs::path calibration_of(const fs::path& folder) {
+  fs::path cam = folder / "cam0" / "sensor.yaml";
+  const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
+  for (const fs::path& file :
+       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}) {
+    if (is_file(file)) return file;
+  }
+  return cam;
+}
+
+}  // namespace
+
+bool euroc_lacks_pictures(const fs::path& folder) {
+  const PictureList list = read_picture_list(folder);
+  return std::ranges::none_of(list.files, is_file);
+}
+
+Recording read_euroc(const fs::path& folder,
+                     const std::optional<fs::path>& tracks,
+                     std::size_t cache_bytes) {
+  Recording recording;
+  const fs::path calibration_file = calibration_of(folder);
+  const auto calibration = read_calibration(calibration_file);
+  recording.camera = calibration.camera;
+  recording.T_body_camera = calibration.T_body_camera;
+  PictureList list = read_picture_list(folder);
+  recording.timestamps_ns = list.timestamps_ns;
+  add_pictures(recording, std::move(list), tracks.has_value(), cache_bytes);
+  recording.layout = recording.pictures ? Layout::euroc : Layout::tracks;
+  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
+
+  const auto mean_bias = add_truth(recording, folder);
+  add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
+  if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
+    recording.notes.push_back("no T_BS in " + calibration_file.filename().string() +
+                              ": the camera's axes are taken as the body's");
+  }
+  return recording;
+}
+
+}  // namespace gpo

@@ -1,0 +1,175 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/euroc_writer.h"
+
+#include "engine/base/error.h"
+#include "engine/files/output_file.h"
+#include "engine/files/output_folder.h"
+#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/layouts/sidecar_files.h"
+#include "engine/window/timestamps.h"
+#include "engine/window/tracks.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// fmt's shortest text reads back as the same number.
+std::string list(const Eigen::Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+}
+
+std::string camera_yaml(const Recording& recording) {
+  const Camera& camera = recording.camera;
+  std::string text = fmt::format(
+      "sensor_type: camera\n{}resolution: [{}, {}]\ncamera_model: pinhole\n"
+      "intrinsics: [{}, {}, {}, {}]  # fx, fy, cx, cy\ndistortion_model: {}\n"
+      "distortion_coefficients: [{}]\n",
+      transformation_yaml(recording.T_body_camera.value_or(Pose{})),
+      camera.width,
+      camera.height,
+      camera.fx,
+      camera.fy,
+      camera.cx,
+      camera.cy,
+      distortion_name(camera.distortion),
+      fmt::join(camera.coefficients, ", "));
+  if (const double rate = rate_hz(recording.timestamps_ns); rate > 0)
+    text += fmt::format("rate_hz: {:.6g}\n", rate);
+  if (recording.gyroscope && recording.gyroscope->time_offset_ns != 0)
+    text += fmt::format("timeshift_cam_imu: {}  # [s] gyroscope's clock - camera's clock\n",
+                        static_cast<double>(recording.gyroscope->time_offset_ns) * 1e-9);
+  return text;
+}
+
+std::string imu_yaml(const Gyroscope& gyroscope, const Pose& T_body_camera) {
+  const Pose T_body_gyro{T_body_camera.R_wc * gyroscope.R_gyro_camera.transpose(),
+                         Eigen::Vector3d::Zero()};
+  std::string text = fmt::format("sensor_type: imu\n{}rate_hz: {}\n",
+                                 transformation_yaml(T_body_gyro),
+                                 rate_hz(gyroscope.timestamps_ns));
+  if (!gyroscope.bias_rad_s.isZero(0))
+    text += fmt::format("gyroscope_bias: {}  # [rad/s]\n", list(gyroscope.bias_rad_s));
+  return text + fmt::format("gyroscope_bias_sigma: {}  # [rad/s]\n", gyroscope.bias_sigma_rad_s);
+}
+
+std::string imu_csv(const Gyroscope& gyroscope) {
+  const bool accelerations = !gyroscope.accelerations_m_s2.empty();
+  std::string text = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
+  text += accelerations ? ",a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n" : "\n";
+  for (std::size_t i = 0; i < gyroscope.timestamps_ns.size(); ++i) {
+    const Eigen::Vector3d& w = gyroscope.rates_rad_s[i];
+    text += fmt::format("{},{},{},{}", gyroscope.timestamps_ns[i], w.x(), w.y(), w.z());
+    if (accelerations) {
+      const Eigen::Vector3d& a = gyroscope.accelerations_m_s2[i];
+      text += fmt::format(",{},{},{}", a.x(), a.y(), a.z());
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
+  std::string text =
+      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
+      "q_RS_z []\n";
+  const Pose T_camera_body = inverse(recording.T_body_camera.value_or(Pose{}));
+  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
+  for (std::size_t i = 0; i < truth.poses.size(); ++i) {
+    if (!truth.poses[i]) continue;
+    const Pose body = *truth.poses[i] * T_camera_body;
+    Eigen::Quaterniond q(body.R_wc);
+    if (q.dot(previous) < 0) q.coeffs() *= -1;  // no jumps for who interpolates
+    previous = q;
+    text += fmt::format("{},{},{},{},{},{},{},{}\n",
+                        recording.timestamps_ns[i],
+                        body.p_wc.x(),
+                        body.p_wc.y(),
+                        body.p_wc.z(),
+                        q.w(),
+                        q.x(),
+                        q.y(),
+                        q.z());
+  }
+  return text;
+}
+
+/// The pictures that the recording has, and the list of all frames.
+void write_pictures(const Recording& recording,
+                    const fs::path& cam,
+                    const std::function<void(int done, int of)>& progress) {
+  make_folder(cam / "data");
+  std::string list = "#timestamp [ns],filename\n";
+  for (int i = 0; i < recording.frame_count(); ++i) {
+    const std::string name = fmt::format("{:019d}.png", recording.timestamps_ns[i]);
+    list += fmt::format("{},{}\n", recording.timestamps_ns[i], name);
+    if (!recording.pictures) continue;
+    const cv::Mat bgr = recording.pictures->bgr(i);
+    cv::Mat channels[3];
+    cv::split(bgr, channels);
+    const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                      cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+    write_picture(cam / "data" / name, gray ? channels[0] : bgr);
+    if (progress) progress(i + 1, recording.frame_count());
+  }
+  write_file(cam / "data.csv", list);
+}
+
+void write_truth(const Recording& recording, const GroundTruth& truth, const fs::path& mav) {
+  const fs::path folder = mav / "state_groundtruth_estimate0";
+  make_folder(folder);
+  write_file(folder / "data.csv", truth_csv(recording, truth));
+  write_file(folder / "sensor.yaml",
+             "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) +
+                 "longest_gap_s: 0  # over which poses are interpolated: frames without one stay "
+                 "without\n");
+}
+
+void write_sidecars(const Recording& recording, const fs::path& folder) {
+  if (recording.plane) write_file(folder / "plane.yaml", plane_yaml(*recording.plane));
+  if (recording.board) write_file(folder / "board.yaml", board_yaml(*recording.board));
+  if (recording.tracks.empty()) return;
+  std::string text = "frame,track,x,y\n";
+  for (const TrackObservation& o : recording.tracks)
+    text += fmt::format("{},{},{},{}\n", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
+  write_file(folder / "tracks.csv", text);
+}
+
+}  // namespace
+
+std::string transformation_yaml(const Pose& pose) {
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Matrix3d& R = pose.R_wc;
+    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
+  }
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
+}
+
+void write_euroc(const Recording& recording,
+                 const std::optional<GroundTruth>& truth,
+                 const fs::path& folder,
+                 const std::function<void(int done, int of)>& progress) {
+  UnfinishedFolder unfinished(folder);
+  const fs::path mav = unfinished.path() / "mav0";
+  make_folder(mav / "cam0");
+  write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recording));
+  if (const auto& gyroscope = recording.gyroscope) {
+    make_folder(mav / "imu0");
+    write_file(mav / "imu0" / "sensor.yaml",
+               imu_yaml(*gyroscope, recording.T_body_camera.value_or(Pose{})));
+    write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));
+  }
+  if (truth) write_truth(recording, *truth, mav);
+  write_sidecars(recording, unfinished.path());
+  write_pictures(recording, mav / "cam0", progress);
+  unfinished.finish();
+}
+
+}  // namespace gpo

@@ -1,0 +1,24 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace gpo {
+
+struct OpenOptions {
+  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
+  std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
+};
+
+/// Opens a folder or a file; finds out which layout it is. Pictures are not decoded yet, but each
+/// is known to exist. Throws InputError.
+std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
+                                                const OpenOptions& options = {});
+
+}  // namespace gpo

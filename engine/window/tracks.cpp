@@ -1,0 +1,42 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/window/tracks.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace gpo {
+namespace {
+
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames) {
+  Tracks tracks;
+  tracks.start = start;
+  std::map<std::int64_t, int> column;
+  for (const TrackObservation& o : observations) {
+    if (o.frame != start) continue;
+    column[o.track] = static_cast<int>(tracks.ids.size());
+    tracks.ids.push_back(o.track);
+  }
+  tracks.raw_px.assign(frames, Eigen::Matrix2Xd::Constant(2, tracks.track_count(), kUnseen));
+  for (const TrackObservation& o : observations) {
+    const auto it = column.find(o.track);
+    if (o.frame < start || o.frame >= start + frames || it == column.end()) continue;
+    tracks.raw_px[o.frame - start].col(it->second) = o.raw_px;
+  }
+  return tracks;
+}
+
+Tracks without(Tracks tracks, std::span<const std::int64_t> ids) {
+  for (int j = 0; j < tracks.track_count(); ++j) {
+    if (std::ranges::find(ids, tracks.ids[j]) == ids.end()) continue;
+    for (Eigen::Matrix2Xd& raw_px : tracks.raw_px) raw_px.col(j).setConstant(kUnseen);
+  }
+  return tracks;
+}
+
+}  // namespace gpo

@@ -1,0 +1,23 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/window/window.h"
+
+#include <algorithm>
+
+namespace gpo {
+
+int Window::inlier_count(int frame) const {
+  return static_cast<int>(std::ranges::count(inlier[frame], true));
+}
+
+bool Window::is_inlier_track(int track) const {
+  int seen = 0;
+  int agreeing = 0;
+  for (int i = 1; i < frame_count(); ++i) {
+    seen += points_px[i].col(track).allFinite() ? 1 : 0;
+    agreeing += inlier[i][track] ? 1 : 0;
+  }
+  return agreeing > 0 && 2 * agreeing >= seen;
+}
+
+}  // namespace gpo

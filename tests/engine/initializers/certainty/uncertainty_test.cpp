@@ -1,0 +1,152 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/certainty/uncertainty.h"
+
+#include "engine/evaluation/bound.h"
+#include "engine/initializers/gpo.h"
+#include "engine/initializers/methods.h"
+#include "engine/window/window.h"
+#include "tests/engine/simulated_window.h"
+
+#include <random>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Error squared in units of its covariance, of what lies in the covariance's range.
+double normalized_square(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  return error.dot(covariance.completeOrthogonalDecomposition().solve(error));
+}
+
+/// Means of normalized squares over many windows against the chi-square distribution's: the mean of
+/// n of them with d degrees of freedom has the standard deviation sqrt(2 d / n).
+struct ChiSquare {
+  int freedom;
+  double sum = 0;
+  int count = 0;
+  int beyond_95 = 0;
+
+  void add(double value, double quantile_95) {
+    sum += value;
+    ++count;
+    beyond_95 += value > quantile_95 ? 1 : 0;
+  }
+  void expect() const {
+    const double mean = sum / count;
+    EXPECT_NEAR(mean, freedom, 4 * std::sqrt(2.0 * freedom / count)) << count << " windows";
+    EXPECT_NEAR(beyond_95, 0.05 * count, 4 * std::sqrt(0.05 * 0.95 * count));
+  }
+};
+
+constexpr double kQuantile1 = 3.841, kQuantile2 = 5.991, kQuantile3 = 7.815;
+
+/// A window whose bias is drawn from its prior, so that the prior tells the truth.
+Simulation window_of(Motion motion, RotationModel rotations, std::uint64_t seed) {
+  SimulationOptions options{.motion = motion, .seed = seed};
+  if (rotations == RotationModel::bias) {
+    std::mt19937_64 random(seed + 77);
+    std::normal_distribution<double> gauss(0, 0.01);
+    options.gyro_bias_rad_s = Vector3d(gauss(random), gauss(random), gauss(random)).norm();
+  }
+  Simulation truth = with_fitted_homographies(simulate(options));
+  truth.window.rotations = rotations;
+  return truth;
+}
+
+class NormalizedErrors : public testing::TestWithParam<RotationModel> {};
+
+TEST_P(NormalizedErrors, FollowTheChiSquareDistribution) {
+  const Method& method = find_method("gpo_joint");
+  ChiSquare normal{2}, center{3}, ratio{1}, bias{3};
+  for (std::uint64_t seed = 1; seed <= 240; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    const Simulation truth = window_of(motion, GetParam(), seed);
+    const Initialization result =
+        assessed(method, truth.window, method.initialize(truth.window, {}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    const Uncertainty& u = *result.uncertainty;
+    EXPECT_EQ(u.rotations, GetParam());
+    EXPECT_NEAR(u.sigma_px, 0.5, 0.05);
+    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
+               kQuantile2);
+    const std::size_t last = truth.cameras.size() - 1;
+    const Vector3d center_error = result.cameras[last].p_wc - truth.cameras[last].p_wc;
+    center.add(normalized_square(center_error, u.center_covariances[last]), kQuantile3);
+    const double ratio_error = result.plane.normal.dot(result.cameras[last].p_wc) -
+                               truth.plane.normal.dot(truth.cameras[last].p_wc);
+    ratio.add(std::pow(ratio_error / u.distance_ratio_sigmas[last], 2), kQuantile1);
+    if (GetParam() == RotationModel::bias)
+      bias.add(normalized_square(*result.bias_rad_s - truth.bias_rad_s, *u.bias_covariance),
+               kQuantile3);
+  }
+  normal.expect();
+  center.expect();
+  ratio.expect();
+  if (GetParam() == RotationModel::bias) bias.expect();
+}
+
+INSTANTIATE_TEST_SUITE_P(,
+                         NormalizedErrors,
+                         testing::Values(RotationModel::known,
+                                         RotationModel::bias,
+                                         RotationModel::free),
+                         [](const auto& each) { return std::string(to_string(each.param)); });
+
+TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
+  const Method& method = find_method("gpo");
+  ChiSquare normal{2}, center{3};
+  for (std::uint64_t seed = 1; seed <= 240; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    const Simulation truth = window_of(motion, RotationModel::bias, seed);
+    const Initialization result =
+        assessed(method, truth.window, method.initialize(truth.window, {}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    const Uncertainty& u = *result.uncertainty;
+    EXPECT_EQ(u.rotations, RotationModel::known);
+    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
+               kQuantile2);
+    const std::size_t last = truth.cameras.size() - 1;
+    center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
+                                 u.center_covariances[last]),
+               kQuantile3);
+  }
+  normal.expect();
+  center.expect();
+}
+
+TEST(Uncertainty, OfKnownRotationsIsTheBound) {
+  const Simulation truth = simulate({.motion = Motion::orbit});
+  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
+  ASSERT_TRUE(u);
+  EXPECT_NEAR(*u->bound_known_rotations_deg,
+              *normal_bound_deg(truth.window, truth.plane, truth.cameras, u->sigma_px),
+              1e-9);
+  EXPECT_NEAR(u->normal_sigma_deg, *u->bound_known_rotations_deg, 1e-9);
+  EXPECT_FALSE(u->bound_unknown_bias_deg);
+}
+
+TEST(Uncertainty, GrowsWithWhatIsUnknown) {
+  const Simulation truth =
+      simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = 3});
+  const auto sigma = [&](RotationModel model) {
+    return uncertainty_of(truth.window, truth.plane, truth.cameras, model)->normal_sigma_deg;
+  };
+  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::bias);
+  EXPECT_LT(*u->bound_known_rotations_deg, sigma(RotationModel::bias));
+  EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::known));  // held, and wrong
+  EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::free));
+}
+
+TEST(Uncertainty, OfAPlaneThatNothingTellsIsNone) {
+  const Simulation truth = simulate({.motion = Motion::rotation_only});
+  EXPECT_FALSE(uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known));
+}
+
+}  // namespace
+}  // namespace gpo::test

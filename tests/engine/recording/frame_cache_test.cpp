@@ -1,0 +1,107 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/frame_cache.h"
+
+#include "engine/base/error.h"
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+constexpr std::size_t kPictureBytes = 64 * 48 * 3;
+
+cv::Mat picture_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
+
+struct Counted {
+  std::shared_ptr<std::atomic<int>> decoded = std::make_shared<std::atomic<int>>(0);
+  FrameCache cache;
+  explicit Counted(std::size_t limit)
+      : cache(
+            100,
+            [count = decoded](int index) {
+              ++*count;
+              return picture_of(index);
+            },
+            limit) {}
+};
+
+TEST(FrameCache, DecodesAPictureOnce) {
+  const Counted counted(10 * kPictureBytes);
+  EXPECT_EQ(counted.cache.count(), 100);
+  const cv::Mat first = counted.cache.bgr(7);
+  const cv::Mat again = counted.cache.bgr(7);
+  EXPECT_EQ(first.data, again.data);
+  EXPECT_EQ(*counted.decoded, 1);
+  EXPECT_EQ(counted.cache.gray(7).at<std::uint8_t>(3, 4), 7);
+  EXPECT_EQ(*counted.decoded, 1);
+}
+
+TEST(FrameCache, StaysWithinItsLimit) {
+  const Counted counted(10 * kPictureBytes + 5);
+  for (int i = 0; i < 100; ++i) {
+    counted.cache.bgr(i);
+    EXPECT_LE(counted.cache.bytes(), 10 * kPictureBytes);
+  }
+  EXPECT_EQ(counted.cache.bytes(), 10 * kPictureBytes);
+}
+
+TEST(FrameCache, ForgetsTheLeastRecentlyUsed) {
+  const Counted counted(3 * kPictureBytes);
+  for (const int i : {0, 1, 2, 0, 3}) counted.cache.bgr(i);  // 3 drives out 1
+  EXPECT_EQ(*counted.decoded, 4);
+  for (const int i : {0, 2, 3}) counted.cache.bgr(i);
+  EXPECT_EQ(*counted.decoded, 4);
+  counted.cache.bgr(1);
+  EXPECT_EQ(*counted.decoded, 5);
+}
+
+TEST(FrameCache, HoldsTheNewestPictureWhateverTheLimit) {
+  const Counted counted(1);
+  counted.cache.bgr(4);
+  counted.cache.bgr(5);
+  counted.cache.bgr(5);
+  EXPECT_EQ(*counted.decoded, 2);
+  EXPECT_EQ(counted.cache.bytes(), kPictureBytes);
+}
+
+TEST(FrameCache, GivesManyThreadsTheRightPictures) {
+  const Counted counted(5 * kPictureBytes);
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t) {
+      threads.emplace_back([&, t] {
+        for (int i = 0; i < 400; ++i) {
+          const int index = (i * (t + 1)) % 100;
+          if (counted.cache.bgr(index).at<cv::Vec3b>(5, 5)[1] != index) ++wrong;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LE(counted.cache.bytes(), 5 * kPictureBytes);
+}
+
+TEST(FrameCache, ForgetsNothingWhenDecodingFails) {
+  int calls = 0;
+  const FrameCache cache(
+      3,
+      [&calls](int index) {
+        if (++calls == 2) throw InputError("cut");
+        return picture_of(index);
+      },
+      10 * kPictureBytes);
+  cache.bgr(0);
+  EXPECT_THROW(cache.bgr(1), InputError);
+  EXPECT_EQ(cache.bytes(), kPictureBytes);
+  EXPECT_EQ(cache.bgr(1).at<cv::Vec3b>(0, 0)[0], 1);
+}
+
+}  // namespace
+}  // namespace gpo

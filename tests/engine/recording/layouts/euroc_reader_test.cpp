@@ -1,0 +1,336 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/recording.h"
+#include "tests/engine/test_folder.h"
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using test::TestFolder;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Camera axes in body axes: x -> y, y -> z, z -> x.
+const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3, 0, 0, 0, 1]\n";
+const char* const kTbsImu = "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+
+/// A small but complete recording: 4 pictures at 10 Hz, gyroscope at 20 Hz, truth at 10 Hz.
+class EurocReader : public testing::Test {
+ protected:
+  EurocReader() {
+    folder.write("mav0/cam0/sensor.yaml", std::string(test::kCameraYaml) + kTbsCamera);
+    std::string list = "#timestamp [ns],filename\n";
+    for (int i = 0; i < 4; ++i) {
+      const std::string name = std::to_string(i) + ".png";
+      list += std::to_string(1403636579000000001 + i * 100000000LL) + "," + name + "\n";
+      folder.write("mav0/cam0/data/" + name, cv::Mat(48, 64, CV_8UC1, cv::Scalar(i)));
+    }
+    folder.write("mav0/cam0/data.csv", list);
+    folder.write("mav0/imu0/sensor.yaml", kTbsImu);
+    std::string imu =
+        "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
+    for (int i = 0; i < 8; ++i) {
+      imu += std::to_string(1403636579000000001 + i * 50000000LL) + ",0.1,0.2,0.3\n";
+    }
+    folder.write("mav0/imu0/data.csv", imu);
+  }
+
+  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
+  std::string error() const {
+    return error_of([this] { open(); });
+  }
+  std::string file(const char* name) const { return (folder.path() / name).string(); }
+  void write_truth(const std::string& rows) const {
+    folder.write("mav0/state_groundtruth_estimate0/data.csv",
+                 "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+                 "q_RS_y [], q_RS_z []\n" +
+                     rows);
+  }
+
+  const TestFolder folder;
+};
+
+TEST_F(EurocReader, FindsItWithAndWithoutMav0) {
+  for (const auto& path : {folder.path(), folder.path() / "mav0", folder.path() / ""}) {
+    const auto recording = open_recording(path);
+    EXPECT_EQ(recording->layout, Layout::euroc);
+    EXPECT_EQ(recording->frame_count(), 4);
+    EXPECT_EQ(recording->timestamps_ns[1], 1403636579100000001);
+    EXPECT_EQ(recording->pictures->bgr(2).at<cv::Vec3b>(0, 0)[0], 2);
+    EXPECT_EQ(recording->path, path);
+  }
+  EXPECT_EQ(open_recording(folder.path() / "")->name, folder.path().filename());
+}
+
+TEST_F(EurocReader, TurnsTheGyroscopesAxes) {
+  const auto recording = open();
+  ASSERT_TRUE(recording->gyroscope);
+  const Gyroscope& gyroscope = *recording->gyroscope;
+  EXPECT_EQ(gyroscope.timestamps_ns.size(), 8U);
+  EXPECT_EQ(gyroscope.lines.front(), 2);
+  EXPECT_EQ(gyroscope.rates_rad_s[3], Eigen::Vector3d(0.1, 0.2, 0.3));
+  // Camera z is body x, which is the gyroscope's -y: R_BS_imu maps gyro -y to body x.
+  EXPECT_TRUE(
+      (gyroscope.R_gyro_camera * Eigen::Vector3d::UnitZ()).isApprox(-Eigen::Vector3d::UnitY()));
+  EXPECT_EQ(gyroscope.bias_source, "none: zero");
+}
+
+TEST_F(EurocReader, PrefersTheSensorFilesBiasToTheTruths) {
+  std::string truth = "#t,px,py,pz,qw,qx,qy,qz,vx,vy,vz,bwx,bwy,bwz,bax,bay,baz\n";
+  truth += "1403636579000000001,0,0,0,1,0,0,0,0,0,0,0.01,0.02,0.03,0,0,0\n";
+  truth += "1403636579100000001,0,0,0,1,0,0,0,0,0,0,0.03,0.04,0.05,0,0,0\n";
+  folder.write("mav0/state_groundtruth_estimate0/data.csv", truth);
+  const auto of_truth = open()->gyroscope.value();
+  EXPECT_TRUE(of_truth.bias_rad_s.isApprox(Eigen::Vector3d(0.02, 0.03, 0.04), 1e-12));
+  EXPECT_THAT(of_truth.bias_source, HasSubstr("ground truth"));
+  folder.write("mav0/imu0/sensor.yaml",
+               std::string(kTbsImu) + "gyroscope_bias: [0.001, 0.002, 0.003]\n");
+  const auto of_file = open()->gyroscope.value();
+  EXPECT_EQ(of_file.bias_rad_s, Eigen::Vector3d(0.001, 0.002, 0.003));
+  EXPECT_EQ(of_file.bias_source, "imu0/sensor.yaml");
+}
+
+TEST_F(EurocReader, InterpolatesTheCamerasTruth) {
+  // The body turns by 0.2 rad about its z while it moves; frame 1 is half-way between the samples.
+  write_truth(
+      "1403636579050000001,1,2,3,1,0,0,0\n"
+      "1403636579150000001,2,2,3,0.99500416527,0,0,0.09983341664\n");
+  const auto recording = open();
+  ASSERT_TRUE(recording->truth);
+  const auto& poses = recording->truth->poses;
+  ASSERT_EQ(poses.size(), 4U);
+  EXPECT_FALSE(poses[0]);
+  EXPECT_FALSE(poses[2]);
+  ASSERT_TRUE(poses[1]);
+  const Eigen::Matrix3d R_wb = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).matrix();
+  EXPECT_TRUE(poses[1]->p_wc.isApprox(
+      Eigen::Vector3d(1.5, 2, 3) + R_wb * Eigen::Vector3d(.1, .2, .3), 1e-9));
+  EXPECT_TRUE((poses[1]->R_wc * Eigen::Vector3d::UnitZ()).isApprox(R_wb.col(0), 1e-9));
+}
+
+TEST_F(EurocReader, DoesNotBridgeAGapInTheTruth) {
+  std::string rows;
+  for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240}) {
+    rows += std::to_string(1403636579000000001 + ms * 1000000LL) + ",0,0,0,1,0,0,0\n";
+  }
+  write_truth(rows);
+  const auto& poses = open()->truth->poses;
+  EXPECT_TRUE(poses[0]);   // a sample
+  EXPECT_TRUE(poses[1]);   // between 90 and 110 ms
+  EXPECT_FALSE(poses[2]);  // between 120 and 230 ms
+  EXPECT_FALSE(poses[3]);  // after the end
+}
+
+TEST_F(EurocReader, ReadsTumVisMocapFolder) {
+  folder.write("mav0/mocap0/data.csv", "1403636579000000001,1,2,3,0,1,0,0\n");
+  const auto recording = open();
+  EXPECT_EQ(recording->truth->source, "mocap0/data.csv");
+  EXPECT_TRUE(recording->truth->poses[0]);
+}
+
+TEST_F(EurocReader, SaysOnceWhatIsMissing) {
+  EXPECT_THAT(open()->notes, ElementsAre("no ground truth: no metrics"));
+  std::filesystem::remove_all(folder.path() / "mav0/imu0");
+  EXPECT_THAT(open()->notes,
+              ElementsAre("no gyroscope: rotations from rotation averaging",
+                          "no ground truth: no metrics"));
+}
+
+TEST_F(EurocReader, ReadsBoardAndPlaneFromEitherLevel) {
+  folder.write("board.yaml", "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  folder.write("mav0/plane.yaml", "normal: [0, 0.6, 0.8]\ndistance: 1.5\n");
+  write_truth("1403636579000000001,1,2,3,1,0,0,0\n");
+  const auto recording = open();
+  ASSERT_TRUE(recording->board);
+  EXPECT_EQ(recording->board->columns, 9);
+  EXPECT_EQ(recording->board->rows, 6);
+  EXPECT_EQ(recording->board->square_m, 0.025);
+  ASSERT_TRUE(recording->plane);
+  EXPECT_TRUE(recording->plane->normal.isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
+  EXPECT_EQ(recording->plane->distance, 1.5);
+  EXPECT_TRUE(recording->notes.empty());
+}
+
+TEST_F(EurocReader, NamesBadBoardsAndPlanes) {
+  const auto board = [&](const char* text) {
+    folder.write("board.yaml", text);
+    return error();
+  };
+  EXPECT_EQ(
+      board("pattern: circles\ncolumns: 9\nrows: 6\nsquare: 0.02\n"),
+      file("board.yaml") + ":1: key `pattern`: found \"circles\", expected chessboard or charuco");
+  EXPECT_THAT(board("pattern: chessboard\ncolumns: 9.5\nrows: 6\nsquare: 0.02\n"),
+              HasSubstr(":2: key `columns`: found \"9.5\", expected a number of inner corners"));
+  EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 2\nsquare: 0.02\n"),
+              HasSubstr(":3: key `rows`: found 2, expected"));
+  EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\n"),
+              HasSubstr("key `square`: found nothing, expected the side of a square in meters"));
+  EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\nsquare: -1\n"),
+              HasSubstr(":4: key `square`: found -1, expected the side of a square"));
+  std::filesystem::remove(folder.path() / "board.yaml");
+  const auto plane = [&](const char* text) {
+    folder.write("plane.yaml", text);
+    return error();
+  };
+  EXPECT_EQ(plane("normal: [0, 0, 2]\ndistance: 1\n"),
+            file("plane.yaml") + ":1: key `normal`: found length 2.000000, expected a unit vector");
+  EXPECT_THAT(plane("normal: [0, 0, 1]\ndistance: far\n"),
+              HasSubstr(":2: key `distance`: found \"far\", expected a finite number"));
+  EXPECT_THAT(plane("normal: [0, 1]\ndistance: 1\n"), HasSubstr("found 2 numbers, expected 3"));
+}
+
+TEST_F(EurocReader, NamesAMissingPictureAndItsLine) {
+  std::filesystem::remove(folder.path() / "mav0/cam0/data/2.png");
+  EXPECT_EQ(error(),
+            file("mav0/cam0/data.csv") +
+                ":4: found the name of a missing picture, expected the file " +
+                file("mav0/cam0/data/2.png"));
+}
+
+TEST_F(EurocReader, NamesMissingFiles) {
+  std::filesystem::remove(folder.path() / "mav0/cam0/data.csv");
+  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1, 2, 3));  // by the pictures' names
+  folder.write("mav0/cam0/data/cat7.png", cv::Mat(48, 64, CV_8UC1));
+  EXPECT_THAT(error(), HasSubstr("cat7.png: found another name, expected a time stamp"));
+  std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
+  EXPECT_EQ(error(), file("mav0/cam0/data.csv") + ": no such file");
+  std::filesystem::remove(folder.path() / "mav0/cam0/sensor.yaml");
+  EXPECT_THAT(error(), HasSubstr(": no such file"));
+  EXPECT_EQ(error_of([] { open_recording("nowhere"); }), "nowhere: no such file or folder");
+}
+
+TEST_F(EurocReader, NamesBackwardTimesOfPicturesAndSamples) {
+  folder.write("mav0/imu0/data.csv", "20,0,0,0\n30,0,0,0\n25,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("imu0/data.csv:3: found time stamp 25, earlier than"));
+  folder.write("mav0/cam0/data.csv", "20,0.png\n20,1.png\n");
+  EXPECT_THAT(error(), HasSubstr("cam0/data.csv:2: found time stamp 20, a repetition"));
+}
+
+TEST_F(EurocReader, NamesBadTruth) {
+  write_truth("1403636579000000001,1,2,3,0.9,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found a quaternion of norm 0.9"));
+  write_truth("1403636579000000001,1,2,nan,1,0,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found \"nan\", expected a finite number"));
+  write_truth("1403636579000000001,1,2,3,1,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
+}
+
+TEST_F(EurocReader, NamesAPictureOfAnotherSize) {
+  folder.write("mav0/cam0/data/0.png", cv::Mat(40, 64, CV_8UC1, cv::Scalar(0)));
+  EXPECT_EQ(error(),
+            file("mav0/cam0/data/0.png") +
+                ": found a picture of 64x40, expected the calibrated resolution 64x48");
+}
+
+TEST_F(EurocReader, NamesAGyroscopeBiasOfTwoNumbers) {
+  folder.write("mav0/imu0/sensor.yaml", std::string(kTbsImu) + "gyroscope_bias: [0.1, 0.2]\n");
+  EXPECT_THAT(error(),
+              HasSubstr("sensor.yaml:2: key `gyroscope_bias`: found 2 numbers, expected 3"));
+}
+
+TEST_F(EurocReader, ReadsHowSureTheBiasIs) {
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.01);
+  folder.write("mav0/imu0/sensor.yaml", std::string(kTbsImu) + "gyroscope_bias_sigma: 0.002\n");
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.002);
+  for (const char* bad : {"0", "-0.01", "small", "nan", "[0.1, 0.1, 0.1]"}) {
+    folder.write("mav0/imu0/sensor.yaml",
+                 std::string(kTbsImu) + "gyroscope_bias_sigma: " + bad + "\n");
+    EXPECT_THAT(error(), HasSubstr("sensor.yaml:2: key `gyroscope_bias_sigma`: found")) << bad;
+    EXPECT_THAT(error(), HasSubstr("expected a positive number in rad/s")) << bad;
+  }
+}
+
+/// Textured, so that every part of the file carries picture.
+cv::Mat noise() {
+  cv::Mat picture(48, 64, CV_8UC3);
+  cv::RNG(7).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  return picture;
+}
+
+class CutPictures : public EurocReader, public testing::WithParamInterface<const char*> {};
+
+TEST_P(CutPictures, AreErrorsAndNeverHalfPictures) {
+  const std::string name = std::string("mav0/cam0/data/p") + GetParam();
+  folder.write("mav0/cam0/data.csv", "10,0.png\n20,p" + std::string(GetParam()) + "\n");
+  folder.write(name, noise());
+  EXPECT_EQ(open()->pictures->bgr(1).size(), cv::Size(64, 48));
+  for (const double part : {0.0, 0.1, 0.5, 0.9, 0.995}) {
+    folder.write(name, noise());
+    folder.cut(name, part);
+    const auto recording = open();
+    testing::internal::CaptureStderr();
+    EXPECT_THAT(error_of([&] { recording->pictures->bgr(1); }),
+                testing::StartsWith(file(name.c_str()) + ": found"))
+        << part;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats,
+                         CutPictures,
+                         testing::Values(".png", ".jpg", ".ppm", ".bmp", ".webp"));
+
+TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
+  folder.write("mav0/cam0/data.csv", "10,0.jpg\n");
+  folder.write("mav0/cam0/data/0.jpg", noise());
+  folder.write("mav0/cam0/data/0.jpg", folder.read("mav0/cam0/data/0.jpg") + "trailer");
+  EXPECT_EQ(open()->pictures->bgr(0).size(), cv::Size(64, 48));
+}
+
+TEST_F(EurocReader, UsesTracksOnlyWhenAskedWherePicturesExist) {
+  folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
+  EXPECT_TRUE(open()->tracks.empty());
+  OpenOptions options;
+  options.tracks = folder.path() / "tracks.csv";
+  const auto recording = open_recording(folder.path(), options);
+  EXPECT_EQ(recording->tracks.size(), 1U);
+  EXPECT_EQ(recording->layout, Layout::euroc);
+  EXPECT_TRUE(recording->pictures);
+  // The file itself stands for its folder with these tracks.
+  const auto by_file = open_recording(folder.path() / "tracks.csv");
+  EXPECT_EQ(by_file->tracks.size(), 1U);
+  EXPECT_TRUE(by_file->pictures);
+  EXPECT_EQ(by_file->name, recording->name);
+}
+
+TEST_F(EurocReader, TakesTracksWhereThereAreNoPictures) {
+  folder.write("tracks.csv", "frame,track,x,y\n3,1,2,3\n0,5,1.5,2\n0,1,2.25,3\n");
+  std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
+  const auto recording = open();
+  EXPECT_EQ(recording->layout, Layout::tracks);
+  EXPECT_EQ(recording->pictures, nullptr);
+  ASSERT_EQ(recording->tracks.size(), 3U);
+  EXPECT_EQ(recording->tracks[0].track, 1);
+  EXPECT_EQ(recording->tracks[0].raw_px, Eigen::Vector2d(2.25, 3));
+  EXPECT_EQ(recording->tracks[2].frame, 3);
+  EXPECT_THAT(recording->notes, Contains("no pictures: tracks are drawn on a plain background"));
+}
+
+TEST_F(EurocReader, NamesBadTracks) {
+  std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
+  const auto tracks = [&](const char* rows) {
+    folder.write("tracks.csv", std::string("frame,track,x,y\n") + rows);
+    return error();
+  };
+  const std::string name = file("tracks.csv");
+  EXPECT_EQ(tracks("0,1,2,3\n4,1,2,3\n"),
+            name + ":3: found frame 4, expected 0 to 3, the frames of the recording");
+  EXPECT_THAT(tracks("-1,1,2,3\n"), HasSubstr(":2: found frame -1, expected 0 to 3"));
+  EXPECT_EQ(
+      tracks("0,1,2,3\n0,2,2,3\n0,1,5,5\n"),
+      name + ":4: found track 1 a second time in frame 0, expected one row a frame and track");
+  EXPECT_THAT(tracks("0,1,2,nan\n"), HasSubstr(":2: found \"nan\", expected a finite number"));
+  EXPECT_THAT(tracks("0,a,2,3\n"), HasSubstr(":2: found \"a\", expected an integer"));
+  EXPECT_THAT(tracks("0,1,2\n"), HasSubstr(":2: found 3 columns, expected 4 (frame,track,x,y)"));
+}
+
+}  // namespace
+}  // namespace gpo

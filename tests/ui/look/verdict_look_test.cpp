@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/look/verdict_look.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using enum Readiness;
+
+TEST(VerdictLook, ShapesAndColorsDiffer) {
+  const ReadinessLook a = look_of(ready), b = look_of(weak), c = look_of(degenerate);
+  EXPECT_TRUE(a.sign != b.sign && b.sign != c.sign && a.sign != c.sign);
+  EXPECT_TRUE(a.rgb != b.rgb && b.rgb != c.rgb && a.rgb != c.rgb);
+}
+
+TEST(VerdictLook, TextSaysWhatIsKnownAndNoMore) {
+  EXPECT_EQ(verdict_text({weak, "", 0.31, 1.2, 0.4, 0.1}),
+            "weak, normal \u00b10.310\u00b0, rotation alone leaves 1.20 px where noise is 0.40 px, "
+            "moved 0.100 d");
+  EXPECT_EQ(verdict_text(Verdict()), "degenerate");
+}
+
+TEST(VerdictLook, RunsCountFramesOfTheWindow) {
+  std::vector<Verdict> growth(5);
+  growth[2].readiness = weak;
+  growth[3].readiness = growth[4].readiness = ready;
+  EXPECT_THAT(verdict_runs(growth),
+              testing::ElementsAre(
+                  VerdictRun{1, 2, degenerate}, VerdictRun{3, 3, weak}, VerdictRun{4, 5, ready}));
+  EXPECT_TRUE(verdict_runs({}).empty());
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,106 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/facts/curve_facts.h"
+
+#include "engine/experiment/row.h"
+#include "tests/ui/made_inspection.h"
+#include "ui/workbench/actions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// A state with a window of 30 frames, two methods compared, and results at these lengths.
+WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& options = {}) {
+  const Inspection made = made_inspection(options);
+  WorkbenchState state;
+  state.settings = made.settings;
+  adopt(state, made.recording);
+  state.compared = {"gpo", "ba"};
+  SurveyResults results;
+  for (const int length : lengths)
+    for (const char* key : {"gpo", "ba"}) {
+      auto one = std::make_shared<Inspection>(made);
+      one->settings = apply(parse_configuration(key), state.settings);
+      one->settings.frames = length;
+      if (one->evaluation) one->evaluation->pne_deg = 10.0 / length;
+      results.push_back({one->settings, one, ""});
+    }
+  state.surveyed = std::make_shared<const SurveyResults>(results);
+  return state;
+}
+
+std::vector<std::string> titles(const Figure& figure) {
+  std::vector<std::string> titles;
+  for (const Chart& chart : figure.charts) titles.push_back(chart.y_label);
+  return titles;
+}
+
+TEST(CurveFacts, ErrorsOverTheLengthsThatAreComputed) {
+  const CurveFacts facts = curve_facts(state_with({30, 25}));
+  EXPECT_THAT(titles(facts.figure), ElementsAre("ATE [mm]", "PNE [deg]", "PDE [mm]"));
+  const Curve& gpo = facts.figure.charts[1].curves[0];
+  EXPECT_EQ(gpo.name, "GPO");
+  EXPECT_EQ(gpo.rgb, color_of(parse_configuration("gpo")));
+  EXPECT_THAT(gpo.x, ElementsAre(25, 30));
+  EXPECT_NEAR(gpo.y[0], 10.0 / 25, 1e-12);
+  EXPECT_EQ(facts.done, 4);
+  EXPECT_EQ(facts.of, 12);  // 5, 10, ..., 30 frames of two methods
+  EXPECT_EQ(facts.note, "");
+}
+
+TEST(CurveFacts, AllThatIsWantedIsCounted) {
+  WorkbenchState state = state_with({});
+  state.panes.drawer = Drawer::curves;
+  EXPECT_EQ(static_cast<std::size_t>(curve_facts(state).of), wanted_inspections(state).size());
+}
+
+TEST(CurveFacts, HiddenCurvesAreNamedButNotDrawn) {
+  WorkbenchState state = state_with({30, 25});
+  run_line(state, "curve gpo off");
+  const CurveFacts facts = curve_facts(state);
+  EXPECT_THAT(facts.configurations, SizeIs(2));
+  ASSERT_THAT(facts.figure.charts[0].curves, SizeIs(1));
+  EXPECT_EQ(facts.figure.charts[0].curves[0].name, "BA");
+  run_line(state, "curve ba off");
+  EXPECT_THAT(curve_facts(state).figure.charts, IsEmpty());
+}
+
+TEST(CurveFacts, WithoutTruthTheyShowWhatNeedsNone) {
+  const MadeOptions blind{.truth = false, .normal_sigma_deg = 0.3};
+  const CurveFacts facts = curve_facts(state_with({30, 25}, blind));
+  EXPECT_THAT(titles(facts.figure), ElementsAre("RMS [px]", "\u03c3 [deg]"));
+  EXPECT_THAT(facts.figure.charts[1].curves[0].y, ElementsAre(0.3, 0.3));
+  EXPECT_THAT(facts.note, HasSubstr("need ground truth"));
+}
+
+TEST(CurveFacts, AFileTakesTheirPlaceUntilItIsClosed) {
+  WorkbenchState state = state_with({30});
+  Settings settings;
+  std::vector<Row> rows;
+  for (const double pne : {0.2, 0.4, 0.9}) {
+    settings.frames = 10;
+    rows.push_back(refused_row("desk", parse_configuration("pba"), settings, ""));
+    rows.back().status = "ok";
+    rows.back().pne_deg = pne;
+    settings.start += 10;
+  }
+  state.experiment = std::make_shared<const std::vector<Row>>(rows);
+  KeptCurveFacts kept;
+  const CurveFacts& facts = kept.of(state);
+  ASSERT_THAT(facts.configurations, SizeIs(1));
+  EXPECT_EQ(facts.of, 0);
+  EXPECT_DOUBLE_EQ(facts.figure.charts[1].curves[0].y[0], 0.4);  // the median
+  run_line(state, "close-results");
+  EXPECT_THAT(kept.of(state).configurations, SizeIs(2));
+}
+
+}  // namespace
+}  // namespace gpo

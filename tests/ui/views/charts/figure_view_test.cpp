@@ -1,0 +1,225 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/figure_view.h"
+
+#include "tests/ui/gl_test.h"
+#include "ui/look/palette.h"
+#include "ui/views/charts/figure_plots.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
+#include <vtkNew.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLUtilities.h>
+
+namespace gpo {
+namespace {
+
+using ::testing::HasSubstr;
+
+class FigureView : public DrawingTest {};
+
+constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442;
+const cv::Size kSmall(500, 480);
+
+std::filesystem::path kept(const std::string& name) {
+  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
+  return std::filesystem::path(GPO_TEST_OUTPUT_DIR) / name;
+}
+
+/// A method whose error falls with the window's length.
+Curve falling(const std::string& name, std::uint32_t rgb, double level) {
+  Curve curve{name, rgb, false, {}, {}, {}, {}};
+  for (int length = 5; length <= 60; length += 5) {
+    const double median = level * (1 + 20.0 / length) * (1 + 0.1 * std::sin(length + level));
+    curve.x.push_back(length);
+    curve.y.push_back(median);
+    curve.lower.push_back(0.7 * median);
+    curve.upper.push_back(1.4 * median);
+  }
+  return curve;
+}
+
+Figure paper_figure() {
+  Figure figure{"window-length", "desk: median and quartiles over 12 windows", {}};
+  const std::vector<std::pair<std::string, std::uint32_t>> methods = {{"GPO", kGreen},
+                                                                      {"PnP", 0xE69F00},
+                                                                      {"DBSCAN", kYellow},
+                                                                      {"BA", kVermilion},
+                                                                      {"PnP + BA", 0xCC79A7},
+                                                                      {"PBA", 0x8B5A2B},
+                                                                      {"FPBA", 0x999999},
+                                                                      {"closed form", 0x56B4E9},
+                                                                      {"GPO joint", 0x0072B2}};
+  const std::array<std::pair<const char*, const char*>, 3> metrics = {
+      {{"ATE", "ATE [mm]"}, {"PNE", "PNE [°]"}, {"PDE", "PDE [mm]"}}};
+  for (const auto& [title, label] : metrics) {
+    Chart chart{title, "window length [frames]", label, true, {}};
+    double level = std::string(title) == "PNE" ? 0.05 : 1.3;
+    for (const auto& [name, rgb] : methods)
+      chart.curves.push_back(falling(name, rgb, level *= 1.5));
+    if (std::string(title) == "PNE") {
+      Curve bound = falling("bound (Cramér-Rao)", 0x333333, 0.01);
+      bound.dotted = true;
+      bound.lower.clear();
+      bound.upper.clear();
+      chart.curves.push_back(bound);
+    }
+    figure.charts.push_back(chart);
+  }
+  return figure;
+}
+
+/// One chart, linear, from (0, 0): every value of y is at a place that is known.
+Figure small_figure(std::vector<double> y, bool band = false, bool dotted = false) {
+  Curve curve{"GPO", kGreen, dotted, {}, y, {}, {}};
+  for (std::size_t i = 0; i < y.size(); ++i) curve.x.push_back(static_cast<double>(i));
+  if (band)
+    for (const double value : y) {
+      curve.lower.push_back(0.5 * value);
+      curve.upper.push_back(1.5 * value);
+    }
+  return {"small", "", {{"chart", "x [-]", "y [-]", false, {curve}}}};
+}
+
+/// Anti-aliased curves are thin.
+int colored(const cv::Mat& picture, std::uint32_t rgb) { return count_pixels(picture, rgb, 12); }
+
+/// Within the axes of a figure with one chart, above the legend.
+cv::Mat plot_area(const cv::Mat& picture) {
+  return picture(cv::Rect(93, 48, picture.cols - 93 - 20, picture.rows - 48 - 100));
+}
+
+/// Of the method's green in each of `columns` equal parts of the plot.
+std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
+  std::vector<int> pixels;
+  const cv::Mat area = plot_area(picture);
+  for (int i = 0; i < columns; ++i)
+    pixels.push_back(
+        colored(area.colRange(i * area.cols / columns, (i + 1) * area.cols / columns), kGreen));
+  return pixels;
+}
+
+TEST_F(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
+  const Figure figure = paper_figure();
+  const cv::Mat picture = draw_figure(figure, {1500, 480});
+  cv::imwrite(kept("figure.png").string(), picture);
+  ASSERT_EQ(picture.size(), cv::Size(1500, 480));
+  EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
+  for (int chart = 0; chart < 3; ++chart)
+    for (const CurveStyle& style : curve_styles(figure)) {
+      const cv::Mat column = picture(cv::Rect(500 * chart, 40, 500, 340));
+      if (style.name.starts_with("bound") && chart != 1) continue;
+      EXPECT_GT(colored(column, style.rgb), 30) << style.name << " in chart " << chart;
+    }
+}
+
+TEST_F(FigureView, SameFigureGivesTheSameBytes) {
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  const Figure figure = paper_figure();
+  EXPECT_TRUE(same_bytes(draw_figure(figure, {900, 400}), draw_figure(figure, {900, 400})));
+  EXPECT_EQ(figure_svg(figure, {900, 400}), figure_svg(figure, {900, 400}));
+}
+
+TEST_F(FigureView, BandLiesBetweenTheQuartiles) {
+  const cv::Mat picture = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
+  cv::imwrite(kept("figure_band.png").string(), picture);
+  const cv::Mat area = plot_area(picture);
+  // From 0 to 3.15 up the plot; between two points, beside the grid.
+  const int column = area.cols / 2 + 18;
+  const auto at = [&](double y) {
+    const int row = static_cast<int>(std::lround(area.rows * (1 - y / 3.15)));
+    return area.at<cv::Vec3b>(std::clamp(row, 0, area.rows - 1), column);
+  };
+  const auto tinted = [](const cv::Vec3b& bgr) { return bgr[1] > bgr[2] + 20; };
+  EXPECT_TRUE(tinted(at(1.3)));
+  EXPECT_TRUE(tinted(at(2.7)));
+  EXPECT_FALSE(tinted(at(0.7)));
+  EXPECT_FALSE(tinted(at(3.12)));
+}
+
+TEST_F(FigureView, NanLeavesAGap) {
+  const double nan = std::nan("");
+  const cv::Mat picture =
+      draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
+  cv::imwrite(kept("figure_gap.png").string(), picture);
+  const std::vector<int> green = green_by_column(picture, 11);
+  EXPECT_GT(green[1], 20);
+  EXPECT_EQ(green[5], 0);
+  EXPECT_GT(green[9], 20);
+  const cv::Mat area = plot_area(picture);
+  const cv::Mat middle = area.colRange(5 * area.cols / 11, 6 * area.cols / 11);
+  EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
+}
+
+TEST_F(FigureView, OnePointBetweenGapsIsDrawn) {
+  const double nan = std::nan("");
+  const cv::Mat picture = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
+  cv::imwrite(kept("figure_points.png").string(), picture);
+  EXPECT_GT(green_by_column(picture, 5)[2], 20);
+}
+
+TEST_F(FigureView, BoundIsDotted) {
+  const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
+  const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
+  cv::imwrite(kept("figure_bound.png").string(), dotted);
+  const int dots = colored(plot_area(dotted), kGreen);
+  EXPECT_GT(dots, 30);
+  EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
+}
+
+TEST_F(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
+  Figure figure = small_figure({1, 0, -1, 10, 100});
+  figure.charts[0].logarithmic = true;
+  const cv::Mat picture = draw_figure(figure, kSmall);
+  EXPECT_GT(colored(plot_area(picture), kGreen), 30);
+}
+
+TEST_F(FigureView, EmptyFiguresSaySo) {
+  Figure nothing{"none", "a title", {}};
+  cv::imwrite(kept("figure_none.png").string(), draw_figure(nothing, kSmall));
+  const Figure no_values = small_figure({std::nan(""), std::nan("")});
+  const cv::Mat said = draw_figure(no_values, kSmall);
+  cv::imwrite(kept("figure_no_values.png").string(), said);
+  const cv::Mat middle = plot_area(said)(cv::Rect(100, 100, 180, 130));
+  EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
+  figure_svg(nothing, kSmall);
+  figure_svg(no_values, kSmall);
+}
+
+TEST_F(FigureView, SvgParsesAndNamesWhatItShows) {
+  const Figure figure = paper_figure();
+  const std::string svg = figure_svg(figure, {1500, 480});
+  std::ofstream(kept("figure.svg")) << svg;
+  const vtkSmartPointer<vtkXMLDataElement> root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromString(svg.c_str()));
+  ASSERT_NE(root, nullptr);
+  EXPECT_STREQ(root->GetName(), "svg");
+  EXPECT_THAT(root->FindNestedElementWithName("title")->GetCharacterData(),
+              HasSubstr(figure.title));
+  const std::string text = root->FindNestedElementWithName("desc")->GetCharacterData();
+  for (const Chart& chart : figure.charts) {
+    EXPECT_THAT(text, HasSubstr(chart.title));
+    EXPECT_THAT(text, HasSubstr(chart.y_label));
+    for (const Curve& curve : chart.curves) EXPECT_THAT(text, HasSubstr(curve.name));
+  }
+  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 1500 480\""));
+}
+
+TEST(CurveStyles, DifferWithoutTheirColors) {
+  Figure figure = paper_figure();
+  std::vector<std::tuple<Dash, int, bool>> seen;
+  for (const CurveStyle& style : curve_styles(figure)) {
+    EXPECT_EQ(std::ranges::count(seen, std::tuple(style.dash, style.marker, style.hollow)), 0)
+        << style.name;
+    seen.emplace_back(style.dash, style.marker, style.hollow);
+  }
+  EXPECT_EQ(seen.size(), 10U);  // nine methods and the bound
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,62 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/residual_charts.h"
+
+#include "engine/inspection/residuals.h"
+#include "tests/ui/made_inspection.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+/// Of a step curve: every bin has two points.
+double sum_of_bins(const Curve& curve) {
+  return std::accumulate(curve.y.begin(), curve.y.end(), 0.0) / 2;
+}
+
+TEST(ResidualCharts, HistogramHoldsAllResidualsOfTheWindowAndOfTheFrame) {
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  const WindowResiduals residuals = window_residuals(inspection);
+  const int start = inspection.window->start;
+  const Chart chart = residual_histogram(residuals, inspection, start + 9);
+  ASSERT_EQ(chart.curves.size(), 2U);
+  for (const Curve& curve : chart.curves) {
+    EXPECT_NEAR(sum_of_bins(curve), 100, 1e-9) << curve.name;
+    EXPECT_EQ(curve.upper, curve.y);
+  }
+  EXPECT_NE(chart.curves[1].name.find(std::to_string(start + 9)), std::string::npos);
+  EXPECT_NE(chart.curves[1].name.find(std::to_string(residuals[9].size())), std::string::npos);
+  EXPECT_EQ(residual_histogram(residuals, inspection, start).curves.size(), 1U)
+      << "the reference frame predicts the others";
+  EXPECT_EQ(residual_histogram(residuals, inspection, start - 1).curves.size(), 1U);
+}
+
+TEST(ResidualCharts, RmsIsThatOfTheEngineAndTheTrackIsItsOwn) {
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  const WindowResiduals residuals = window_residuals(inspection);
+  const TrackLife track = track_life(inspection, 3);
+  const Chart chart = rms_chart(residuals, inspection, &track);
+  ASSERT_EQ(chart.curves.size(), 2U);
+  const std::vector<double> rms = frame_rms_px(inspection);
+  ASSERT_EQ(chart.curves[0].y.size(), rms.size());
+  for (std::size_t i = 0; i < rms.size(); ++i)
+    EXPECT_DOUBLE_EQ(chart.curves[0].y[i], rms[i]) << "frame " << i;
+  EXPECT_EQ(chart.curves[0].x.front(), inspection.window->start);
+  EXPECT_EQ(chart.curves[1].x.size(), track.frames.size());
+  EXPECT_EQ(rms_chart(residuals, inspection, nullptr).curves.size(), 1U);
+}
+
+TEST(ResidualCharts, AreEmptyWithoutAResult) {
+  const Inspection inspection = made_inspection({.ok = false});
+  const WindowResiduals residuals = window_residuals(inspection);
+  EXPECT_TRUE(residuals.empty());
+  EXPECT_TRUE(residual_histogram(residuals, inspection, 10).curves.empty());
+  EXPECT_TRUE(rms_chart(residuals, inspection, nullptr).curves.empty());
+}
+
+}  // namespace
+}  // namespace gpo

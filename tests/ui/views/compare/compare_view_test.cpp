@@ -1,0 +1,134 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/compare/compare_view.h"
+
+#include "engine/experiment/configuration.h"
+#include "tests/ui/gl_test.h"
+#include "tests/ui/made_inspection.h"
+#include "ui/look/palette.h"
+#include "ui/views/snapshot.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+class CompareView : public DrawingTest {};
+
+constexpr int kFrame = 24;
+using Inspections = std::vector<std::shared_ptr<const Inspection>>;
+
+std::shared_ptr<const Inspection> made(const MadeOptions& options, const Settings& other = {}) {
+  auto inspection = std::make_shared<Inspection>(made_inspection(options));
+  inspection->settings.ransac = other.ransac;
+  inspection->settings.rotations = other.rotations;
+  if (inspection->evaluation) {
+    inspection->evaluation->pne_deg = options.estimate_error;
+    inspection->evaluation->ate_m = 0.0042;
+    inspection->evaluation->pde_m = 0.0021;
+    inspection->evaluation->pne_bound_deg = 0.021;
+  }
+  return inspection;
+}
+
+/// As it is, wrong by 3 degrees, failed.
+Inspections three() {
+  return {made({}),
+          made({.estimate_error = 3}, {.ransac = false}),
+          made({.ok = false}, {.rotations = RotationSource::averaging})};
+}
+
+/// The part of a picture of `three()` that belongs to one of them.
+cv::Mat column(const cv::Mat& picture, int index) {
+  const int width = picture.cols / 3;
+  return picture.colRange(index * width, (index + 1) * width);
+}
+
+TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
+  const Inspections inspections = three();
+  const cv::Mat picture = snapshot_compare(inspections, kFrame);
+  keep("compare", picture);
+  ASSERT_EQ(picture.size(), default_compare_size(inspections));
+  for (int i = 0; i < 3; ++i) {
+    const Settings& settings = inspections[i]->settings;
+    const Configuration configuration{settings.method, settings.ransac, settings.rotations};
+    const cv::Mat heading = column(picture, i).rowRange(38, 92);
+    EXPECT_GT(count_pixels(heading, color_of(configuration)), 150) << "column " << i;
+    const bool ok = inspections[i]->initialization->ok;
+    const cv::Mat shown = column(picture, i).rowRange(92, picture.rows - 58);
+    EXPECT_EQ(count_pixels(shown, palette::kCubeBase) > 200, ok) << "column " << i;
+    EXPECT_EQ(count_pixels(shown, palette::kWarning) > 50, !ok) << "column " << i;
+  }
+}
+
+TEST_F(CompareView, AllColumnsShowTheSamePartOfThePicture) {
+  const cv::Mat picture = snapshot_compare(three(), kFrame);
+  const int width = picture.cols / 3;
+  // The upper left corner of the floor, without a cube.
+  const cv::Rect corner(20, 100, 60, 60);
+  for (int i = 1; i < 3; ++i)
+    EXPECT_TRUE(same_bytes(picture(corner), picture(corner + cv::Point(i * 492, 0))))
+        << "column " << i << " of " << width << " pixels";
+}
+
+TEST_F(CompareView, AMovedCubeChangesOnlyItsColumn) {
+  Inspections inspections = three();
+  const cv::Mat before = snapshot_compare(inspections, kFrame);
+  auto moved = std::make_shared<Inspection>(*inspections[0]);
+  // Within the true one, so that all columns still show the same part of the picture.
+  moved->cube->axes *= 0.8;
+  moved->cube->origin += 0.01 * moved->cube->axes.col(0);
+  inspections[0] = moved;
+  const cv::Mat after = snapshot_compare(inspections, kFrame);
+  EXPECT_FALSE(same_bytes(column(before, 0), column(after, 0)));
+  EXPECT_TRUE(same_bytes(column(before, 1), column(after, 1)));
+  EXPECT_TRUE(same_bytes(column(before, 2), column(after, 2)));
+}
+
+TEST_F(CompareView, MoreThanFourWrapIntoRows) {
+  Inspections seven;
+  for (int i = 0; i < 7; ++i) seven.push_back(made({.estimate_error = 0.4 * i}));
+  const cv::Size size = default_compare_size(seven);
+  EXPECT_EQ(size.width, 4 * 492 + 12);
+  EXPECT_EQ(size.height, default_compare_size({seven.data(), 4}).height * 2 - 38);
+  const cv::Mat picture = snapshot_compare(seven, kFrame);
+  keep("compare_seven", picture);
+  // The eighth place is empty.
+  EXPECT_EQ(count_pixels(picture(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)),
+                         palette::kPanel),
+            490 * 400);
+}
+
+/// As many as there will be methods, each with its verdict.
+TEST_F(CompareView, NineStandInThreeRows) {
+  Inspections nine;
+  for (int i = 0; i < 9; ++i)
+    nine.push_back(made({.ok = i != 8, .estimate_error = 0.4 * i, .normal_sigma_deg = 0.3}));
+  EXPECT_EQ(default_compare_size(nine).width, 3 * 492 + 12);
+  const cv::Mat picture = snapshot_compare(nine, kFrame);
+  keep("compare_nine", picture);
+  const cv::Mat first = picture(cv::Rect(12, 38, 480, 54));
+  const cv::Mat last = picture(cv::Rect(12 + 2 * 492, 38 + 2 * (picture.rows - 38) / 3, 480, 54));
+  EXPECT_GT(count_pixels(first, palette::kGood), 30);  // ready
+  EXPECT_GT(count_pixels(last, palette::kBad), 8);     // degenerate
+}
+
+TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {
+  keep("compare_blind",
+       snapshot_compare(Inspections{made({.pictures = false, .truth = false})}, kFrame));
+  keep("compare_outside", snapshot_compare(three(), 38));
+  keep("compare_failed",
+       snapshot_compare(Inspections{made({.ok = false, .truth = false})}, kFrame));
+  keep("compare_small", snapshot_compare(three(), kFrame, cv::Size(900, 330)));
+}
+
+TEST_F(CompareView, SameBytesAgain) {
+  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  EXPECT_TRUE(same_bytes(snapshot_compare(three(), kFrame), snapshot_compare(three(), kFrame)));
+}
+
+}  // namespace
+}  // namespace gpo

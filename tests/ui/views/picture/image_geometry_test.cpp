@@ -1,0 +1,172 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/picture/image_geometry.h"
+
+#include "tests/ui/made_inspection.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+const Camera kCamera{
+    640, 480, 500, 510, 322, 236, Distortion::radial_tangential, {-.3, .1, .001, -.002, .01}};
+const ScreenRect kRect{{100, 50}, {1280, 480}};
+
+/// OpenCV's own projection, raw pixels.
+std::vector<Vector2d> project_with_opencv(const Camera& camera,
+                                          const Pose& pose,
+                                          const std::vector<Vector3d>& points_w) {
+  cv::Mat R, rotation, translation, K;
+  const Eigen::Matrix3d R_cw = pose.R_wc.transpose();
+  const Vector3d t_cw = -R_cw * pose.p_wc;
+  cv::eigen2cv(R_cw, R);
+  cv::eigen2cv(t_cw, translation);
+  cv::eigen2cv(intrinsic_matrix(camera), K);
+  cv::Rodrigues(R, rotation);
+  std::vector<cv::Point3d> points;
+  for (const Vector3d& p : points_w) points.emplace_back(p.x(), p.y(), p.z());
+  std::vector<cv::Point2d> pixels;
+  if (camera.distortion == Distortion::equidistant) {
+    cv::fisheye::projectPoints(
+        points, pixels, rotation, translation, K, cv::Mat(camera.coefficients));
+  } else {
+    cv::projectPoints(points, rotation, translation, K, camera.coefficients, pixels);
+  }
+  std::vector<Vector2d> result;
+  for (const cv::Point2d& pixel : pixels) result.emplace_back(pixel.x, pixel.y);
+  return result;
+}
+
+void expect_cube_agrees_with_opencv(const Camera& camera) {
+  const Inspection inspection = made_inspection();
+  const auto corners = cube_corners(*inspection.cube, 0.3);
+  for (const Pose& pose : inspection.initialization->cameras) {
+    const CubePicture cube = cube_in_picture(camera, pose, corners);
+    ASSERT_EQ(cube.edges.size(), 12u);
+    for (const CubeEdge& edge : cube.edges) {
+      ASSERT_GT(edge.raw_px.size(), 10u);
+      // Ends and every point between.
+      std::vector<Vector3d> points;
+      const auto last = static_cast<double>(edge.raw_px.size() - 1);
+      for (std::size_t i = 0; i < edge.raw_px.size(); ++i)
+        points.push_back(corners[edge.corners[0]] +
+                         i / last * (corners[edge.corners[1]] - corners[edge.corners[0]]));
+      const auto expected = project_with_opencv(camera, pose, points);
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_LT((edge.raw_px[i] - expected[i]).norm(), 0.01);
+    }
+  }
+}
+
+TEST(ImageGeometry, CubeAgreesWithOpenCvThroughBrownsLens) {
+  expect_cube_agrees_with_opencv(kCamera);
+}
+
+TEST(ImageGeometry, CubeAgreesWithOpenCvThroughAFisheye) {
+  Camera camera = kCamera;
+  camera.distortion = Distortion::equidistant;
+  camera.coefficients = {-0.03, 0.01, -0.004, 0.001};
+  expect_cube_agrees_with_opencv(camera);
+}
+
+TEST(ImageGeometry, CubeSeenFromAboveHidesItsFarEdges) {
+  // Straight ahead and from above: the base's far edge and the two edges that rise from its ends.
+  const Inspection inspection = made_inspection({.distorted = false});
+  const CubePicture cube =
+      cube_in_picture(inspection.recording->camera, Pose(), cube_corners(*inspection.cube, 0.2));
+  int hidden = 0;
+  for (const CubeEdge& edge : cube.edges) hidden += edge.hidden;
+  EXPECT_EQ(hidden, 5);  // two faces are seen: top and front
+  for (const CubeFace& face : cube.faces) EXPECT_FALSE(face.base && face.facing);
+}
+
+TEST(ImageGeometry, CubeSeenAtItsCornerHidesThreeEdges) {
+  CubeAnchor anchor;
+  anchor.axes << 1, 0, 0, 0, -1, 0, 0, 0, 1;
+  Pose pose;  // from (4, 3, 2), looking at the origin
+  pose.p_wc = Vector3d(4, 3, 2);
+  const Vector3d z = -pose.p_wc.normalized(), x = z.cross(Vector3d::UnitZ()).normalized();
+  pose.R_wc << x, z.cross(x), z;
+  Camera camera = kCamera;
+  camera.distortion = Distortion::none;
+  const CubePicture cube = cube_in_picture(camera, pose, cube_corners(anchor, 1));
+  int hidden = 0;
+  for (const CubeEdge& edge : cube.edges) hidden += edge.hidden;
+  EXPECT_EQ(hidden, 3);
+}
+
+TEST(ImageGeometry, CubeBehindTheCameraIsNotDrawnAndOneBesideItIsCutOff) {
+  CubeAnchor anchor;
+  anchor.origin = Vector3d(0, 0, -5);
+  for (const CubeEdge& edge : cube_in_picture(kCamera, Pose(), cube_corners(anchor, 1)).edges)
+    EXPECT_TRUE(edge.raw_px.empty());
+  anchor.origin = Vector3d(0, 0.5, -0.5);  // reaches from behind to 0.5 in front
+  int drawn = 0;
+  for (const CubeEdge& edge : cube_in_picture(kCamera, Pose(), cube_corners(anchor, 1)).edges) {
+    drawn += !edge.raw_px.empty();
+    for (const Vector2d& pixel : edge.raw_px) EXPECT_TRUE(pixel.allFinite());
+  }
+  EXPECT_GT(drawn, 0);
+  EXPECT_LT(drawn, 12);
+}
+
+TEST(ImageGeometry, PictureFitsAndIsCentered) {
+  const PictureMapping mapping = map_picture(kCamera, kRect, {});
+  EXPECT_DOUBLE_EQ(mapping.scale, 1);
+  EXPECT_EQ(mapping.origin, Vector2d(100 + 320, 50));
+}
+
+TEST(ImageGeometry, CentersOfPixelsAreHalfAPixelIn) {
+  const PictureMapping mapping{{10, 20}, 4};
+  EXPECT_EQ(to_screen(mapping, {0, 0}), Vector2d(12, 22));
+  EXPECT_EQ(to_screen(mapping, {-0.5, -0.5}), Vector2d(10, 20));
+  EXPECT_LT((to_picture(mapping, to_screen(mapping, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(),
+            1e-12);
+}
+
+TEST(ImageGeometry, ZoomKeepsWhatIsUnderThePointer) {
+  PictureZoom zoom;
+  const Vector2d pointer(700, 300);
+  const Vector2d before = to_picture(map_picture(kCamera, kRect, zoom), pointer);
+  for (int i = 0; i < 5; ++i) zoom = zoom_about(zoom, kCamera, kRect, pointer, 1.3);
+  const PictureMapping mapping = map_picture(kCamera, kRect, zoom);
+  // The picture's corner is on a whole pixel of the screen.
+  EXPECT_LT((to_picture(mapping, pointer) - before).norm(), 1 / mapping.scale);
+  EXPECT_NEAR(zoom.factor, std::pow(1.3, 5), 1e-9);
+  EXPECT_EQ(zoom_about(zoom, kCamera, kRect, pointer, 1e-9).factor, 1);
+}
+
+TEST(ImageGeometry, PanFollowsThePointer) {
+  PictureZoom zoom{4, {0.5, 0.5}};
+  const Vector2d before = to_screen(map_picture(kCamera, kRect, zoom), {320, 240});
+  zoom = pan(zoom, kCamera, kRect, {30, -12});
+  const Vector2d after = to_screen(map_picture(kCamera, kRect, zoom), {320, 240});
+  EXPECT_EQ(after - before, Vector2d(30, -12));
+}
+
+TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {
+  const Inspection inspection = made_inspection();
+  for (const int frame : {1, 12, 29}) {
+    const auto residuals = residual_vectors(inspection, frame);
+    ASSERT_GT(residuals.size(), 50u);
+    double sum = 0;
+    for (const ResidualVector& r : residuals) sum += (r.predicted_px - r.observed_px).squaredNorm();
+    // Two coordinates, noise 0.4 px in this frame and in the reference frame.
+    EXPECT_NEAR(std::sqrt(sum / (2.0 * residuals.size())), 0.4 * std::sqrt(2), 0.15);
+  }
+}
+
+TEST(ImageGeometry, ResidualsOfAFailedInitializationAreNone) {
+  EXPECT_TRUE(residual_vectors(made_inspection({.ok = false}), 3).empty());
+}
+
+}  // namespace
+}  // namespace gpo

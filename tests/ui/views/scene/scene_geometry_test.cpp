@@ -1,0 +1,114 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/scene/scene_geometry.h"
+
+#include "engine/truth/truth.h"
+#include "tests/ui/made_inspection.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+void expect_truth_on_the_estimate(const Inspection& inspection) {
+  const auto T_est_true = estimate_from_truth(inspection);
+  ASSERT_TRUE(T_est_true);
+  for (int i = 0; i < inspection.window->frame_count(); ++i) {
+    const auto pose = true_camera(inspection, *T_est_true, i);
+    ASSERT_TRUE(pose);
+    EXPECT_LT((pose->p_wc - inspection.initialization->cameras[i].p_wc).norm(), 1e-9);
+    EXPECT_LT((pose->R_wc - inspection.initialization->cameras[i].R_wc).norm(), 1e-9);
+  }
+}
+
+TEST(SceneGeometry, TruthMeetsAPerfectEstimateByTheAlignedPaths) {
+  expect_truth_on_the_estimate(made_inspection());
+}
+
+TEST(SceneGeometry, TruthMeetsAPerfectEstimateByTheReferenceCameraWhereThePathIsALine) {
+  Inspection inspection = made_inspection();
+  inspection.evaluation->alignment = Alignment::line;
+  inspection.evaluation->T_true_est->R_ab.setIdentity();
+  expect_truth_on_the_estimate(inspection);
+}
+
+TEST(SceneGeometry, TruthMeetsAPerfectEstimateByThePlanesDistanceWhereThePathIsAPoint) {
+  Inspection inspection = made_inspection();
+  inspection.evaluation = Evaluation{};
+  inspection.evaluation->alignment = Alignment::point;
+  expect_truth_on_the_estimate(inspection);
+}
+
+TEST(SceneGeometry, TruthWithoutAnyScaleIsNotDrawn) {
+  Inspection inspection = made_inspection();
+  auto truth = std::make_shared<WindowTruth>(*inspection.truth);
+  truth->plane.reset();
+  inspection.truth = truth;
+  inspection.evaluation.reset();
+  EXPECT_FALSE(estimate_from_truth(inspection));
+  EXPECT_FALSE(estimate_from_truth(made_inspection({.truth = false})));
+}
+
+TEST(SceneGeometry, TruePlanesBorderLiesOnTheEstimateOfAPerfectOne) {
+  const Inspection inspection = made_inspection();
+  const PlaneGrid grid = plane_grid(inspection, 0.2);
+  const auto border = true_plane_border(inspection, *estimate_from_truth(inspection), grid);
+  ASSERT_TRUE(border);
+  const Plane& plane = inspection.initialization->plane;
+  for (const Vector3d& corner : *border)
+    EXPECT_NEAR(plane.normal.dot(corner) + plane.distance, 0, 1e-9);
+}
+
+TEST(SceneGeometry, GridContainsTheCubeAndLiesOnThePlane) {
+  const Inspection inspection = made_inspection({.estimate_error = 4});
+  const PlaneGrid grid = plane_grid(inspection, 0.2);
+  const Plane& plane = inspection.initialization->plane;
+  EXPECT_NEAR(plane.normal.dot(grid.at(3, -2)) + plane.distance, 0, 1e-12);
+  EXPECT_NEAR(grid.x.dot(grid.y), 0, 1e-12);
+  for (const Vector3d& corner : cube_corners(*inspection.cube, 0.2)) {
+    const double i = grid.x.dot(corner - grid.origin) / grid.cell;
+    const double j = grid.y.dot(corner - grid.origin) / grid.cell;
+    EXPECT_TRUE(i > grid.low[0] && i < grid.high[0] && j > grid.low[1] && j < grid.high[1]);
+  }
+}
+
+TEST(SceneGeometry, FrustumsCornersAreThePicturesCorners) {
+  const Camera camera{640, 480, 500, 505, 322, 236, Distortion::none, {}};
+  const auto corners = frustum(camera, Pose(), 0.3);
+  EXPECT_LT((project_undistorted(camera, corners[1]) - Vector2d(-0.5, -0.5)).norm(), 1e-9);
+  EXPECT_LT((project_undistorted(camera, corners[3]) - Vector2d(639.5, 479.5)).norm(), 1e-9);
+  EXPECT_NEAR(corners[2].z(), 0.3, 1e-12);
+  EXPECT_LT(project_undistorted(camera, corners[5]).y(), -1);  // the mark is above the picture
+}
+
+TEST(SceneGeometry, DefaultViewShowsEverythingFromAboveThePlane) {
+  for (const MadeOptions& made :
+       {MadeOptions{}, MadeOptions{.truth = false}, MadeOptions{.ok = false}}) {
+    const Inspection inspection = made_inspection(made);
+    const OrbitCamera camera = default_scene_camera(inspection, 0.2, 4.0 / 3);
+    for (const Vector3d& point : scene_extent(inspection, 0.2)) {
+      const auto pixel = view_pixel(camera, point, {960, 720});
+      ASSERT_TRUE(pixel);
+      EXPECT_TRUE(pixel->minCoeff() > 0 && pixel->x() < 960 && pixel->y() < 720);
+    }
+  }
+  const Inspection inspection = made_inspection();
+  const Plane& plane = inspection.initialization->plane;
+  const Vector3d at = eye(default_scene_camera(inspection, 0.2, 1));
+  EXPECT_GT(plane.normal.dot(at) + plane.distance, 0);
+}
+
+TEST(SceneGeometry, NiceLengthsAreOneTwoFive) {
+  EXPECT_DOUBLE_EQ(nice_length(0.07), 0.05);
+  EXPECT_DOUBLE_EQ(nice_length(1), 1);
+  EXPECT_DOUBLE_EQ(nice_length(4.9), 2);
+  EXPECT_DOUBLE_EQ(nice_length(999), 500);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,43 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/look/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+std::string number_text(double value, int most) {
+  const double size = std::abs(value);
+  const int behind = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f}", value, std::min(behind, most));
+}
+
+std::string length_text(double meters) {
+  if (std::abs(meters) >= 1) return number_text(meters, 3) + " m";
+  return number_text(meters * 1e3, 2) + " mm";
+}
+
+std::string angle_text(double degrees) { return number_text(degrees, 3) + "\u00b0"; }
+
+std::string milliseconds_text(double milliseconds) {
+  return number_text(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
+}
+
+std::string difference_text(double value, double reference, std::string (*text)(double)) {
+  const double difference = value - reference;
+  const std::string size = text(std::abs(difference));
+  if (size.find_first_of("123456789") == std::string::npos) return "\u00b10";
+  return (difference < 0 ? "\u2212" : "+") + size;
+}
+
+std::string uncertain_text(double value, double sigma) {
+  constexpr int kMost = 6;
+  const int behind =
+      sigma > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost) : kMost;
+  return fmt::format("{:.{}f} \u00b1{:.{}f}", value, behind, sigma, behind);
+}
+
+}  // namespace gpo

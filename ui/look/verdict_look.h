@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/initializers/common/verdict.h"
+#include "ui/views/overlay/overlay.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// How a verdict looks wherever it is shown: by word, shape and color, never by color alone.
+struct ReadinessLook {
+  Sign sign = Sign::none;
+  std::uint32_t rgb = 0;
+};
+ReadinessLook look_of(Readiness readiness);
+
+/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.100 d": what
+/// is known of it.
+std::string verdict_text(const Verdict& verdict);
+
+/// Windows of consecutive lengths with the same verdict.
+struct VerdictRun {
+  int first, last;  ///< frames of the window at which the first and the last of them end
+  Readiness readiness;
+  bool operator==(const VerdictRun&) const = default;
+};
+
+/// Of the verdicts of windows of 2, 3, ... frames, which end at frames 1, 2, ...
+std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
+
+}  // namespace gpo

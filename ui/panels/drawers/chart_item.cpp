@@ -1,0 +1,36 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/drawers/chart_item.h"
+
+#include "ui/look/palette.h"
+#include "ui/panels/widgets.h"
+
+#include <algorithm>
+
+namespace gpo {
+
+ChartItem chart_item(const std::string& name,
+                     const Rectangle& place,
+                     Views& views,
+                     const Chart& chart,
+                     bool legend) {
+  ChartItem item;
+  if (place.width < 1 || place.height < 1) return item;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  item.to = draw_chart_view(
+      list, {{place.x, place.y}, {place.width, place.height}}, views.charts[name], chart, legend);
+  ImGui::SetCursorScreenPos({place.x, place.y});
+  ImGui::InvisibleButton(name.c_str(), {place.width, place.height});
+  item.held = ImGui::IsItemActive();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool over = item.to.inside({mouse.x, mouse.y});
+  if (!item.held && !(ImGui::IsItemHovered() && over)) return item;
+  item.hovered = std::clamp(item.to.x_value(mouse.x), item.to.x_low, item.to.x_high);
+  const std::string values = chart_values_at(chart, *item.hovered);
+  if (values.empty()) return item;
+  draw_chart_cursor(list, item.to, *item.hovered, palette::kTextDim);
+  show_tooltip(values);
+  return item;
+}
+
+}  // namespace gpo

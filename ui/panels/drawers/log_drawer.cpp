@@ -1,0 +1,35 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/panels/panes.h"
+#include "ui/panels/widgets.h"
+
+namespace gpo {
+namespace {
+
+std::uint32_t color_of(Severity severity) {
+  if (severity == Severity::error) return palette::kBad;
+  return severity == Severity::warning ? palette::kWarning : palette::kText;
+}
+
+}  // namespace
+
+void log_drawer(const PanelInput& input,
+                const Rectangle& place,
+                Views& /*views*/,
+                Commands& /*commands*/) {
+  if (input.state.log.empty()) return draw_empty(place, "No messages yet");
+  const float s = input.scale;
+  ImGui::SetCursorPos({12 * s, 6 * s});
+  ImGui::BeginChild("lines", {place.width - 12 * s, place.height - 6 * s});
+  for (const LogLine& line : input.state.log) {
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(line.severity)));
+    ImGui::TextUnformatted(line.text.c_str());
+    ImGui::PopStyleColor();
+  }
+  if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1);
+  ImGui::EndChild();
+}
+
+}  // namespace gpo

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/look/palette.h"
+#include "ui/panels/drawers/chart_item.h"
+#include "ui/panels/panes.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/tracks_in_view.h"
+
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+/// The one that the mouse rests on, wherever, else the one that was picked last.
+std::optional<TrackLife> focused_track(const PanelInput& input) {
+  const WorkbenchState& state = input.state;
+  const auto& focus = state.hover.track ? state.hover.track : state.selection.focus;
+  if (!focus) return std::nullopt;
+  const auto column = column_of(*input.inspection()->tracks, *focus);
+  if (!column) return std::nullopt;
+  return track_life(*input.inspection(), *column);
+}
+
+/// Computes them once an inspection.
+const WindowResiduals& update(Residuals& residuals,
+                              const std::shared_ptr<const Inspection>& inspection) {
+  if (residuals.of == inspection) return residuals.px;
+  residuals.of = inspection;
+  residuals.px = window_residuals(*inspection);
+  return residuals.px;
+}
+
+void draw_rms(const PanelInput& input,
+              const Rectangle& place,
+              const WindowResiduals& residuals,
+              Views& views,
+              Commands& commands) {
+  const auto track = focused_track(input);
+  const Chart chart = rms_chart(residuals, *input.inspection(), track ? &*track : nullptr);
+  const ChartItem item = chart_item("rms over frames", place, views, chart);
+  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, input.state.frame, palette::kAccent);
+  if (!item.held || !item.hovered) return;
+  const int frame = static_cast<int>(std::lround(*item.hovered));
+  if (frame != input.state.frame) push(commands, GoToFrame{frame});
+}
+
+}  // namespace
+
+void residuals_drawer(const PanelInput& input,
+                      const Rectangle& place,
+                      Views& views,
+                      Commands& commands) {
+  const Inspection* inspection = input.inspection();
+  if (inspection == nullptr)
+    return draw_empty(place, "Residuals appear when the window is initialized");
+  if (!inspection->initialization->ok)
+    return draw_empty(
+        place, "No plane and no poses, so no residuals: " + inspection->initialization->reason);
+  const WindowResiduals& residuals = update(views.residuals, input.state.inspection);
+  const float left = std::floor(0.4F * place.width);
+  chart_item("histogram of residuals",
+             {place.x, place.y, left, place.height},
+             views,
+             residual_histogram(residuals, *inspection, input.state.frame));
+  draw_rms(input,
+           {place.x + left, place.y, place.width - left, place.height},
+           residuals,
+           views,
+           commands);
+}
+
+}  // namespace gpo

@@ -1,0 +1,152 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/look/verdict_look.h"
+#include "ui/panels/facts/compare_facts.h"
+#include "ui/panels/panes.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/overlay/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+void header_cell(const char* title, const char* meaning) {
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::TextUnformatted(title);
+  ImGui::PopStyleColor();
+  tooltip(meaning);
+}
+
+float widest_name(const std::vector<ComparedRow>& rows) {
+  float widest = 0;
+  for (const ComparedRow& row : rows)
+    widest = std::max(widest, ImGui::CalcTextSize(title_of(row.configuration).c_str()).x);
+  return widest + 1.5F * ImGui::GetTextLineHeight();
+}
+
+void header(const std::vector<ComparedRow>& rows) {
+  ImGui::TableSetupScrollFreeze(1, 1);
+  ImGui::TableSetupColumn("method", ImGuiTableColumnFlags_WidthFixed, widest_name(rows));
+  ImGui::TableSetupColumn("status");
+  for (const ComparedColumn& column : compared_columns()) ImGui::TableSetupColumn(column.title);
+  // Not a row of headers: of those ImGui does not count the text when it chooses widths.
+  ImGui::TableNextRow();
+  ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(palette::kRaised));
+  header_cell("Method", "Click a row: makes it the current method");
+  header_cell("Status", "Whether it solved the window, and how fit the window is by its result");
+  for (const ComparedColumn& column : compared_columns()) header_cell(column.title, column.meaning);
+}
+
+void draw_name(const ComparedRow& row, bool current, float height, Commands& commands) {
+  ImGui::TableNextColumn();
+  const std::string label = "##" + key_of(row.configuration);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float line = ImGui::GetTextLineHeight();
+  if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns, {0, height}))
+    push(commands, ChangeSettings{row.settings});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({at.x, at.y + 2},
+                     {at.x + std::round(line * 0.3F), at.y + height - 2},
+                     imgui_color(color_of(row.configuration)),
+                     2);
+  const ImVec2 name(std::round(at.x + line * 0.7F), at.y);
+  list.AddText(name, imgui_color(palette::kText), title_of(row.configuration).c_str());
+  if (!current) return;
+  const ImFont* small = font(Font::small);
+  list.AddText(small,
+               small->FontSize,
+               {name.x, std::round(at.y + line)},
+               imgui_color(palette::kAccent),
+               "current");
+}
+
+/// The sign and word of the verdict, or what became of it instead.
+void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) {
+  ImGui::TableNextColumn();
+  ImGui::BeginGroup();
+  const bool failed = !row.reason.empty(), computing = row.numbers.empty() && !failed;
+  const std::uint32_t rgb = failed ? palette::kBad : computing ? palette::kAccent : palette::kGood;
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
+  ImGui::TextUnformatted(row.status.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PushFont(font(Font::small));
+  if (verdict) {
+    const ReadinessLook look = look_of(verdict->readiness);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float line = ImGui::GetTextLineHeight();
+    draw_sign(*ImGui::GetWindowDrawList(), look.sign, {at.x + line / 2, at.y + line / 2}, look.rgb);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + line * 1.2F);
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(look.rgb));
+    ImGui::TextUnformatted(to_string(verdict->readiness));
+    ImGui::PopStyleColor();
+  }
+  ImGui::PopFont();
+  ImGui::EndGroup();
+  tooltip(failed ? row.reason : verdict ? verdict_text(*verdict) : "");
+}
+
+/// Dim where it hardly differs; the more, the stronger in the color of better or worse.
+std::uint32_t color_of_difference(double worse) {
+  const double strength = 0.35 + 0.65 * std::abs(worse);
+  if (std::abs(worse) < 0.01) return palette::kTextDim;
+  return mixed_rgb(palette::kTextDim, worse > 0 ? palette::kBad : palette::kGood, strength);
+}
+
+void draw_number(const ComparedNumber& number) {
+  ImGui::TableNextColumn();
+  ImGui::BeginGroup();
+  ImGui::PushStyleColor(ImGuiCol_Text,
+                        imgui_color(number.why_not.empty() ? palette::kText : palette::kTextDim));
+  ImGui::TextUnformatted(number.text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PushFont(font(Font::small));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of_difference(number.worse)));
+  ImGui::TextUnformatted(number.difference.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  ImGui::EndGroup();
+  tooltip(number.why_not);
+}
+
+void draw_row(const ComparedRow& row, const Compared& one, bool current, Commands& commands) {
+  ImGui::TableNextRow();
+  const float height = ImGui::GetTextLineHeight() + font(Font::small)->FontSize + 2;
+  ImGui::PushID(key_of(row.configuration).c_str());
+  draw_name(row, current, height, commands);
+  draw_status(row, one.inspection ? one.inspection->initialization->verdict : std::nullopt);
+  for (const ComparedNumber& number : row.numbers) draw_number(number);
+  ImGui::PopID();
+}
+
+}  // namespace
+
+void table_drawer(const PanelInput& input,
+                  const Rectangle& place,
+                  Views& /*views*/,
+                  Commands& commands) {
+  if (!input.state.recording) return draw_empty(place, "Open a recording to compare methods on it");
+  const std::vector<Compared> results = compared_with_current(input.state);
+  const std::vector<ComparedRow> rows = compared_rows(results, input.timings);
+  const float s = input.scale;
+  ImGui::SetCursorPos({12 * s, 6 * s});
+  const auto flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX | ImGuiTableFlags_RowBg |
+                     ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX;
+  const int columns = static_cast<int>(compared_columns().size()) + 2;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {9 * s, 3 * s});
+  if (ImGui::BeginTable("compared", columns, flags, {place.width - 12 * s, place.height - 6 * s})) {
+    header(rows);
+    const Configuration current = configuration_of(input.state.settings);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      draw_row(rows[i], results[i], rows[i].configuration == current, commands);
+    ImGui::EndTable();
+  }
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace gpo

@@ -1,0 +1,131 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/facts/curve_facts.h"
+
+#include "engine/experiment/figures.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// A configuration's inspection of the window's first frames.
+struct Sample {
+  Configuration configuration;
+  std::shared_ptr<const Inspection> inspection;
+};
+
+/// Shortest first. Counts what is done into `facts`.
+std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
+  std::vector<Sample> samples;
+  std::vector<int> lengths = curve_lengths(state.settings.frames);
+  std::ranges::reverse(lengths);
+  for (const int length : lengths) {
+    for (const Configuration& configuration : facts.configurations) {
+      Settings settings = apply(configuration, state.settings);
+      settings.frames = length;
+      ++facts.of;
+      const Surveyed* found = find_surveyed(state.surveyed.get(), settings);
+      if (found == nullptr) continue;
+      ++facts.done;
+      if (found->inspection) samples.push_back({configuration, found->inspection});
+    }
+  }
+  return samples;
+}
+
+std::vector<Configuration> shown_of(const WorkbenchState& state,
+                                    const std::vector<Configuration>& all) {
+  std::vector<Configuration> shown;
+  std::ranges::copy_if(all, std::back_inserter(shown), [&](const Configuration& one) {
+    return std::ranges::find(state.hidden_curves, key_of(one)) == state.hidden_curves.end();
+  });
+  return shown;
+}
+
+/// The normal's standard deviation over the length, which needs no truth.
+Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
+  Chart chart{"Uncertainty of the normal", "window [frames]", "\u03c3 [deg]", true, {}};
+  for (const Configuration& configuration : shown) {
+    Curve curve;
+    curve.name = title_of(configuration);
+    curve.rgb = color_of(configuration);
+    for (const Sample& sample : samples) {
+      if (sample.configuration != configuration) continue;
+      const auto& uncertainty = sample.inspection->initialization->uncertainty;
+      curve.x.push_back(sample.inspection->settings.frames);
+      curve.y.push_back(uncertainty ? uncertainty->normal_sigma_deg
+                                    : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+CurveFacts facts_of_survey(const WorkbenchState& state) {
+  CurveFacts facts;
+  for (const std::string& key : state.compared)
+    facts.configurations.push_back(parse_configuration(key));
+  if (!state.recording) return facts;
+  const std::vector<Sample> samples = samples_of(state, facts);
+  if (samples.empty()) return facts;
+  std::vector<Row> rows;
+  for (const Sample& sample : samples)
+    rows.push_back(make_row(sample.configuration, *sample.inspection));
+  const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
+  if (plan.configurations.empty()) return facts;
+  const bool truth = std::ranges::any_of(
+      samples, [](const Sample& one) { return one.inspection->truth != nullptr; });
+  if (truth) {
+    facts.figure = figure_over_length(rows, plan);
+    return facts;
+  }
+  facts.figure = figure_without_truth(rows, plan);
+  facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));
+  facts.note = "Errors need ground truth, which this recording does not have; these need none";
+  return facts;
+}
+
+CurveFacts facts_of_file(const WorkbenchState& state) {
+  CurveFacts facts;
+  bool truth = false;
+  std::vector<std::string> keys;
+  for (const Row& row : *state.experiment) {
+    truth = truth || row.pne_deg || row.ate_m;
+    if (std::ranges::find(keys, row.configuration) != keys.end()) continue;
+    keys.push_back(row.configuration);
+    facts.configurations.push_back(parse_configuration(row.configuration));
+  }
+  const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
+  if (plan.configurations.empty()) return facts;
+  facts.figure = truth ? figure_over_length(*state.experiment, plan)
+                       : figure_without_truth(*state.experiment, plan);
+  if (!truth) facts.note = "These results were measured without ground truth: no errors";
+  return facts;
+}
+
+}  // namespace
+
+CurveFacts curve_facts(const WorkbenchState& state) {
+  return state.experiment ? facts_of_file(state) : facts_of_survey(state);
+}
+
+const CurveFacts& KeptCurveFacts::of(const WorkbenchState& state) {
+  const bool same = surveyed_ == state.surveyed && experiment_ == state.experiment &&
+                    inspection_ == state.inspection && settings_ == state.settings &&
+                    compared_ == state.compared && hidden_ == state.hidden_curves;
+  if (same) return facts_;
+  surveyed_ = state.surveyed;
+  experiment_ = state.experiment;
+  inspection_ = state.inspection;
+  settings_ = state.settings;
+  compared_ = state.compared;
+  hidden_ = state.hidden_curves;
+  facts_ = curve_facts(state);
+  return facts_;
+}
+
+}  // namespace gpo

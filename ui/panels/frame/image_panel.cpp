@@ -1,0 +1,163 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/panels/facts/track_tooltip.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/panes/view_options.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/picture/track_highlight.h"
+#include "ui/workbench/compared.h"
+#include "ui/workbench/tracks_in_view.h"
+
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+/// The picture on the screen, and where the mouse is.
+struct Pointer {
+  const WorkbenchState& state;
+  ScreenRect rect;
+  PictureMapping mapping;
+  float scale;
+  Vector2d at = {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+  Vector2d pressed_at = {ImGui::GetIO().MouseClickedPos[0].x, ImGui::GetIO().MouseClickedPos[0].y};
+
+  /// Nothing while the mouse is elsewhere or nothing is shown there.
+  std::optional<std::int64_t> track() const {
+    if (!state.inspection || !ImGui::IsItemHovered() || !state.view.tracks) return std::nullopt;
+    const Inspection& inspection = *state.inspection;
+    const auto column =
+        track_at(inspection, state.frame - inspection.window->start, mapping, at, 10 * scale);
+    return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
+  }
+};
+
+void zoom_and_pan(const Pointer& pointer, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const PictureZoom& zoom = pointer.state.picture_zoom;
+  const Camera& camera = pointer.state.recording->camera;
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+    const double by = std::pow(1.25, io.MouseWheel);
+    push(commands, ZoomPicture{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
+  }
+  const Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
+  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
+    push(commands, ZoomPicture{});
+  } else if (ImGui::IsItemActive() && !io.KeyShift && !by.isZero()) {
+    push(commands, ZoomPicture{pan(zoom, camera, pointer.rect, by)});
+  }
+}
+
+/// Click: picks the track; with Ctrl beside the others. Shift and drag: those in a rectangle. Right
+/// click: the cube comes here, where this is the reference frame.
+void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Selection& selection = pointer.state.selection;
+  if (!ImGui::IsItemDeactivated()) return;
+  const bool clicked = (pointer.at - pointer.pressed_at).norm() < 4 * pointer.scale;
+  if (clicked && track) {
+    push(commands, SelectTracks{io.KeyCtrl ? toggled(selection, *track) : selected({&*track, 1})});
+  } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
+    push(commands, SelectTracks{});
+  } else if (!clicked && io.KeyShift) {
+    const Vector2d a = to_picture(pointer.mapping, pointer.pressed_at);
+    const Vector2d b = to_picture(pointer.mapping, pointer.at);
+    const std::vector<std::int64_t> within = tracks_within(pointer.state, a, b);
+    push(commands, SelectTracks{io.KeyCtrl ? extended(selection, within) : selected(within)});
+  }
+}
+
+void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
+  if (!ImGui::IsItemActive() || !ImGui::GetIO().KeyShift) return;
+  const ImVec2 a = to_imgui(pointer.pressed_at), b = to_imgui(pointer.at);
+  list.AddRectFilled(a, b, imgui_color(palette::kAccent, 0.15));
+  list.AddRect(a, b, imgui_color(palette::kAccent), 0, 0, 1.5F * pointer.scale);
+}
+
+/// The ray of the reference camera through the mouse.
+void move_cube(const Pointer& pointer, Commands& commands) {
+  const WorkbenchState& state = pointer.state;
+  const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (!clicked || !state.inspection || !state.inspection->initialization->ok) return;
+  const auto ray =
+      reference_ray(*state.inspection, state.frame, to_picture(pointer.mapping, pointer.at));
+  if (ray) push(commands, MoveCube{ray});
+}
+
+void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
+  ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
+  const PanelScope panel("picture", place, {0, 0});
+  const WorkbenchState& state = input.state;
+  update_picture(state, views);
+  ImGui::InvisibleButton("view",
+                         {place.width, place.height},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                             ImGuiButtonFlags_MouseButtonRight);
+  const ScreenRect rect = screen_rect(place);
+  const Pointer pointer{
+      state, rect, map_picture(state.recording->camera, rect, state.picture_zoom), input.scale};
+  zoom_and_pan(pointer, commands);
+  const auto track = pointer.track();
+  if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
+  select(pointer, track, commands);
+  move_cube(pointer, commands);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const bool shown = state.recording->pictures && views.picture_error.empty();
+  const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
+  ImageViewOptions options = image_options(state, input.inspection());
+  options.legend = options.legend && room_for_legend(place, input.scale);
+  draw_image_view(list,
+                  rect,
+                  input.inspection() ? *input.inspection() : waiting,
+                  state.frame,
+                  shown ? &views.picture : nullptr,
+                  state.picture_zoom,
+                  options);
+  if (input.inspection()) {
+    const Inspection& inspection = *input.inspection();
+    draw_highlight_in_picture(list,
+                              rect,
+                              inspection,
+                              state.frame - inspection.window->start,
+                              pointer.mapping,
+                              highlight_of(state));
+  }
+  draw_rectangle(pointer, list);
+  if (track) track_tooltip(input, *track);
+  if (!views.picture_error.empty()) {
+    draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
+  }
+}
+
+}  // namespace
+
+void update_picture(const WorkbenchState& state, Views& views) {
+  if (views.recording == state.recording && views.frame == state.frame) return;
+  views.recording = state.recording;
+  views.frame = state.frame;
+  views.picture_error.clear();
+  if (!state.recording->pictures) return;
+  try {
+    views.picture.upload(state.recording->pictures->bgr(state.frame));
+  } catch (const InputError& error) {
+    views.picture_error = error.what();
+  }
+}
+
+void image_panel(const PanelInput& own, const Rectangle& place, Views& views, Commands& commands) {
+  const auto other = flipped_result(own.state);
+  if (!other) return draw_panel(own, place, views, commands);
+  const WorkbenchState state = showing(own.state, *other);
+  draw_panel({state, own.worker, own.survey, own.timings, own.scale}, place, views, commands);
+  const PanelScope panel("picture", place, {0, 0});
+  draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
+}
+
+}  // namespace gpo

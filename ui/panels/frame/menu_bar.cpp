@@ -1,0 +1,63 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/panels/facts/facts.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/workbench/actions.h"
+
+namespace gpo {
+namespace {
+
+void menu_item(const Action& action, const PanelInput& input, Commands& commands) {
+  const bool checked = action.checked && action.checked(input.state);
+  const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
+  const std::string title = action.title + (action.complete() ? "" : " ...");
+  if (ImGui::MenuItem(title.c_str(), keys.c_str(), checked, enabled(action, input.state))) {
+    // What needs more than a click is typed.
+    push(commands, RunAction{action.complete() ? action.name : "palette " + action.name});
+  }
+  tooltip(action.tooltip);
+}
+
+/// The recording in a few words, at the right; the last ones are left out where there is no room.
+void draw_facts(const Recording& recording, float scale) {
+  const float left = ImGui::GetCursorPosX() + 12 * scale;
+  const float right = ImGui::GetWindowWidth() - 12 * scale;
+  std::vector<std::string> facts = recording_facts(recording);
+  const std::string between = "  \u00b7  ";
+  const auto text = [&] {
+    std::string all;
+    for (const std::string& fact : facts) all += (all.empty() ? "" : between) + fact;
+    return all;
+  };
+  while (facts.size() > 1 && left + ImGui::CalcTextSize(text().c_str()).x > right) facts.pop_back();
+  const std::string shown = text();
+  ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(shown.c_str()).x));
+  clipped_text(shown, right - left, palette::kTextDim);
+  std::string all = recording.path.string();
+  for (const std::string& note : recording.notes) all += "\n" + note;
+  tooltip(all);
+}
+
+}  // namespace
+
+void menu_bar(const PanelInput& input, Commands& commands) {
+  if (!ImGui::BeginMainMenuBar()) return;
+  std::vector<std::string> menus;
+  for (const Action& action : actions()) {
+    if (menus.empty() || menus.back() != action.menu) menus.push_back(action.menu);
+  }
+  for (const std::string& menu : menus) {
+    if (!ImGui::BeginMenu(menu.c_str())) continue;
+    for (const Action& action : actions()) {
+      if (action.menu == menu) menu_item(action, input, commands);
+    }
+    ImGui::EndMenu();
+  }
+  if (input.state.recording) draw_facts(*input.state.recording, input.scale);
+  ImGui::EndMainMenuBar();
+}
+
+}  // namespace gpo

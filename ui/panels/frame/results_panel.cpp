@@ -1,0 +1,145 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/look/verdict_look.h"
+#include "ui/panels/facts/facts.h"
+#include "ui/panels/facts/uncertainty_facts.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+std::uint32_t color_of(Tone tone) {
+  switch (tone) {
+    case Tone::good:
+      return palette::kGood;
+    case Tone::bad:
+      return palette::kBad;
+    case Tone::dim:
+      return palette::kTextDim;
+    case Tone::plain:
+      break;
+  }
+  return palette::kText;
+}
+
+/// Not SameLine(x): that counts from the group's left edge.
+void continue_line_at(float x) {
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(std::round(x));
+}
+
+void draw_value(const ResultRow& row, float right, float gap) {
+  // Values end at one line, so that their digits can be compared; notes stand to their left.
+  const float value_width = ImGui::CalcTextSize(row.value.c_str()).x;
+  if (!row.note.empty()) {
+    ImGui::PushFont(font(Font::small));
+    const float note_width = ImGui::CalcTextSize(row.note.c_str()).x;
+    continue_line_at(right - value_width - note_width - gap);
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+    ImGui::TextUnformatted(row.note.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+  }
+  continue_line_at(right - value_width);
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(row.tone)));
+  ImGui::TextUnformatted(row.value.c_str());
+  ImGui::PopStyleColor();
+}
+
+void draw_row(const ResultRow& row, float left, float right, float gap) {
+  ImGui::SetCursorPosX(left);
+  ImGui::BeginGroup();
+  ImGui::TextUnformatted(row.label.c_str());
+  draw_value(row, right, gap);
+  ImGui::EndGroup();
+  tooltip(row.tooltip);
+}
+
+/// Two columns, in the small font: milliseconds are many, and seldom what one looks for.
+void draw_pairs(const ResultGroup& group, float left, float right, float gap) {
+  ImGui::PushFont(font(Font::small));
+  const float middle = std::round((left + right) / 2);
+  for (std::size_t i = 0; i < group.rows.size(); ++i) {
+    const bool second = i % 2 == 1;
+    if (second) ImGui::SameLine();
+    const float from = second ? middle + gap : left;
+    draw_row(group.rows[i], from, second ? right : middle - gap, gap);
+  }
+  ImGui::PopFont();
+}
+
+/// Sign and word to the left, the normal's standard deviation to the right; the reason below.
+void draw_verdict(const Verdict& verdict, float left, float right, float gap, float scale) {
+  const ReadinessLook look = look_of(verdict.readiness);
+  ImGui::SetCursorPosX(left);
+  ImGui::BeginGroup();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 middle(at.x + 6 * scale, at.y + ImGui::GetTextLineHeight() / 2);
+  draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
+  ImGui::SetCursorPosX(std::round(left + 18 * scale));
+  ImGui::PushFont(font(Font::bold));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(look.rgb));
+  ImGui::TextUnformatted(to_string(verdict.readiness));
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  if (verdict.normal_sigma_deg)
+    draw_value({"", "\u00b1" + angle_text(*verdict.normal_sigma_deg), "normal", ""}, right, gap);
+  ImGui::PushFont(font(Font::small));
+  ImGui::PushTextWrapPos(right);
+  ImGui::TextUnformatted(verdict.reason.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+  ImGui::EndGroup();
+  tooltip("Whether the window is fit to initialize from: " + verdict_text(verdict));
+}
+
+void draw_state(const PanelInput& input, float right) {
+  const bool stale = input.inspection() && !(input.inspection()->settings == input.state.settings);
+  const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
+  ImGui::PushFont(font(Font::small));
+  continue_line_at(right - ImGui::CalcTextSize(text).x);
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kWarning));
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+}  // namespace
+
+void results_panel(const PanelInput& input, const Rectangle& place) {
+  const float s = input.scale;
+  const PanelScope panel("results", place, {12 * s, 4 * s}, true);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
+  const float left = ImGui::GetCursorPosX();
+  const float right = left + ImGui::GetContentRegionAvail().x;
+  const float gap = std::round(8 * s);
+  const Initialization* result =
+      input.inspection() ? input.inspection()->initialization.get() : nullptr;
+  bool first = true;
+  for (const ResultGroup& group : result_groups(input.inspection(), input.timings)) {
+    if (!first) ImGui::Dummy({1, 2 * s});
+    heading(group.title.c_str());
+    if (first) draw_state(input, right);
+    if (group.title == kVerdictTitle && result && result->verdict)
+      draw_verdict(*result->verdict, left, right, gap, s);
+    if (group.title == "TIME") {
+      draw_pairs(group, left, right, gap);
+    } else {
+      for (const ResultRow& row : group.rows) draw_row(row, left, right, gap);
+    }
+    first = false;
+  }
+  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason)) {
+    ImGui::PushTextWrapPos(right);
+    ImGui::TextUnformatted(result->reason.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::PopStyleVar();
+}
+
+}  // namespace gpo

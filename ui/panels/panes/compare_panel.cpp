@@ -1,0 +1,166 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/panes/compare_chips.h"
+#include "ui/panels/panes/view_options.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/compare/compare_view.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/workbench/compared.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+Rectangle to_rectangle(const ScreenRect& rect) {
+  return {static_cast<float>(rect.min.x()),
+          static_cast<float>(rect.min.y()),
+          static_cast<float>(rect.size.x()),
+          static_cast<float>(rect.size.y())};
+}
+
+/// An invisible button there.
+void button(const std::string& name, const ScreenRect& rect) {
+  const Rectangle place = to_rectangle(rect);
+  ImGui::SetCursorScreenPos({place.x, place.y});
+  ImGui::InvisibleButton(name.c_str(), {std::max(1.0F, place.width), std::max(1.0F, place.height)});
+}
+
+/// The wheel zooms in all columns around the same point of the picture, dragging moves all, a
+/// double click shows all of the picture, or again the surroundings of the cubes.
+void zoom_and_pan(const ScreenRect& rect,
+                  const PictureZoom& zoom,
+                  const WorkbenchState& state,
+                  Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Camera& camera = state.recording->camera;
+  const Vector2d at(io.MousePos.x, io.MousePos.y), by(io.MouseDelta.x, io.MouseDelta.y);
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0)
+    push(commands, ZoomCompare{zoom_about(zoom, camera, rect, at, std::pow(1.25, io.MouseWheel))});
+  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
+    const bool whole = state.compare_zoom && state.compare_zoom->factor <= 1;
+    push(commands, ZoomCompare{whole ? std::nullopt : std::optional(PictureZoom{})});
+  } else if (ImGui::IsItemActive() && !by.isZero()) {
+    push(commands, ZoomCompare{pan(zoom, camera, rect, by)});
+  }
+}
+
+void choose_by_heading(const PanelInput& input,
+                       const ColumnPlace& place,
+                       const Compared& one,
+                       const std::string& name,
+                       Commands& commands) {
+  button("heading " + name, place.heading);
+  if (ImGui::IsItemClicked()) push(commands, ChangeSettings{one.settings});
+  const bool current = configuration_of(input.state.settings) == one.configuration;
+  const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (ImGui::IsItemHovered() && !current)
+    list.AddRectFilled(a, b, imgui_color(palette::kHovered, 0.5));
+  if (current)  // as a tab that is open
+    list.AddRectFilled({a.x, b.y - std::round(2 * input.scale)}, b, imgui_color(palette::kAccent));
+  tooltip(current ? "The current method: settings and results at the left are its"
+                  : "Click: makes it the current method");
+}
+
+/// Below the chips: what is seen. Returns what is left for the columns.
+ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawList& list) {
+  const float s = input.scale;
+  const WorkbenchState& state = input.state;
+  const float height = std::round(22 * s);
+  const int first = state.settings.start, last = first + state.settings.frames - 1;
+  const bool inside = state.frame >= first && state.frame <= last;
+  const std::string text = fmt::format("frame {}{} window {}–{}{}",
+                                       state.frame,
+                                       inside ? " of the" : ", outside of the",
+                                       first,
+                                       last,
+                                       state.flip ? " · first two swapped" : "");
+  const ImFont* small = font(Font::small);
+  list.AddText(small,
+               small->FontSize,
+               {std::round(place.x + 12 * s), std::round(place.y + 4 * s)},
+               imgui_color(palette::kTextDim),
+               text.c_str());
+  const float width = small->CalcTextSizeA(small->FontSize, 1e6F, 0, text.c_str()).x;
+  const bool truth = state.inspection && state.inspection->truth && state.view.truth;
+  if (inside && place.width > width + 330 * s)
+    draw_cube_legend(list, {place.x + 42 * s + width, place.y + 3 * s}, truth);
+  return {{place.x, place.y + height}, {place.width, place.height - height}};
+}
+
+/// The columns, where they are less high than a person can use, within what can be scrolled.
+void draw_columns(const PanelInput& input,
+                  const ScreenRect& visible,
+                  Views& views,
+                  Commands& commands) {
+  constexpr double kLeastHeight = 190, kLeastRow = 290;  // of one row, of each of many [px]
+  const WorkbenchState& state = input.state;
+  const std::vector<Compared> results = compared_results(state);
+  const std::vector<CompareColumn> columns = compare_columns(results);
+  const int count = static_cast<int>(columns.size());
+  const int rows = (count + 3) / 4;
+  const double least = input.scale * (rows > 1 ? rows * kLeastRow : kLeastHeight);
+  const bool scrolls = least > visible.size.y();
+  const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves as one scrolls
+  ScreenRect rect{{origin.x, origin.y}, visible.size};
+  if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
+  const CompareOptions options = compare_options(state);
+  const bool shown = state.recording->pictures && views.picture_error.empty();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  draw_compare_view(list,
+                    rect,
+                    columns,
+                    *state.recording,
+                    state.frame,
+                    shown ? &views.picture : nullptr,
+                    options);
+  const auto places = compare_places(rect, count, options.top_line);
+  const PictureZoom zoom =
+      compare_zoom(columns, *state.recording, state.frame, places.front().picture.size, options);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string name = key_of(results[i].configuration);
+    choose_by_heading(input, places[i], results[i], name, commands);
+    button("picture " + name, places[i].picture);
+    zoom_and_pan(places[i].picture, zoom, state, commands);
+  }
+  if (scrolls) {
+    ImGui::SetCursorScreenPos({origin.x, origin.y + static_cast<float>(least) - 1});
+    ImGui::Dummy({1, 1});
+  }
+  if (!views.picture_error.empty())
+    draw_badge(list, visible, palette::kBad, "no picture", views.picture_error);
+}
+
+}  // namespace
+
+void compare_panel(const PanelInput& input,
+                   const Rectangle& place,
+                   Views& views,
+                   Commands& commands) {
+  const PanelScope panel("compare", place, {0, 0});
+  const WorkbenchState& state = input.state;
+  if (!state.recording) return draw_empty(place, "Open a recording to compare methods on it");
+  update_picture(state, views);
+  const float chips = compare_chips(input, place, commands);
+  const Rectangle below{place.x, place.y + chips, place.width, place.height - chips};
+  const ScreenRect rest = draw_caption(input, below, *ImGui::GetWindowDrawList());
+  const Rectangle visible = to_rectangle(rest);
+  ImGui::SetCursorScreenPos({visible.x, visible.y});
+  // The wheel zooms; what is too high is scrolled by its bar.
+  ImGui::BeginChild("columns",
+                    {visible.width, std::max(1.0F, visible.height)},
+                    false,
+                    ImGuiWindowFlags_NoScrollWithMouse);
+  draw_columns(input, rest, views, commands);
+  ImGui::EndChild();
+}
+
+}  // namespace gpo

@@ -1,0 +1,109 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/panes/view_options.h"
+
+#include "engine/window/tracks.h"
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/workbench/tracks_in_view.h"
+
+#include <cmath>
+
+#include <imgui.h>
+
+namespace gpo {
+
+ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection) {
+  ImageViewOptions options;
+  options.tracks = state.view.tracks;
+  if (!state.view.tails) options.tail_frames = 0;
+  options.residuals = state.view.residuals;
+  options.cube = state.view.cube;
+  options.cube_side = state.cube_side;
+  options.truth = state.view.truth;
+  options.legend = inspection != nullptr;
+  return options;
+}
+
+SceneViewOptions scene_options(const WorkbenchState& state) {
+  SceneViewOptions options;
+  options.cube = state.view.cube;
+  options.cube_side = state.cube_side;
+  options.truth = state.view.truth;
+  options.uncertainty = state.view.uncertainty;
+  return options;
+}
+
+CompareOptions compare_options(const WorkbenchState& state) {
+  CompareOptions options;
+  options.zoom = state.compare_zoom;
+  options.cube = state.view.cube;
+  options.cube_side = state.cube_side;
+  options.truth = state.view.truth;
+  options.residuals = state.view.residuals;
+  options.top_line = false;
+  return options;
+}
+
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
+  std::vector<CompareColumn> columns;
+  for (const Compared& one : results)
+    columns.push_back({one.configuration,
+                       one.inspection,
+                       one.inspection      ? ""
+                       : one.error.empty() ? "computing"
+                                           : one.error});
+  return columns;
+}
+
+WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
+  WorkbenchState shown = state;
+  shown.inspection = other.inspection;
+  return shown;
+}
+
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
+  const float s = overlay_scale();
+  std::string text = title_of(other.configuration);
+  if (!other.inspection)
+    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
+  const ImFont* bold = font(Font::bold);
+  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
+  const float width = size.x + 34 * s, height = size.y + 12 * s;
+  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
+  const ImVec2 end(at.x + width, at.y + height);
+  const std::uint32_t rgb = color_of(other.configuration);
+  list.AddRectFilled(at, end, imgui_color(palette::kBackground, 0.88), 5 * s);
+  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
+  list.AddRectFilled(
+      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
+  list.AddText(bold,
+               bold->FontSize,
+               {std::round(at.x + 20 * s), std::round(at.y + 6 * s)},
+               imgui_color(palette::kText),
+               text.c_str());
+}
+
+Highlight highlight_of(const WorkbenchState& state) {
+  Highlight highlight;
+  if (!state.inspection) return highlight;
+  const Tracks& tracks = *state.inspection->tracks;
+  for (const std::int64_t id : state.selection.tracks)
+    if (const auto column = column_of(tracks, id)) highlight.picked.push_back(*column);
+  if (state.selection.focus) highlight.focus = column_of(tracks, *state.selection.focus);
+  if (state.hover.track) highlight.hovered = column_of(tracks, *state.hover.track);
+  if (state.hover.camera) highlight.camera = *state.hover.camera - tracks.start;
+  return highlight;
+}
+
+bool room_for_legend(const Rectangle& place, float scale) {
+  return place.width >= 300 * scale && place.height >= 240 * scale;
+}
+
+ScreenRect screen_rect(const Rectangle& place) {
+  return {{place.x, place.y}, {place.width, place.height}};
+}
+
+}  // namespace gpo

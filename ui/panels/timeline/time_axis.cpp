@@ -1,0 +1,32 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/timeline/time_axis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpo {
+
+namespace {
+
+float slot_width(const TimeAxis& axis) {
+  const int shown = axis.span.count > 0 ? axis.span.count : axis.frames;
+  return (axis.right - axis.left) / static_cast<float>(shown);
+}
+
+}  // namespace
+
+float slot_begin(const TimeAxis& axis, int frame) {
+  return axis.left + slot_width(axis) * static_cast<float>(frame - axis.span.first);
+}
+
+float slot_middle(const TimeAxis& axis, int frame) {
+  return (slot_begin(axis, frame) + slot_begin(axis, frame + 1)) / 2;
+}
+
+int frame_at(const TimeAxis& axis, float x) {
+  const auto slot = static_cast<int>(std::floor((x - axis.left) / slot_width(axis)));
+  return std::clamp(axis.span.first + slot, 0, axis.frames - 1);
+}
+
+}  // namespace gpo

@@ -1,0 +1,151 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/timeline/timeline_bars.h"
+
+#include "ui/context/gui.h"
+#include "ui/look/palette.h"
+#include "ui/look/verdict_look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using palette::kBad;
+using palette::kGood;
+using palette::kText;
+using palette::kTextDim;
+
+struct BarColors {
+  ImU32 inliers, others;
+};
+
+/// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
+/// taken for one, so what is no inlier is gray then. Without a verdict it is told by green and red.
+BarColors bar_colors(const Inspection& inspection, int frame) {
+  const auto& growth = inspection.growth;
+  if (growth.empty()) return {imgui_color(kGood, 0.75), imgui_color(kBad, 0.75)};
+  const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
+  const std::uint32_t rgb = judged ? look_of(growth[frame - 1].readiness).rgb : kTextDim;
+  return {imgui_color(rgb, 0.75), imgui_color(kTextDim, 0.4)};
+}
+
+}  // namespace
+
+void draw_tracks(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
+  const Window& window = *inspection.window;
+  const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
+  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
+    const auto& points = window.points_px[i];
+    const auto seen = (points.row(0).array() == points.row(0).array()).count();
+    const BarColors colors = bar_colors(inspection, i);
+    const float left = slot_begin(axis, window.start + i);
+    const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
+    const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
+    list.AddRectFilled(
+        {left, bottom - a_track * static_cast<float>(seen)}, {right, inliers}, colors.others);
+    list.AddRectFilled({left, inliers}, {right, bottom}, colors.inliers);
+  }
+}
+
+void draw_verdict_signs(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale) {
+  for (const VerdictRun& run : verdict_runs(inspection.growth)) {
+    const int start = inspection.window->start;
+    const float left = slot_begin(axis, start + run.first);
+    const float width = slot_begin(axis, start + run.last + 1) - left;
+    if (width < 16 * scale) continue;
+    const ImVec2 at(left + 9 * scale, y);
+    list.AddCircleFilled(at, 8 * scale, imgui_color(palette::kBackground, 0.8), 20);
+    const ReadinessLook look = look_of(run.readiness);
+    draw_sign(list, look.sign, at, look.rgb);
+  }
+}
+
+namespace {
+
+/// What a line over the bars shows.
+struct MotionLine {
+  const char* name;
+  const char* unit;
+  std::uint32_t rgb;
+  double FrameMotion::*value;
+};
+constexpr MotionLine kMotionLines[] = {
+    {"parallax", " px", palette::kText, &FrameMotion::parallax_px},
+    {"rotation", "\u00b0/s", palette::kRotation, &FrameMotion::rotation_rate_deg_s}};
+
+double largest(const Inspection& inspection, const MotionLine& line) {
+  double most = 0;
+  for (const FrameMotion& motion : inspection.motion)
+    if (std::isfinite(motion.*line.value)) most = std::max(most, motion.*line.value);
+  return most;
+}
+
+}  // namespace
+
+void draw_motion(
+    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
+  const int start = inspection.window->start;
+  for (const MotionLine& line : kMotionLines) {
+    const double most = largest(inspection, line);
+    if (most <= 0) continue;
+    std::vector<ImVec2> points;
+    for (int i = 0; i < static_cast<int>(inspection.motion.size()); ++i) {
+      const double value = inspection.motion[i].*line.value;
+      if (std::isfinite(value))
+        points.emplace_back(slot_middle(axis, start + i),
+                            bottom - static_cast<float>(value / most) * (bottom - top));
+    }
+    const auto count = static_cast<int>(points.size());
+    list.AddPolyline(points.data(), count, imgui_color(palette::kBackground, 0.7), 0, 3);
+    list.AddPolyline(points.data(), count, imgui_color(line.rgb), 0, 1.4F);
+  }
+}
+
+void draw_bookmarks(ImDrawList& list,
+                    std::span<const Bookmark> bookmarks,
+                    const TimeAxis& axis,
+                    float top,
+                    float scale) {
+  for (const Bookmark& bookmark : bookmarks) {
+    const float x = std::round(slot_middle(axis, bookmark.frame));
+    const ImU32 color = imgui_color(palette::kWarning);
+    list.AddLine({x, top - 6 * scale}, {x, top + 10 * scale}, color, std::round(1.5F * scale));
+    list.AddRectFilled({x, top - 6 * scale}, {x + 8 * scale, top}, color);
+  }
+}
+
+void draw_verdict_legend(
+    ImDrawList& list, const Inspection& inspection, float left, float top, float scale) {
+  const ImFont* f = font(Font::small);
+  const auto write = [&](const char* text, std::uint32_t rgb) {
+    list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);
+    left += f->CalcTextSizeA(f->FontSize, 1e6F, 0, text).x;
+  };
+  write("window up to here:", kTextDim);
+  for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
+    const ReadinessLook look = look_of(readiness);
+    draw_sign(list, look.sign, {left + 14 * scale, top + f->FontSize / 2}, look.rgb);
+    left += 23 * scale;
+    write(to_string(readiness), kText);
+  }
+  left += 16 * scale;
+  write("height: tracks; gray: outliers", kTextDim);
+  for (const MotionLine& line : kMotionLines) {
+    if (inspection.motion.empty()) return;
+    left += 16 * scale;
+    const float y = std::round(top + f->FontSize / 2);
+    list.AddLine({left, y}, {left + 14 * scale, y}, imgui_color(line.rgb), 1.4F * scale);
+    left += 18 * scale;
+    write(fmt::format("{} to {:.0f}{}", line.name, largest(inspection, line), line.unit).c_str(),
+          kTextDim);
+  }
+}
+
+}  // namespace gpo

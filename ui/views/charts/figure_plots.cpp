@@ -1,0 +1,283 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/figure_plots.h"
+
+#include "ui/views/charts/axis_ticks.h"
+#include "ui/views/charts/vtk_text.h"
+#include "ui/views/overlay/dash_pattern.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <tuple>
+
+#include <vtkAxis.h>
+#include <vtkBrush.h>
+#include <vtkChartXY.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPen.h>
+#include <vtkPlotArea.h>
+#include <vtkPlotLine.h>
+#include <vtkPlotPoints.h>
+#include <vtkStringArray.h>
+#include <vtkTable.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kBandOpacity = 0.18;
+
+void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(rgb), blue(rgb)); }
+
+bool drawable(double value, bool logarithmic) {
+  return std::isfinite(value) && (!logarithmic || value > 0);
+}
+
+struct Extent {
+  double low = INFINITY, high = -INFINITY;
+
+  void take(std::span<const double> values, bool logarithmic) {
+    for (const double value : values) {
+      if (!drawable(value, logarithmic)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  bool empty() const { return low > high; }
+};
+
+Extent x_extent(const Chart& chart) {
+  Extent extent;
+  for (const Curve& curve : chart.curves) extent.take(curve.x, false);
+  return extent;
+}
+
+Extent y_extent(const Chart& chart) {
+  Extent extent;
+  for (const Curve& curve : chart.curves)
+    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
+      extent.take(*values, chart.logarithmic);
+  return extent;
+}
+
+AxisTicks x_ticks(const Chart& chart, double width_px, double scale) {
+  const Extent extent = x_extent(chart);
+  // Room for the markers at both ends.
+  const double room = 0.03 * (extent.high - extent.low);
+  const int most = std::max(2, static_cast<int>(width_px / (50 * scale)));
+  return linear_ticks(extent.low - room, extent.high + room, most);
+}
+
+/// Errors are drawn from zero on.
+AxisTicks y_ticks(const Chart& chart, double height_px, double spacing_px) {
+  const Extent extent = y_extent(chart);
+  const int most = std::max(2, static_cast<int>(height_px / spacing_px));
+  if (chart.logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
+  const double low = std::min(0.0, extent.low);
+  const double room = 0.05 * (extent.high - low);
+  return linear_ticks(low < 0 ? low - room : 0, extent.high + room, most);
+}
+
+/// A chart on its way to VTK, in pixels: VTK's own scaling of a chart would stretch the strokes of
+/// an SVG, its logarithmic ticks crowd, and its dashes depend on what draws them.
+struct Plot {
+  vtkChartXY& vtk;
+  double scale;
+  const ChartLook& look;
+  ChartMapping to;
+
+  bool good(double x_value, double y_value) const {
+    return std::isfinite(x_value) && drawable(y_value, to.logarithmic);
+  }
+};
+
+using Line = std::vector<Vector2d>;
+
+/// The curve without its gaps; VTK's own handling of gaps draws bands through them.
+std::vector<Line> runs(const Plot& plot, std::span<const double> x, std::span<const double> y) {
+  std::vector<Line> result;
+  bool gap = true;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool good = plot.good(x[i], y[i]);
+    if (good && gap) result.emplace_back();
+    if (good) result.back().push_back(plot.to.px(x[i], y[i]));
+    gap = !good;
+  }
+  return result;
+}
+
+/// Columns named by their index: x, and one y a line. The lines have the same x.
+vtkSmartPointer<vtkTable> table(std::span<const Line> lines) {
+  auto result = vtkSmartPointer<vtkTable>::New();
+  const auto add = [&](const Line& line, int axis) {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(std::to_string(result->GetNumberOfColumns()).c_str());
+    for (const Vector2d& point : line) column->InsertNextValue(point[axis]);
+    result->AddColumn(column);
+  };
+  add(lines.front(), 0);
+  for (const Line& line : lines) add(line, 1);
+  return result;
+}
+
+vtkPlot& add_plot(const Plot& plot, int type, const Line& line, std::uint32_t rgb) {
+  vtkPlot& added = *plot.vtk.AddPlot(type);
+  added.SetInputData(table({&line, 1}), 0, 1);
+  set_color(*added.GetPen(), rgb);
+  return added;
+}
+
+void add_markers(
+    const Plot& plot, const Line& points, std::uint32_t rgb, int marker, double size_px) {
+  if (points.empty()) return;
+  auto& added = dynamic_cast<vtkPlotPoints&>(add_plot(plot, vtkChart::POINTS, points, rgb));
+  added.SetMarkerStyle(marker);
+  added.SetMarkerSize(static_cast<float>(size_px));
+}
+
+void add_line(const Plot& plot, const Line& line, std::uint32_t rgb, Dash dash, double width_px) {
+  if (dash == Dash::dotted) {
+    add_markers(plot,
+                points_along(line, kDotSpacing_px * plot.scale),
+                rgb,
+                vtkPlotPoints::CIRCLE,
+                kDotSize_px * plot.scale);
+    return;
+  }
+  if (line.size() < 2) return;
+  Line pieces = line;
+  if (dash != Dash::solid) {
+    pieces.clear();
+    for (const auto& [from, to] : dashes_along(line, dash_lengths(dash, plot.scale)))
+      pieces.insert(pieces.end(), {from, to});
+  }
+  auto& added = dynamic_cast<vtkPlotLine&>(add_plot(plot, vtkChart::LINE, pieces, rgb));
+  added.GetPen()->SetWidth(static_cast<float>(width_px));
+  added.SetPolyLine(dash == Dash::solid);
+}
+
+void add_band(const Plot& plot, const Curve& curve, std::uint32_t rgb) {
+  if (curve.lower.empty()) return;
+  // Where one quartile cannot be drawn, neither is the other.
+  std::vector<double> lower = curve.lower, upper = curve.upper;
+  for (std::size_t i = 0; i < lower.size(); ++i)
+    if (!plot.good(curve.x[i], lower[i]) || !plot.good(curve.x[i], upper[i]))
+      lower[i] = upper[i] = std::nan("");
+  const std::vector<Line> below = runs(plot, curve.x, lower), above = runs(plot, curve.x, upper);
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    if (below[i].size() == 1) {
+      add_line(plot, {below[i][0], above[i][0]}, rgb, Dash::solid, plot.scale);
+      continue;
+    }
+    // VTK 9.1 leaves out a band of two points; the last one twice makes three.
+    std::array<Line, 2> sides = {below[i], above[i]};
+    for (Line& side : sides) side.push_back(side.back());
+    auto& band = dynamic_cast<vtkPlotArea&>(*plot.vtk.AddPlot(vtkChart::AREA));
+    band.SetInputData(table(sides));
+    for (int column = 0; column < 3; ++column) band.SetInputArray(column, std::to_string(column));
+    band.GetPen()->SetLineType(vtkPen::NO_PEN);
+    band.GetBrush()->SetColorF(red(rgb), green(rgb), blue(rgb), kBandOpacity);
+  }
+}
+
+void add_curve(const Plot& plot, const Curve& curve, const CurveStyle& style) {
+  Line points;
+  for (const Line& run : runs(plot, curve.x, curve.y)) {
+    points.insert(points.end(), run.begin(), run.end());
+    add_line(plot, run, style.rgb, style.dash, kCurveWidth_px * plot.scale);
+  }
+  if (style.marker == vtkPlotPoints::NONE) return;
+  add_markers(plot, points, style.rgb, style.marker, style.marker_px * plot.scale);
+  if (style.hollow)
+    add_markers(plot, points, plot.look.ground, style.marker, kHollow_px * plot.scale);
+}
+
+/// `range_px` and `places_px` along the axis.
+void set_axis(vtkAxis& axis,
+              std::pair<double, double> range_px,
+              const std::vector<double>& places_px,
+              const std::vector<std::string>& texts,
+              double scale,
+              const ChartLook& look) {
+  axis.SetTitle("");
+  set_font(*axis.GetLabelProperties(), Weight::regular, look.tick_text_px * scale, look.text);
+  set_color(*axis.GetPen(), look.axis);
+  set_color(*axis.GetGridPen(), look.grid);
+  for (vtkPen* pen : {axis.GetPen(), axis.GetGridPen()}) pen->SetWidth(static_cast<float>(scale));
+  axis.SetTickLength(static_cast<float>(5 * scale));
+  axis.SetLabelOffset(static_cast<float>(8 * scale));
+  axis.SetBehavior(vtkAxis::FIXED);
+  axis.SetRange(range_px.first, range_px.second);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> labels;
+  for (const double place : places_px) places->InsertNextValue(place);
+  for (const std::string& text : texts) labels->InsertNextValue(text);
+  axis.SetCustomTickPositions(places, labels);
+}
+
+void set_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ticks) {
+  const ChartMapping& to = plot.to;
+  std::vector<double> x, y;
+  for (const double value : x_ticks.values) x.push_back(to.x_px(value));
+  for (const double value : y_ticks.values) y.push_back(to.y_px(value));
+  set_axis(*plot.vtk.GetAxis(vtkAxis::BOTTOM),
+           {to.left, to.left + to.width},
+           x,
+           x_ticks.labels,
+           plot.scale,
+           plot.look);
+  set_axis(*plot.vtk.GetAxis(vtkAxis::LEFT),
+           {to.bottom, to.bottom + to.height},
+           y,
+           y_ticks.labels,
+           plot.scale,
+           plot.look);
+}
+
+const CurveStyle& style_of(const Curve& curve, const std::vector<CurveStyle>& styles) {
+  return *std::ranges::find(styles, curve.name, &CurveStyle::name);
+}
+
+}  // namespace
+
+bool has_values(const Chart& chart) { return !x_extent(chart).empty() && !y_extent(chart).empty(); }
+
+ChartMapping fill_chart(vtkChartXY& vtk,
+                        const Chart& chart,
+                        const std::vector<CurveStyle>& styles,
+                        const vtkRectf& axes,
+                        double scale,
+                        const ChartLook& look) {
+  vtk.SetLayoutStrategy(vtkChart::AXES_TO_RECT);
+  vtk.SetSize(axes);
+  vtk.SetAutoAxes(false);
+  vtk.SetRenderEmpty(true);
+  vtk.SetShowLegend(false);
+  for (const int side : {vtkAxis::TOP, vtkAxis::RIGHT}) vtk.GetAxis(side)->SetVisible(false);
+  Plot plot{vtk, scale, look, {}};
+  ChartMapping& to = plot.to;
+  to.left = axes.GetX();
+  to.bottom = axes.GetY();
+  to.width = axes.GetWidth();
+  to.height = axes.GetHeight();
+  if (!has_values(chart)) {
+    set_axes(plot, {}, {});
+    return to;
+  }
+  const AxisTicks x = x_ticks(chart, to.width, scale);
+  const AxisTicks y = y_ticks(chart, to.height, look.tick_spacing_px * scale);
+  to.logarithmic = chart.logarithmic;
+  std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);
+  set_axes(plot, x, y);
+  for (const Curve& curve : chart.curves) add_band(plot, curve, style_of(curve, styles).rgb);
+  for (const bool bounds : {true, false})
+    for (const Curve& curve : chart.curves)
+      if (curve.dotted == bounds) add_curve(plot, curve, style_of(curve, styles));
+  return to;
+}
+
+}  // namespace gpo

@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/experiment/configuration.h"
+#include "engine/inspection/inspection.h"
+#include "ui/views/picture/image_geometry.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+struct ImDrawList;
+
+namespace gpo {
+
+class PictureTexture;
+
+/// Finished inspections of one window of one recording, a method or setting each.
+using Comparison = std::span<const std::shared_ptr<const Inspection>>;
+
+/// A configuration, and what came of it.
+struct CompareColumn {
+  Configuration configuration;
+  std::shared_ptr<const Inspection> inspection;  ///< null: not there
+  std::string missing;                           ///< what stands in its place: "computing"
+};
+
+struct CompareOptions {
+  std::optional<PictureZoom> zoom = {};  ///< of all columns; nothing: around the cubes
+  bool cube = true;
+  double cube_side = 0;  ///< of the first one [unit of its estimate]; 0: the default
+  bool truth = true;
+  bool residuals = false;
+  bool top_line = true;  ///< which frame of which recording, and what the cubes' colors mean
+};
+
+/// Heading, picture and caption of one column.
+struct ColumnPlace {
+  ScreenRect heading, picture, caption;
+};
+
+/// Of `count` columns, at most four side by side, then rows; at the size of the current font.
+std::vector<ColumnPlace> compare_places(const ScreenRect& rect, int count, bool top_line);
+
+/// The part of the picture that all columns show, whose pictures are as large as `picture_size`
+/// [screen px].
+PictureZoom compare_zoom(std::span<const CompareColumn> columns,
+                         const Recording& recording,
+                         int frame,
+                         const Eigen::Vector2d& picture_size,
+                         const CompareOptions& options);
+
+/// One column each: heading in the method's color, the picture of frame `frame` (counts in the
+/// recording), the same part in all columns, with that method's cube and thin and gray the true
+/// one; below it what the result is worth and how it differs from the first, or why there is none.
+/// `picture` is null, or empty, where the recording has no pictures.
+void draw_compare_view(ImDrawList& list,
+                       const ScreenRect& rect,
+                       std::span<const CompareColumn> columns,
+                       const Recording& recording,
+                       int frame,
+                       PictureTexture* picture,
+                       const CompareOptions& options);
+
+/// The same of inspections alone.
+void draw_compare_view(ImDrawList& list,
+                       const ScreenRect& rect,
+                       Comparison inspections,
+                       int frame,
+                       PictureTexture* picture);
+
+/// What the colors of the cubes mean, from the left. Returns how wide it is [px].
+double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);
+
+/// At which a column is 480 pixels wide.
+cv::Size default_compare_size(Comparison inspections);
+cv::Size default_compare_size(int columns, const Recording& recording);
+
+/// Of the text, such that it fits into columns of this picture [-]; 1 at the default size.
+double compare_text_scale(Comparison inspections, cv::Size size);
+
+}  // namespace gpo

@@ -1,0 +1,56 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/views/picture/image_geometry.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+struct ImDrawList;
+struct ImVec2;
+
+namespace gpo {
+
+/// Signs that stand for data, in the views and in their legends alike.
+enum class Sign { none, circle, cross, dot, line, square, frustum, disc, triangle };
+
+struct LegendRow {
+  Sign sign;
+  std::uint32_t rgb;
+  std::string text;
+};
+
+enum class Corner { top_left, top_right, bottom_left, bottom_right };
+
+ImVec2 to_imgui(const Eigen::Vector2d& point);
+
+/// Pixels a unit of a 96 dpi screen, from the size of the current font.
+float overlay_scale();
+
+/// One sign around `center`, with a dark rim that sets it off from any picture.
+void draw_sign(ImDrawList& list, Sign sign, const ImVec2& center, std::uint32_t rgb);
+
+/// A heading (may be empty) and rows on a dark, translucent ground in a corner of the rectangle.
+/// Returns what it covers.
+ScreenRect draw_legend(ImDrawList& list,
+                       const ScreenRect& rect,
+                       Corner corner,
+                       const std::string& heading,
+                       const std::vector<LegendRow>& rows);
+
+/// The rows side by side on a strip along the lower edge of the rectangle; as many lines as it
+/// takes.
+void draw_legend_strip(ImDrawList& list,
+                       const ScreenRect& rect,
+                       const std::vector<LegendRow>& rows);
+
+/// A message in a colored frame, wrapped, at the lower middle of the rectangle.
+void draw_badge(ImDrawList& list,
+                const ScreenRect& rect,
+                std::uint32_t rgb,
+                const std::string& heading,
+                const std::string& text);
+
+}  // namespace gpo

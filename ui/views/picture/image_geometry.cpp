@@ -1,0 +1,199 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/picture/image_geometry.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/inspection/residuals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kPiecesOfAnEdge = 24;
+constexpr double kMostZoom = 64;
+constexpr double kNear = 1e-3;  // of the cube's side: what is nearer to the camera is cut off
+
+/// Faces as corners in turn, each bit of a corner's index being one axis.
+constexpr std::array<std::array<int, 4>, 6> kFaces = {
+    {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+
+Vector2d size_of(const Camera& camera) { return Vector2d(camera.width, camera.height); }
+
+double fitting_scale(const Camera& camera, const ScreenRect& rect) {
+  return std::max(rect.size.cwiseQuotient(size_of(camera)).minCoeff(), 1e-6);
+}
+
+/// The longest stretch of the segment that the camera sees.
+std::vector<Vector2d> segment_in_picture(const Camera& camera,
+                                         Vector3d a_c,
+                                         Vector3d b_c,
+                                         double near) {
+  if (a_c.z() < near && b_c.z() < near) return {};
+  const auto cut = [near](const Vector3d& inside, const Vector3d& outside) -> Vector3d {
+    return inside + (outside - inside) * ((inside.z() - near) / (inside.z() - outside.z()));
+  };
+  if (a_c.z() < near) a_c = cut(b_c, a_c);
+  if (b_c.z() < near) b_c = cut(a_c, b_c);
+  std::vector<Vector2d> longest, run;
+  for (int i = 0; i <= kPiecesOfAnEdge; ++i) {
+    const double s = static_cast<double>(i) / kPiecesOfAnEdge;
+    const Vector2d raw_px = project(camera, (1 - s) * a_c + s * b_c);
+    if (raw_px.allFinite())
+      run.push_back(raw_px);
+    else
+      run.clear();
+    if (run.size() > longest.size()) longest = run;
+  }
+  if (longest.size() < 2) longest.clear();
+  return longest;
+}
+
+bool contains_edge(const std::array<int, 4>& face, int a, int b) {
+  return std::count(face.begin(), face.end(), a) > 0 && std::count(face.begin(), face.end(), b) > 0;
+}
+
+CubeFace face_in_picture(const Camera& camera,
+                         const std::array<Vector3d, 8>& corners_c,
+                         const std::array<int, 4>& face,
+                         double near) {
+  const Vector3d middle = (corners_c[0] + corners_c[7]) / 2;
+  Vector3d center = Vector3d::Zero();
+  for (const int corner : face) center += corners_c[corner] / 4;
+  CubeFace result{face, face == kFaces[0], center.dot(center - middle) < 0, {}};
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d& a = corners_c[face[i]];
+    const Vector3d& b = corners_c[face[(i + 1) % 4]];
+    const auto side = a.z() > near && b.z() > near ? segment_in_picture(camera, a, b, near)
+                                                   : std::vector<Vector2d>{};
+    if (side.size() != kPiecesOfAnEdge + 1) return {face, result.base, result.facing, {}};
+    result.raw_px.insert(result.raw_px.end(), side.begin(), side.end() - 1);
+  }
+  return result;
+}
+
+}  // namespace
+
+PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom) {
+  const double scale = fitting_scale(camera, rect) * zoom.factor;
+  const Vector2d corner =
+      rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
+  return {Vector2d(std::round(corner.x()), std::round(corner.y())), scale};
+}
+
+Vector2d to_screen(const PictureMapping& mapping, const Vector2d& picture_px) {
+  return mapping.origin + mapping.scale * (picture_px + Vector2d::Constant(0.5));
+}
+
+Vector2d to_picture(const PictureMapping& mapping, const Vector2d& screen_px) {
+  return (screen_px - mapping.origin) / mapping.scale - Vector2d::Constant(0.5);
+}
+
+PictureZoom zoom_about(const PictureZoom& zoom,
+                       const Camera& camera,
+                       const ScreenRect& rect,
+                       const Vector2d& pointer,
+                       double by) {
+  PictureZoom result = zoom;
+  result.factor = std::clamp(zoom.factor * by, 1.0, kMostZoom);
+  // center + (pointer - middle) / (scale size) is the same point before and after.
+  const double fit = fitting_scale(camera, rect);
+  const Vector2d from_middle =
+      (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
+  result.center += from_middle * (1 / zoom.factor - 1 / result.factor);
+  return pan(result, camera, rect, Vector2d::Zero());
+}
+
+PictureZoom pan(const PictureZoom& zoom,
+                const Camera& camera,
+                const ScreenRect& rect,
+                const Vector2d& by) {
+  PictureZoom result = zoom;
+  const double scale = fitting_scale(camera, rect) * zoom.factor;
+  result.center -= by.cwiseQuotient(scale * size_of(camera));
+  result.center = result.center.cwiseMax(0.0).cwiseMin(1.0);
+  if (result.factor <= 1) result.center = Vector2d::Constant(0.5);
+  return result;
+}
+
+CubePicture cube_in_picture(const Camera& camera,
+                            const Pose& pose,
+                            const std::array<Vector3d, 8>& corners_w) {
+  std::array<Vector3d, 8> corners_c;
+  for (int i = 0; i < 8; ++i) corners_c[i] = to_camera(pose, corners_w[i]);
+  const double near = kNear * (corners_c[1] - corners_c[0]).norm();
+  CubePicture result;
+  for (const auto& face : kFaces)
+    result.faces.push_back(face_in_picture(camera, corners_c, face, near));
+  for (int a = 0; a < 8; ++a)
+    for (const int axis : {1, 2, 4}) {
+      const int b = a | axis;
+      if (b == a) continue;
+      const bool hidden =
+          std::none_of(result.faces.begin(), result.faces.end(), [&](const auto& f) {
+            return f.facing && contains_edge(f.corners, a, b);
+          });
+      result.edges.push_back(
+          {{a, b}, b < 4, hidden, segment_in_picture(camera, corners_c[a], corners_c[b], near)});
+    }
+  return result;
+}
+
+std::optional<CubePicture> estimated_cube(const Inspection& inspection,
+                                          int frame_in_window,
+                                          double side) {
+  if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
+  return cube_in_picture(inspection.recording->camera,
+                         inspection.initialization->cameras[frame_in_window],
+                         cube_corners(*inspection.cube, side));
+}
+
+std::optional<CubePicture> true_cube(const Inspection& inspection,
+                                     int frame_in_window,
+                                     double side) {
+  if (!inspection.true_cube || !inspection.cube || !inspection.truth ||
+      !inspection.truth->cameras[frame_in_window])
+    return std::nullopt;
+  const double true_side = side * inspection.true_cube->unit / inspection.cube->unit;
+  return cube_in_picture(inspection.recording->camera,
+                         *inspection.truth->cameras[frame_in_window],
+                         cube_corners(*inspection.true_cube, true_side));
+}
+
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
+  const Window& window = *inspection.window;
+  const auto H = estimated_homography(inspection, frame_in_window);
+  if (!H) return {};
+  std::vector<ResidualVector> residuals;
+  for (int track = 0; track < window.track_count(); ++track) {
+    if (!window.inlier[frame_in_window][track]) continue;
+    const Vector2d predicted =
+        distort(inspection.recording->camera, transfer(*H, window.points_px[0].col(track)));
+    const Vector2d observed = inspection.tracks->raw_px[frame_in_window].col(track);
+    if (predicted.allFinite() && observed.allFinite())
+      residuals.push_back({track, observed, predicted});
+  }
+  return residuals;
+}
+
+std::optional<Eigen::Vector3d> reference_ray(const Inspection& inspection,
+                                             int frame,
+                                             const Eigen::Vector2d& raw_px) {
+  const Initialization& result = *inspection.initialization;
+  const int in_window = frame - inspection.window->start;
+  if (!result.ok || in_window < 0 || in_window >= static_cast<int>(result.cameras.size()))
+    return std::nullopt;
+  const Camera& camera = inspection.recording->camera;
+  const Eigen::Vector3d ray =
+      intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
+  // The world is the reference camera's frame.
+  return intersect(result.plane, result.cameras[in_window], ray);
+}
+
+}  // namespace gpo

@@ -1,0 +1,266 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/picture/image_view.h"
+
+#include "engine/initializers/methods.h"
+#include "engine/window/tracks.h"
+#include "ui/context/window_picture.h"
+#include "ui/look/palette.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/picture_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+/// One frame of one inspection on its way to the screen.
+struct Canvas {
+  ImDrawList& list;
+  ScreenRect rect;
+  const Inspection& inspection;
+  int frame;  ///< in the window
+  PictureMapping mapping;
+  const ImageViewOptions& options;
+  float scale;
+
+  ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
+  std::vector<ImVec2> at(const std::vector<Vector2d>& raw_px) const {
+    std::vector<ImVec2> points;
+    points.reserve(raw_px.size());
+    for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
+    return points;
+  }
+  std::optional<CubePicture> estimated_cube() const {
+    return gpo::estimated_cube(inspection, frame, cube_side(inspection, options.cube_side));
+  }
+  std::optional<CubePicture> true_cube() const {
+    return gpo::true_cube(inspection, frame, cube_side(inspection, options.cube_side));
+  }
+  void polyline(const std::vector<ImVec2>& points, ImU32 color, float width) const {
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, width * scale);
+  }
+};
+
+/// Only what the picture leaves free: without a graphics card each layer costs milliseconds.
+void draw_surroundings(ImDrawList& list,
+                       const ScreenRect& rect,
+                       const ImVec2& picture_low,
+                       const ImVec2& picture_high) {
+  const ImU32 color = imgui_color(palette::kBackground);
+  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
+  // The picture's last pixels are whole ones only where its scale is.
+  const float right = std::clamp(std::floor(picture_high.x), low.x, high.x);
+  const float bottom = std::clamp(std::floor(picture_high.y), low.y, high.y);
+  const float left = std::clamp(picture_low.x, low.x, right);
+  const float top = std::clamp(picture_low.y, low.y, bottom);
+  const std::array<std::pair<ImVec2, ImVec2>, 4> sides = {{{low, {high.x, top}},
+                                                           {{low.x, bottom}, high},
+                                                           {{low.x, top}, {left, bottom}},
+                                                           {{right, top}, {high.x, bottom}}}};
+  for (const auto& [from, to] : sides)
+    if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, color);
+}
+
+void draw_picture(ImDrawList& list,
+                  const ScreenRect& rect,
+                  const Camera& camera,
+                  PictureTexture* picture,
+                  const PictureMapping& mapping) {
+  const ImVec2 low = to_imgui(mapping.origin);
+  const ImVec2 high =
+      to_imgui(mapping.origin + mapping.scale * Vector2d(camera.width, camera.height));
+  draw_surroundings(list, rect, low, high);
+  if (picture != nullptr && picture->id() != nullptr) {
+    picture->set_screen_scale(mapping.scale);
+    mark_content(list, picture->revision());
+    list.AddImage(picture->id(), low, high);
+  } else {
+    list.AddRectFilled(low, high, imgui_color(palette::kRaised));
+  }
+}
+
+void draw_tails(const Canvas& canvas) {
+  const Tracks& tracks = *canvas.inspection.tracks;
+  const int oldest = std::max(0, canvas.frame - canvas.options.tail_frames);
+  for (int track = 0; track < tracks.track_count(); ++track) {
+    if (!tracks.seen(canvas.frame, track)) continue;
+    const bool inlier = canvas.inspection.window->inlier[canvas.frame][track];
+    const std::uint32_t rgb = inlier ? palette::kInlier : palette::kOutlier;
+    for (int i = oldest; i < canvas.frame; ++i) {
+      const double age = static_cast<double>(canvas.frame - i) / canvas.options.tail_frames;
+      canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
+                          canvas.at(tracks.raw_px[i + 1].col(track)),
+                          imgui_color(rgb, 0.15 + 0.6 * (1 - age)),
+                          1.4F * canvas.scale);
+    }
+  }
+}
+
+void draw_tracks(const Canvas& canvas) {
+  const Tracks& tracks = *canvas.inspection.tracks;
+  for (int track = 0; track < tracks.track_count(); ++track) {
+    if (!tracks.seen(canvas.frame, track)) continue;
+    const bool inlier = canvas.inspection.window->inlier[canvas.frame][track];
+    draw_sign(canvas.list,
+              inlier ? Sign::circle : Sign::cross,
+              canvas.at(tracks.raw_px[canvas.frame].col(track)),
+              inlier ? palette::kInlier : palette::kOutlier);
+  }
+}
+
+void draw_residuals(const Canvas& canvas) {
+  for (const ResidualVector& residual : residual_vectors(canvas.inspection, canvas.frame)) {
+    const Vector2d tip = residual.observed_px + canvas.options.residual_magnification *
+                                                    (residual.predicted_px - residual.observed_px);
+    const ImVec2 from = canvas.at(residual.observed_px), to = canvas.at(tip);
+    canvas.list.AddLine(from, to, imgui_color(palette::kBackground, 0.5), 3.4F * canvas.scale);
+    canvas.list.AddLine(from, to, imgui_color(palette::kResidual), 1.6F * canvas.scale);
+  }
+}
+
+/// A fan around the middle: right for outlines that the lens bends inwards, too.
+void fill_face(const Canvas& canvas, const CubeFace& face, ImU32 color) {
+  if (face.raw_px.empty()) return;
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& pixel : face.raw_px)
+    middle += pixel / static_cast<double>(face.raw_px.size());
+  const int count = static_cast<int>(face.raw_px.size());
+  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+  ImDrawList& list = canvas.list;
+  list.PrimReserve(3 * count, count + 1);
+  const auto first = static_cast<ImDrawIdx>(list._VtxCurrentIdx);
+  list.PrimWriteVtx(canvas.at(middle), white, color);
+  for (const Vector2d& pixel : face.raw_px) list.PrimWriteVtx(canvas.at(pixel), white, color);
+  for (int i = 0; i < count; ++i) {
+    list.PrimWriteIdx(first);
+    list.PrimWriteIdx(static_cast<ImDrawIdx>(first + 1 + i));
+    list.PrimWriteIdx(static_cast<ImDrawIdx>(first + 1 + (i + 1) % count));
+  }
+}
+
+void draw_estimated_cube(const Canvas& canvas, const CubePicture& cube) {
+  const auto draw_edges = [&](bool hidden) {
+    for (const CubeEdge& edge : cube.edges) {
+      if (edge.hidden != hidden) continue;
+      const std::uint32_t rgb = edge.base ? palette::kCubeBase : palette::kCubeEdge;
+      const std::vector<ImVec2> points = canvas.at(edge.raw_px);
+      const float width = (edge.base ? 3.0F : 2.2F) * (hidden ? 0.6F : 1.0F);
+      if (!hidden) canvas.polyline(points, imgui_color(palette::kBackground, 0.5), width + 2.2F);
+      canvas.polyline(points, imgui_color(rgb, hidden ? 0.55 : 1), width);
+    }
+  };
+  for (const CubeFace& face : cube.faces)
+    if (face.base) fill_face(canvas, face, imgui_color(palette::kCubeBase, 0.22));
+  draw_edges(true);
+  for (const CubeFace& face : cube.faces)
+    if (face.facing && !face.base) fill_face(canvas, face, imgui_color(palette::kCubeFace, 0.2));
+  draw_edges(false);
+}
+
+void draw_true_cube(const Canvas& canvas, const CubePicture& cube) {
+  for (const CubeEdge& edge : cube.edges) {
+    const std::vector<ImVec2> points = canvas.at(edge.raw_px);
+    if (!edge.hidden) canvas.polyline(points, imgui_color(palette::kBackground, 0.45), 3);
+    canvas.polyline(points, imgui_color(palette::kTruth, edge.hidden ? 0.4 : 1), 1.5F);
+  }
+}
+
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::vector<LegendRow> legend_rows(const Canvas& canvas) {
+  const Inspection& inspection = canvas.inspection;
+  const ImageViewOptions& options = canvas.options;
+  std::vector<LegendRow> rows;
+  if (options.tracks) {
+    int inliers = 0, outliers = 0;
+    for (int track = 0; track < inspection.tracks->track_count(); ++track)
+      if (inspection.tracks->seen(canvas.frame, track))
+        ++(inspection.window->inlier[canvas.frame][track] ? inliers : outliers);
+    rows.push_back({Sign::circle, palette::kInlier, counted(inliers, "inlier")});
+    rows.push_back({Sign::cross, palette::kOutlier, counted(outliers, "outlier")});
+  }
+  if (inspection.initialization->ok && options.residuals)
+    rows.push_back({Sign::line,
+                    palette::kResidual,
+                    fmt::format("residuals × {:g}", options.residual_magnification)});
+  if (options.cube && inspection.cube)
+    rows.push_back({Sign::square, palette::kCubeBase, "cube on the estimated plane"});
+  if (options.cube && options.truth && canvas.true_cube())
+    rows.push_back({Sign::square, palette::kTruth, "true cube"});
+  return rows;
+}
+
+/// Everything that needs the frame to be in the window.
+void draw_results(const Canvas& canvas) {
+  const ImageViewOptions& options = canvas.options;
+  if (options.tracks && options.tail_frames > 0) draw_tails(canvas);
+  if (options.tracks) draw_tracks(canvas);
+  if (options.residuals) draw_residuals(canvas);
+  if (!options.cube) return;
+  if (const auto cube = canvas.true_cube(); cube && options.truth) draw_true_cube(canvas, *cube);
+  if (const auto cube = canvas.estimated_cube()) draw_estimated_cube(canvas, *cube);
+}
+
+std::string heading(const Inspection& inspection, int frame) {
+  const auto& times = inspection.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times[frame] - times.front()) * 1e-9;
+  return fmt::format(
+      "frame {} · {:.3f} s · {}", frame, seconds, find_method(inspection.settings.method).title);
+}
+
+}  // namespace
+
+double cube_side(const Inspection& inspection, double chosen) {
+  if (chosen > 0 || !inspection.cube) return chosen;
+  return default_cube_side(*inspection.cube, inspection.initialization->plane.distance);
+}
+
+void draw_image_view(ImDrawList& list,
+                     const ScreenRect& rect,
+                     const Inspection& inspection,
+                     int frame,
+                     PictureTexture* picture,
+                     const PictureZoom& zoom,
+                     const ImageViewOptions& options) {
+  const Camera& camera = inspection.recording->camera;
+  const int first = inspection.window->start, count = inspection.window->frame_count();
+  const PictureMapping mapping = map_picture(camera, rect, zoom);
+  const Canvas canvas{list, rect, inspection, frame - first, mapping, options, overlay_scale()};
+  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  draw_picture(list, rect, camera, picture, mapping);
+  const bool inside = frame >= first && frame < first + count;
+  std::vector<LegendRow> rows;
+  if (inside) {
+    draw_results(canvas);
+    rows = legend_rows(canvas);
+    if (frame == first) rows.push_back({Sign::none, 0, "reference frame"});
+  } else {
+    rows.push_back(
+        {Sign::none, 0, fmt::format("outside of the window {}–{}", first, first + count - 1)});
+  }
+  if (options.legend) draw_legend(list, rect, Corner::top_left, heading(inspection, frame), rows);
+  if (inside && !inspection.initialization->ok)
+    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
+  list.PopClipRect();
+}
+
+Inspection nothing_inspected(std::shared_ptr<const Recording> recording) {
+  Inspection nothing;
+  nothing.recording = std::move(recording);
+  nothing.tracks = std::make_shared<const Tracks>();
+  nothing.window = std::make_shared<const Window>();
+  nothing.initialization = std::make_shared<const Initialization>();
+  return nothing;
+}
+
+}  // namespace gpo

@@ -1,0 +1,45 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "ui/views/picture/image_geometry.h"
+
+#include <memory>
+
+struct ImDrawList;
+
+namespace gpo {
+
+class PictureTexture;
+
+/// What is shown over the picture.
+struct ImageViewOptions {
+  bool tracks = true;                  ///< inliers and outliers of the frame
+  int tail_frames = 10;                ///< how long a track's tail is; 0: none
+  bool residuals = false;              ///< from the observation towards the reprojection
+  double residual_magnification = 20;  ///< of their length [-]
+  bool cube = true;                    ///< on the estimated plane, by the frame's estimated pose
+  double cube_side = 0;                ///< 0: `default_cube_side` [unit of the estimate]
+  bool truth = true;                   ///< the true cube, where it is known
+  bool legend = true;
+};
+
+/// Draws frame `frame` (counts in the recording) into the rectangle: the picture as it was
+/// recorded, tracks, cube, legend, and the reason where the initialization failed. `picture` is
+/// null, or empty, where the recording has no pictures.
+void draw_image_view(ImDrawList& list,
+                     const ScreenRect& rect,
+                     const Inspection& inspection,
+                     int frame,
+                     PictureTexture* picture,
+                     const PictureZoom& zoom,
+                     const ImageViewOptions& options);
+
+/// Side of the virtual cube: as chosen, or the default where `chosen` is 0 [unit of the estimate].
+double cube_side(const Inspection& inspection, double chosen);
+
+/// For the views, while nothing has been computed: a recording with an empty window.
+Inspection nothing_inspected(std::shared_ptr<const Recording> recording);
+
+}  // namespace gpo

@@ -1,0 +1,167 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/methods.h"
+#include "ui/context/gui.h"
+#include "ui/context/window_picture.h"
+#include "ui/look/palette.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/picture/picture_texture.h"
+#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/scene_moment.h"
+#include "ui/views/scene/scene_view.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Text around a point, on a dark rim.
+void draw_label(ImDrawList& list, const Vector2d& at, std::uint32_t rgb, const char* text) {
+  const ImFont* f = font(Font::bold);
+  const ImVec2 size = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text);
+  const ImVec2 corner(std::round(static_cast<float>(at.x()) - size.x / 2),
+                      std::round(static_cast<float>(at.y()) - size.y / 2));
+  for (const float dx : {-1.0F, 1.0F})
+    for (const float dy : {-1.0F, 1.0F})
+      list.AddText(f,
+                   f->FontSize,
+                   ImVec2(corner.x + dx, corner.y + dy),
+                   imgui_color(palette::kBackground, 0.7),
+                   text);
+  list.AddText(f, f->FontSize, corner, imgui_color(rgb), text);
+}
+
+/// The world's axes, at the reference camera.
+void draw_axes(ImDrawList& list,
+               const ScreenRect& rect,
+               const Inspection& inspection,
+               const OrbitCamera& camera) {
+  const double length = axes_length(inspection);
+  const auto on_screen = [&](const Vector3d& point) -> std::optional<Vector2d> {
+    const auto pixel = view_pixel(camera, point, rect.size);
+    return pixel ? std::optional<Vector2d>(rect.min + *pixel) : std::nullopt;
+  };
+  const auto origin = on_screen(Vector3d::Zero());
+  for (int axis = 0; axis < 3 && origin; ++axis) {
+    const auto tip = on_screen(length * Vector3d::Unit(axis));
+    if (!tip) continue;
+    const std::uint32_t rgb = palette::kAxes[axis];
+    list.AddLine(to_imgui(*origin), to_imgui(*tip), imgui_color(rgb), 2.4F * overlay_scale());
+    const Vector2d along =
+        (*tip - *origin).norm() > 1 ? Vector2d((*tip - *origin).normalized()) : Vector2d(0, 0);
+    const std::array<const char*, 3> names = {"x", "y", "z"};
+    draw_label(list, *tip + 9 * overlay_scale() * along, rgb, names[axis]);
+  }
+}
+
+std::vector<LegendRow> legend_rows(const Inspection& inspection,
+                                   int frame_in_window,
+                                   const SceneViewOptions& options) {
+  const Method& method = find_method(inspection.settings.method);
+  std::vector<LegendRow> rows;
+  if (inspection.initialization->ok) {
+    rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});
+    if (frame_in_window > 0)
+      rows.push_back({Sign::frustum, palette::kReference, "reference frame"});
+    rows.push_back({Sign::square, palette::kPlane, "estimated plane"});
+    if (options.points)
+      rows.push_back({Sign::dot,
+                      palette::kPoint,
+                      fmt::format("{} map points", inspection.initialization->points.size())});
+    if (options.cube && inspection.cube) rows.push_back({Sign::square, palette::kCubeBase, "cube"});
+  }
+  if (shows_uncertainty(inspection, options)) {
+    const int times = options.uncertainty;
+    rows.push_back({Sign::circle,
+                    palette::kUncertain,
+                    "95 % of centers and normal" +
+                        (times > 1 ? fmt::format(", enlarged {}\u00d7", times) : "")});
+  }
+  if (options.truth && estimate_from_truth(inspection))
+    rows.push_back({Sign::frustum,
+                    palette::kTruth,
+                    inspection.initialization->ok && inspection.truth->plane
+                        ? "true cameras and plane"
+                        : "true cameras"});
+  return rows;
+}
+
+std::optional<double> meters_a_unit(const Inspection& inspection) {
+  if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
+  if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
+  return std::nullopt;
+}
+
+std::string length_text(double length, bool meters) {
+  if (!meters) return fmt::format("{:g} d", length);
+  if (length < 0.01) return fmt::format("{:g} mm", length * 1e3);
+  if (length < 1) return fmt::format("{:g} cm", length * 1e2);
+  return fmt::format("{:g} m", length);
+}
+
+/// True to scale where the view's target is.
+void draw_scale_bar(ImDrawList& list,
+                    const ScreenRect& rect,
+                    const Inspection& inspection,
+                    const OrbitCamera& camera) {
+  const auto meters = meters_a_unit(inspection);
+  const float s = overlay_scale();
+  const double pixels = pixels_a_unit(camera, rect.size.y()) / meters.value_or(1);
+  const double length = nice_length(140 * s / pixels);
+  const auto width = static_cast<float>(length * pixels);
+  const ImVec2 end = to_imgui(rect.min + Vector2d(rect.size.x() - 16 * s, 36 * s));
+  const ImU32 color = imgui_color(palette::kText);
+  const ImVec2 start(end.x - width, end.y);
+  list.AddLine(start, end, color, 2 * s);
+  for (const float x : {start.x, end.x})
+    list.AddLine(ImVec2(x, end.y - 5 * s), ImVec2(x, end.y + s), color, 2 * s);
+  const std::string text = length_text(length, meters.has_value());
+  const ImFont* f = font(Font::small);
+  const float text_width = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
+  list.AddText(f,
+               f->FontSize,
+               ImVec2(std::round(end.x - width / 2 - text_width / 2),
+                      std::round(end.y - f->FontSize - 7 * s)),
+               color,
+               text.c_str());
+}
+
+}  // namespace
+
+void draw_scene_view(ImDrawList& list,
+                     const ScreenRect& rect,
+                     SceneView& view,
+                     const Inspection& inspection,
+                     int frame,
+                     const OrbitCamera& camera,
+                     const SceneViewOptions& options) {
+  const unsigned texture = view.render(inspection,
+                                       camera,
+                                       options,
+                                       static_cast<int>(rect.size.x()),
+                                       static_cast<int>(rect.size.y()));
+  if (texture == 0) return;
+  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
+  list.PushClipRect(low, high, true);
+  mark_content(list, view.renders());
+  list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
+  const int frame_in_window = frame - inspection.window->start;
+  draw_scene_moment(list, rect, inspection, frame_in_window, camera, options);
+  const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
+  if (shows_something) draw_axes(list, rect, inspection, camera);
+  if (options.legend)
+    draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
+  if (shows_something) draw_scale_bar(list, rect, inspection, camera);
+  if (!inspection.initialization->ok)
+    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
+  list.PopClipRect();
+}
+
+}  // namespace gpo

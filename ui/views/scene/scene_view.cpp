@@ -1,0 +1,281 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/scene/scene_view.h"
+
+#include "engine/initializers/methods.h"
+#include "ui/context/vtk_window.h"
+#include "ui/look/palette.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/image_view.h"
+#include "ui/views/scene/scene_actors.h"
+#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/uncertainty_geometry.h"
+#include "ui/views/scene/vtk_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <vtkRenderer.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+
+/// One inspection on its way to the renderer. Sizes in pixels grow with the font.
+struct Stage {
+  vtkRenderer& renderer;
+  const Inspection& inspection;
+  const SceneViewOptions& options;
+  double scale;
+
+  void add(const Shapes& shapes, double size_px) const {
+    renderer.AddActor(shapes.actor(size_px * scale));
+  }
+};
+
+void add_frustum(Shapes& shapes, const std::array<Vector3d, 6>& corners, std::uint32_t rgb) {
+  for (int k = 1; k <= 4; ++k) shapes.line(corners[0], corners[k], rgb);
+  shapes.lines(std::span(corners).subspan(1, 4), true, rgb);
+}
+
+/// Its picture as a face, and which edge of it is up.
+void add_reference(const Stage& stage, const std::array<Vector3d, 6>& corners) {
+  Shapes lines, face;
+  add_frustum(lines, corners, palette::kReference);
+  const std::array<Vector3d, 3> mark = {corners[1], corners[2], corners[5]};
+  lines.lines(mark, true, palette::kReference);
+  face.face(std::span(corners).subspan(1, 4), palette::kReference, 0.12);
+  face.face(mark, palette::kReference, 0.24);
+  stage.add(lines, 1.8);
+  stage.add(face, 1);
+}
+
+void add_cameras(const Stage& stage) {
+  const Inspection& inspection = stage.inspection;
+  const Initialization& estimate = *inspection.initialization;
+  if (!estimate.ok) return;
+  const std::uint32_t rgb = find_method(inspection.settings.method).rgb;
+  const double depth = frustum_depth(inspection);
+  const Camera& camera = inspection.recording->camera;
+  const int stride = frustum_stride(inspection);
+  Shapes frusta, path;
+  std::vector<Vector3d> centers;
+  for (int i = 0; i < static_cast<int>(estimate.cameras.size()); ++i) {
+    centers.push_back(estimate.cameras[i].p_wc);
+    if (i % stride == 0 && i != 0)
+      add_frustum(frusta,
+                  frustum(camera, estimate.cameras[i], depth),
+                  mixed_rgb(palette::kSceneBottom, rgb, 0.75));
+  }
+  path.lines(centers, false, mixed_rgb(rgb, palette::kText, 0.35));
+  stage.add(frusta, 1.2);
+  stage.add(path, 2.6);
+  add_reference(stage, frustum(camera, estimate.cameras[0], depth));
+}
+
+void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
+  const Inspection& inspection = stage.inspection;
+  const auto T_est_true = estimate_from_truth(inspection);
+  if (!T_est_true) return;
+  const std::uint32_t dim = mixed_rgb(palette::kSceneBottom, palette::kTruth, 0.6);
+  const double depth = 0.75 * frustum_depth(inspection);
+  const int stride = frustum_stride(inspection);
+  Shapes frusta, path;
+  std::vector<Vector3d> centers;
+  for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i) {
+    const auto pose = true_camera(inspection, *T_est_true, i);
+    if (!pose) continue;
+    centers.push_back(pose->p_wc);
+    if (i % stride == 0)
+      add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dim);
+  }
+  path.lines(centers, false, palette::kTruth);
+  stage.add(frusta, 1);
+  stage.add(path, 1.6);
+  if (!grid) return;
+  if (const auto border = true_plane_border(inspection, *T_est_true, *grid)) {
+    Shapes plane;
+    plane.lines(*border, true, palette::kTruth);
+    stage.add(plane, 1.8);
+  }
+}
+
+/// The lines lie on the face; the face moves a hair away from the eye.
+void add_plane(const Stage& stage, const PlaneGrid& grid, const OrbitCamera& camera) {
+  Shapes lines, border, face;
+  const std::uint32_t rgb = mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.42);
+  const auto [i0, j0] = grid.low;
+  const auto [i1, j1] = grid.high;
+  for (int i = i0 + 1; i < i1; ++i) lines.line(grid.at(i, j0), grid.at(i, j1), rgb);
+  for (int j = j0 + 1; j < j1; ++j) lines.line(grid.at(i0, j), grid.at(i1, j), rgb);
+  const std::array<Vector3d, 4> corners = {
+      grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
+  border.lines(corners, true, mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.8));
+  const bool above = grid.normal.dot(eye(camera) - grid.origin) > 0;
+  const Vector3d away = (above ? -0.02 : 0.02) * grid.cell * grid.normal;
+  std::array<Vector3d, 4> behind;
+  for (int k = 0; k < 4; ++k) behind[k] = corners[k] + away;
+  face.face(behind, palette::kPlane, 0.1);
+  stage.add(face, 1);
+  stage.add(lines, 1.1);
+  stage.add(border, 1.8);
+}
+
+void add_points(const Stage& stage, const PlaneGrid& grid) {
+  Shapes points;
+  for (const MapPoint& point : stage.inspection.initialization->points) {
+    const Vector3d from = point.position - grid.origin;
+    const double i = grid.x.dot(from) / grid.cell, j = grid.y.dot(from) / grid.cell;
+    // Single wrong points far away are not the map.
+    if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
+      points.point(point.position, palette::kPoint);
+  }
+  stage.add(points, 5);
+}
+
+void add_cube(const Stage& stage) {
+  const Inspection& inspection = stage.inspection;
+  const auto corners =
+      cube_corners(*inspection.cube, cube_side(inspection, stage.options.cube_side));
+  Shapes base, edges, faces;
+  for (int a = 0; a < 8; ++a)
+    for (const int axis : {1, 2, 4}) {
+      const int b = a | axis;
+      if (b == a) continue;
+      if (b < 4)
+        base.line(corners[a], corners[b], palette::kCubeBase);
+      else
+        edges.line(corners[a], corners[b], palette::kCubeEdge);
+    }
+  const std::array<std::array<int, 4>, 5> sides = {
+      {{4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+  for (const auto& side : sides) {
+    const std::array<Vector3d, 4> face = {
+        corners[side[0]], corners[side[1]], corners[side[2]], corners[side[3]]};
+    faces.face(face, palette::kCubeFace, 0.14);
+  }
+  stage.add(faces, 1);
+  stage.add(edges, 1.8);
+  stage.add(base, 3);
+}
+
+/// Of the cameras that are drawn, and of the normal.
+void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
+  const Initialization& estimate = *stage.inspection.initialization;
+  const auto& uncertainty = *estimate.uncertainty;
+  const double enlarged = stage.options.uncertainty;
+  const int stride = frustum_stride(stage.inspection);
+  Shapes lines, arrow_line, face;
+  const auto count = std::min(estimate.cameras.size(), uncertainty.center_covariances.size());
+  for (int i = stride; i < static_cast<int>(count); i += stride) {
+    const auto ellipsoid =
+        confidence_ellipsoid(estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged);
+    for (const auto& line : ellipsoid) lines.lines(line, true, palette::kUncertain);
+  }
+  const NormalArrow arrow = normal_arrow(stage.inspection, grid);
+  const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
+  arrow_line.line(arrow.base, arrow.tip, palette::kPlane);
+  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, palette::kPlane);
+  lines.lines(rim, true, palette::kUncertain);
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    const std::array<Vector3d, 3> side = {arrow.base, rim[k], rim[(k + 1) % rim.size()]};
+    face.face(side, palette::kUncertain, 0.1);
+  }
+  stage.add(face, 1);
+  stage.add(lines, 1.2);
+  stage.add(arrow_line, 2.4);
+}
+
+void build(const Stage& stage, const OrbitCamera& camera) {
+  const Inspection& inspection = stage.inspection;
+  stage.renderer.RemoveAllViewProps();
+  std::optional<PlaneGrid> grid;
+  if (inspection.initialization->ok)
+    grid = plane_grid(inspection, cube_side(inspection, stage.options.cube_side));
+  if (stage.options.truth) add_truth(stage, grid);
+  if (!grid) return;
+  add_plane(stage, *grid, camera);
+  if (stage.options.points) add_points(stage, *grid);
+  add_cameras(stage);
+  if (stage.options.cube && inspection.cube) add_cube(stage);
+  if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
+}
+
+bool same(const OrbitCamera& a, const OrbitCamera& b) {
+  return a.target == b.target && a.up == b.up && a.front == b.front && a.yaw_deg == b.yaw_deg &&
+         a.pitch_deg == b.pitch_deg && a.distance == b.distance &&
+         a.view_angle_deg == b.view_angle_deg;
+}
+
+void set_background(vtkRenderer& renderer) {
+  const std::uint32_t bottom = themed(palette::kSceneBottom), top = themed(palette::kSceneTop);
+  renderer.SetBackground(red(bottom), green(bottom), blue(bottom));
+  renderer.SetBackground2(red(top), green(top), blue(top));
+}
+
+}  // namespace
+
+bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options) {
+  return options.uncertainty > 0 && inspection.initialization->ok &&
+         inspection.initialization->uncertainty.has_value();
+}
+
+/// VTK's objects, and what they show now. The inspection's parts are held, so that a new one cannot
+/// lie at the address of an old one and be taken for it.
+struct SceneView::Pipeline {
+  vtkSmartPointer<VtkWindow> window = make_vtk_window();
+  vtkNew<vtkRenderer> renderer;
+  Inspection inspection;
+  OrbitCamera camera;
+  SceneViewOptions options;
+  cv::Size size;
+  double scale = 0;
+  Theme theme = Theme::dark;
+  unsigned texture = 0;
+  std::size_t renders = 0;
+
+  bool shows(const Inspection& other) const {
+    return inspection.initialization == other.initialization && inspection.truth == other.truth &&
+           inspection.window == other.window;
+  }
+};
+
+SceneView::SceneView() : pipeline_(std::make_unique<Pipeline>()) {
+  vtkRenderer& renderer = *pipeline_->renderer;
+  renderer.SetGradientBackground(true);
+  renderer.SetBackgroundAlpha(1);
+  pipeline_->window->AddRenderer(&renderer);
+}
+
+SceneView::~SceneView() { pipeline_->window->Finalize(); }
+
+unsigned SceneView::render(const Inspection& inspection,
+                           const OrbitCamera& camera,
+                           const SceneViewOptions& options,
+                           int width,
+                           int height) {
+  Pipeline& now = *pipeline_;
+  const double scale = overlay_scale();
+  if (now.texture != 0 && now.shows(inspection) && same(now.camera, camera) &&
+      now.options == options && now.size == cv::Size(width, height) && now.scale == scale &&
+      now.theme == current_theme())
+    return now.texture;
+  now.inspection = inspection;
+  now.camera = camera;
+  now.options = options;
+  now.size = {width, height};
+  now.scale = scale;
+  now.theme = current_theme();
+  set_background(*now.renderer);
+  build({*now.renderer, inspection, options, scale}, camera);
+  set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);
+  now.renderer->ResetCameraClippingRange();
+  now.texture = render_to_texture(*now.window, width, height);
+  ++now.renders;
+  return now.texture;
+}
+
+std::size_t SceneView::renders() const { return pipeline_->renders; }
+
+}  // namespace gpo

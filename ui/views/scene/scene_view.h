@@ -1,0 +1,65 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "ui/views/picture/image_geometry.h"
+#include "ui/views/scene/orbit_camera.h"
+
+#include <memory>
+
+struct ImDrawList;
+
+namespace gpo {
+
+/// What is shown in the scene.
+struct SceneViewOptions {
+  bool cube = true;
+  double cube_side = 0;  ///< 0: `default_cube_side` [unit of the estimate]
+  bool truth = true;     ///< true cameras and plane, where they are known
+  bool points = true;    ///< the map
+  /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
+  int uncertainty = 1;
+  bool legend = true;
+
+  bool operator==(const SceneViewOptions&) const = default;
+};
+
+/// Whether it is asked for and known.
+bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options);
+
+/// The estimate in 3-D, by VTK. Needs the context in which it was made to be current.
+class SceneView {
+ public:
+  SceneView();
+  ~SceneView();
+  SceneView(const SceneView&) = delete;
+  SceneView& operator=(const SceneView&) = delete;
+
+  /// The texture of the rendered scene, bottom row first; 0 for an empty size. Renders only when
+  /// something has changed since the last call; what belongs to a single frame is not in it.
+  unsigned render(const Inspection& inspection,
+                  const OrbitCamera& camera,
+                  const SceneViewOptions& options,
+                  int width,
+                  int height);
+
+  /// How often something had changed.
+  std::size_t renders() const;
+
+ private:
+  struct Pipeline;
+  std::unique_ptr<Pipeline> pipeline_;
+};
+
+/// Draws the scene into the rectangle (whole pixels), and over it the frame's camera, labels,
+/// legend and scale bar. `frame` counts in the recording.
+void draw_scene_view(ImDrawList& list,
+                     const ScreenRect& rect,
+                     SceneView& view,
+                     const Inspection& inspection,
+                     int frame,
+                     const OrbitCamera& camera,
+                     const SceneViewOptions& options);
+
+}  // namespace gpo
