@@ -222,14 +222,6 @@ Watch told_by(const Settings& settings, const std::stop_token& stop, const Progr
 
 }  // namespace
 
-bool uses_ransac(const Settings& settings) {
-  return settings.ransac.value_or(find_method(settings.method).needs_plane);
-}
-
-Inliers inliers_used(const Settings& settings) {
-  return settings.inliers.value_or(find_method(settings.method).inliers);
-}
-
 std::string inliers_note(const Inspection& inspection) {
   if (inspection.window->inliers == Inliers::consistent) return "tracks, consistent";
   const Settings& settings = inspection.settings;
