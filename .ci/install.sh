@@ -10,7 +10,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache
-  clang libclang-rt-14-dev  # tests/fuzz
+  clang libclang-rt-dev  # tests/fuzz
 )
 benchmark_packages=(libbenchmark-dev)
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/window_picture.h"
 
+#include "ui/context/imgui_versions.h"
 #include "ui/look/palette.h"
 
 #include <algorithm>
@@ -131,8 +132,7 @@ void WindowPicture::redraw(ImDrawData& data,
     }
   }
   ImDrawData of_part = data;
-  of_part.CmdLists = lists.data();
-  of_part.CmdListsCount = static_cast<int>(lists.size());
+  set_draw_lists(of_part, lists);
   ImGui_ImplOpenGL3_RenderDrawData(&of_part);
   for (std::size_t i = 0; i < lists_.size(); ++i)
     std::ranges::copy(lists_[i].commands, data.CmdLists[i]->CmdBuffer.begin());

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/charuco.h"
 
+#include "engine/recording/board/opencv_aruco.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -19,7 +20,7 @@ constexpr double kMostApart = 0.2;  // what two markers say of one corner, of a 
 
 struct NamedDictionary {
   const char* name;
-  cv::aruco::PREDEFINED_DICTIONARY_NAME dictionary;
+  int dictionary;
 };
 
 constexpr std::array kDictionaries = {
@@ -46,12 +47,12 @@ constexpr std::array kDictionaries = {
     NamedDictionary{"DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11},
 };
 
-cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
+int dictionary_of(const std::string& name) {
   const auto found = std::find_if(kDictionaries.begin(),
                                   kDictionaries.end(),
                                   [&](const NamedDictionary& one) { return one.name == name; });
   CV_Assert(found != kDictionaries.end());
-  return cv::aruco::getPredefinedDictionary(found->dictionary);
+  return found->dictionary;
 }
 
 /// A marker that is seen: the homography that takes its place on the board [squares, from the
@@ -76,10 +77,8 @@ std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
 /// By square: row * (columns + 1) + column.
 using MarkersBySquare = std::vector<std::optional<SeenMarker>>;
 
-MarkersBySquare place_markers(const Board& board,
-                              const std::vector<int>& ids,
-                              const std::vector<std::vector<cv::Point2f>>& corners,
-                              bool light_first) {
+MarkersBySquare place_markers(const Board& board, const OpencvMarkers& seen, bool light_first) {
+  const auto& [ids, corners] = seen;
   const auto squares = marker_squares(board, light_first);
   const auto side = static_cast<float>(board.markers->side_m / board.square_m);
   const float margin = (1 - side) / 2;
@@ -186,19 +185,17 @@ std::string dictionary_names() {
 }
 
 int dictionary_size(const std::string& dictionary) {
-  return dictionary_of(dictionary)->bytesList.rows;
+  return marker_dictionary_size(dictionary_of(dictionary));
 }
 
 int marker_count(const Board& board) { return (board.columns + 1) * (board.rows + 1) / 2; }
 
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board) {
-  std::vector<int> ids;
-  std::vector<std::vector<cv::Point2f>> markers;
-  cv::aruco::detectMarkers(gray, dictionary_of(board.markers->dictionary), markers, ids);
-  auto corners = corners_between(place_markers(board, ids, markers, false), gray, board);
+  const auto markers = detect_markers(gray, dictionary_of(board.markers->dictionary));
+  auto corners = corners_between(place_markers(board, markers, false), gray, board);
   if (board.rows % 2 == 1) {  // an even number of rows of squares
     // With the markers in the wrong squares no two neighbors agree.
-    auto older = corners_between(place_markers(board, ids, markers, true), gray, board);
+    auto older = corners_between(place_markers(board, markers, true), gray, board);
     if (seen_count(older) > seen_count(corners)) corners = std::move(older);
   }
   if (seen_count(corners) == 0) return {};

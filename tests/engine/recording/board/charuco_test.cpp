@@ -4,6 +4,7 @@
 
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
+#include "tests/engine/recording/board/opencv_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <algorithm>
@@ -73,7 +74,6 @@ TEST(Charuco, PartOfTheBoardGivesAPose) {
 cv::Mat older_print() {
   constexpr int kTexels = 60;
   constexpr int kMarker = 44;
-  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_100);
   cv::Mat print(
       kTexels * (kCharuco.rows + 1), kTexels * (kCharuco.columns + 1), CV_8U, cv::Scalar(0));
   int id = 0;
@@ -81,9 +81,8 @@ cv::Mat older_print() {
     for (int column = row % 2; column <= kCharuco.columns; column += 2) {
       cv::Mat square = print({kTexels * column, kTexels * row, kTexels, kTexels});
       square.setTo(255);
-      cv::Mat marker;
-      dictionary->drawMarker(id++, kMarker, marker, 1);
-      marker.copyTo(square({8, 8, kMarker, kMarker}));
+      test::opencv_marker(cv::aruco::DICT_5X5_100, id++, kMarker)
+          .copyTo(square({8, 8, kMarker, kMarker}));
     }
   }
   return print;

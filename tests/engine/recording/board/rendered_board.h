@@ -9,7 +9,6 @@
 
 #include <cmath>
 
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/core.hpp>
 
 namespace gpo::test {
@@ -83,20 +82,6 @@ inline cv::Mat render_print(const cv::Mat& texture,
     const bool print = u >= 0 && v >= 0 && u < texture.cols && v < texture.rows;
     return print ? 25 + 0.8 * texture.at<std::uint8_t>(v, u) : 229;
   });
-}
-
-/// OpenCV's own drawing of a ChArUco board.
-inline cv::Mat opencv_charuco(const Board& board, int dictionary) {
-  constexpr int kTexels = 60;
-  const auto drawn =
-      cv::aruco::CharucoBoard::create(board.columns + 1,
-                                      board.rows + 1,
-                                      static_cast<float>(board.square_m),
-                                      static_cast<float>(board.markers->side_m),
-                                      cv::aruco::getPredefinedDictionary(dictionary));
-  cv::Mat texture;
-  drawn->draw({kTexels * (board.columns + 1), kTexels * (board.rows + 1)}, texture, 0, 1);
-  return texture;
 }
 
 /// A camera that looks at the middle of the board from `distance` [m], tilted and rolled [deg].
