@@ -85,7 +85,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   return refused;
 }
 
-const Method& find_method(const std::string& key) {
+const Method& find_method(std::string_view key) {
   std::string known;
   for (const Method& method : methods()) {
     if (method.key == key) return method;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace gpo {
 
@@ -42,6 +43,6 @@ std::span<const Method> methods();
 Initialization assessed(const Method& method, const Window& window, Initialization result);
 
 /// The row named `key`. Throws InputError that names the known ones.
-const Method& find_method(const std::string& key);
+const Method& find_method(std::string_view key);
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
 #include "tests/ui/gl_test.h"
+#include "tests/ui/held_keys.h"
 #include "ui/workbench/actions.h"
 #include "ui/workbench_host.h"
 
@@ -87,8 +88,8 @@ class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
                    static_cast<float>(monkey.between(-10, host_.size.height + 10))};
     for (int button = 0; button < 3; ++button)
       if (monkey.below(4) == 0) io.MouseDown[button] = !io.MouseDown[button];
-    io.KeyShift = monkey.below(6) == 0;
-    io.KeyCtrl = monkey.below(6) == 0;
+    const bool shift = monkey.below(6) == 0;
+    test::hold(monkey.below(6) == 0, shift);
     if (monkey.below(5) == 0) io.MouseWheel = static_cast<float>(monkey.below(5) - 2);
     if (monkey.below(8) == 0) io.AddInputCharacter('a' + static_cast<unsigned>(monkey.below(26)));
   }

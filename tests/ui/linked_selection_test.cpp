@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/gl_test.h"
+#include "tests/ui/held_keys.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/views/picture/image_view.h"
@@ -134,20 +135,20 @@ TEST_F(LinkedSelection, ClickPicksAndControlClickAddsAndTakesAway) {
   click(track_on_screen(column));
   EXPECT_THAT(state_.selection.tracks, ElementsAre(id));
   EXPECT_EQ(state_.selection.focus, id);
-  ImGui::GetIO().KeyCtrl = true;
+  test::hold(true, false);
   click(track_on_screen(column));
-  ImGui::GetIO().KeyCtrl = false;
+  test::hold(false, false);
   EXPECT_EQ(state_.selection, Selection{});
 }
 
 TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
-  ImGui::GetIO().KeyShift = true;
+  test::hold(false, true);
   const Vector2d middle = picture().min + picture().size / 2;
   point_at(middle - Vector2d(120, 90));
   press(0, true);
   point_at(middle + Vector2d(120, 90));
   press(0, false);
-  ImGui::GetIO().KeyShift = false;
+  test::hold(false, false);
   EXPECT_GT(state_.selection.tracks.size(), 3U);
   EXPECT_EQ(state_.picture_zoom.factor, 1);
   EXPECT_EQ(state_.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved

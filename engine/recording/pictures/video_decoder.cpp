@@ -3,6 +3,7 @@
 #include "engine/recording/pictures/video_decoder.h"
 
 #include "engine/base/error.h"
+#include "engine/recording/pictures/ffmpeg_versions.h"
 #include "engine/recording/pictures/libav.h"
 
 #include <algorithm>
@@ -41,8 +42,7 @@ using libav::Scaler;
 
 /// How often the shown picture is turned clockwise by 90 degrees: phones store what the sensor saw.
 int quarter_turns(const AVStream& stream) {
-  const auto* matrix = reinterpret_cast<const std::int32_t*>(
-      av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr));
+  const std::int32_t* matrix = libav::display_matrix(stream);
   if (matrix == nullptr) return 0;
   const double turns = -av_display_rotation_get(matrix) / 90;
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;

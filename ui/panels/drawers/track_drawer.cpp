@@ -27,7 +27,7 @@ std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", *value) : "\u2013";
 }
 
-constexpr ColumnText kColumns[] = {
+constexpr ColumnText kLifeColumns[] = {
     {"frame", "Counts in the recording; click: go there"},
     {"x", "Where it is seen, in the picture as it was recorded"},
     {"y", "Where it is seen, in the picture as it was recorded"},
@@ -38,8 +38,8 @@ constexpr ColumnText kColumns[] = {
 
 void header() {
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (const ColumnText& column : kColumns) ImGui::TableSetupColumn(column.title);
-  table_header(kColumns);
+  for (const ColumnText& column : kLifeColumns) ImGui::TableSetupColumn(column.title);
+  table_header(kLifeColumns);
 }
 
 void draw_row(const TrackFrame& frame, bool current, Commands& commands) {
@@ -68,7 +68,7 @@ void draw_row(const TrackFrame& frame, bool current, Commands& commands) {
 void draw_table(const TrackLife& life, int frame, float width, float height, Commands& commands) {
   const auto flags =
       ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg;
-  if (!ImGui::BeginTable("life", static_cast<int>(std::size(kColumns)), flags, {width, height}))
+  if (!ImGui::BeginTable("life", static_cast<int>(std::size(kLifeColumns)), flags, {width, height}))
     return;
   ImGui::PushFont(font(Font::small));
   header();

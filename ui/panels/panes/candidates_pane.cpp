@@ -12,7 +12,7 @@
 namespace gpo {
 namespace {
 
-constexpr ColumnText kColumns[] = {
+constexpr ColumnText kReadingColumns[] = {
     {"algorithm", "Which decomposition of the homography gives this reading"},
     {"verdict", "Taken, or why not"},
     {"normal (x, y, z)", "Of the plane, in the reference camera; unit length"},
@@ -25,8 +25,8 @@ constexpr ColumnText kColumns[] = {
 
 void header() {
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (const ColumnText& column : kColumns) ImGui::TableSetupColumn(column.title);
-  table_header(kColumns);
+  for (const ColumnText& column : kReadingColumns) ImGui::TableSetupColumn(column.title);
+  table_header(kReadingColumns);
 }
 
 void draw_verdict(const HomographyCandidate& candidate, float scale) {
@@ -61,7 +61,7 @@ void draw_table(const std::vector<HomographyCandidate>& candidates, ImVec2 size,
   const auto flags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                      ImGuiTableFlags_SizingFixedFit;
   ImGui::PushFont(font(Font::small));
-  if (ImGui::BeginTable("readings", static_cast<int>(std::size(kColumns)), flags, size)) {
+  if (ImGui::BeginTable("readings", static_cast<int>(std::size(kReadingColumns)), flags, size)) {
     header();
     for (const HomographyCandidate& candidate : candidates) draw_row(candidate, scale);
     ImGui::EndTable();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kDash = "\u2013";
 
-constexpr ColumnText kColumns[] = {
+constexpr ColumnText kFactColumns[] = {
     {"method", "The current result, and those that it is compared with"},
     {"cost [px\u00b2]",
      "Half the sum of squared residuals, as the solver weighs them: at its start "
@@ -51,10 +51,10 @@ std::vector<std::string> cells(const ShownResult& result, bool timings) {
 bool is_shown(std::size_t column, bool wide) { return wide || (column != 3 && column != 4); }
 
 void header(bool wide) {
-  for (std::size_t i = 0; i < std::size(kColumns); ++i)
-    ImGui::TableSetupColumn(kColumns[i].title,
+  for (std::size_t i = 0; i < std::size(kFactColumns); ++i)
+    ImGui::TableSetupColumn(kFactColumns[i].title,
                             is_shown(i, wide) ? 0 : ImGuiTableColumnFlags_Disabled);
-  table_header(kColumns);
+  table_header(kFactColumns);
 }
 
 void draw_row(const ShownResult& result, bool timings, float scale) {
@@ -75,7 +75,7 @@ void draw_facts(const std::vector<ShownResult>& shown, float width, bool timings
   const bool wide = width > 520 * scale;
   ImGui::PushFont(font(Font::small));
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;
-  if (ImGui::BeginTable("facts", static_cast<int>(std::size(kColumns)), flags, {width, 0})) {
+  if (ImGui::BeginTable("facts", static_cast<int>(std::size(kFactColumns)), flags, {width, 0})) {
     header(wide);
     for (const ShownResult& result : shown) draw_row(result, timings, scale);
     ImGui::EndTable();

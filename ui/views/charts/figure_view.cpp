@@ -49,7 +49,7 @@ class PaintedItem : public vtkContextItem {
 vtkStandardNewMacro(PaintedItem);
 
 /// Where things are; VTK's y is up [px].
-struct Layout {
+struct FigureLayout {
   double scale;
   cv::Size size;
   std::vector<vtkRectf> axes;                                ///< one a chart
@@ -57,7 +57,7 @@ struct Layout {
 };
 
 /// Rows of samples with their names, centered, from the lower edge up. Returns their height.
-double place_legend(Layout& layout, const std::vector<CurveStyle>& styles) {
+double place_legend(FigureLayout& layout, const std::vector<CurveStyle>& styles) {
   const double s = layout.scale, sample = 40 * s, gap = 8 * s, between = 26 * s, row = 26 * s;
   std::vector<std::vector<double>> rows;  // widths
   double free = 0;
@@ -89,11 +89,11 @@ double place_legend(Layout& layout, const std::vector<CurveStyle>& styles) {
   return row * static_cast<double>(rows.size());
 }
 
-Layout place(const Figure& figure, const std::vector<CurveStyle>& styles, cv::Size size) {
+FigureLayout place(const Figure& figure, const std::vector<CurveStyle>& styles, cv::Size size) {
   const double columns = std::max<double>(1, static_cast<double>(figure.charts.size()));
   const double s = std::clamp(
       std::min(size.width / (columns * kChartWidth), 1.0 * size.height / kChartHeight), 0.5, 8.0);
-  Layout layout{s, size, {}, {}};
+  FigureLayout layout{s, size, {}, {}};
   const double bottom = place_legend(layout, styles) + 70 * s;
   const double top = (figure.title.empty() ? 10 : 42) * s + 34 * s;
   const double column = size.width / columns, left = 90 * s, right = 18 * s;
@@ -142,7 +142,7 @@ void paint_titles(vtkContext2D& painter, const Chart& chart, const vtkRectf& axe
 }
 
 /// Titles, legend, and what is missing.
-void paint_text(vtkContext2D& painter, const Figure& figure, const Layout& layout) {
+void paint_text(vtkContext2D& painter, const Figure& figure, const FigureLayout& layout) {
   const double s = layout.scale;
   const double middle = layout.size.width / 2.0;
   const double title_px = kTitle_px * s;
@@ -195,7 +195,7 @@ class FigureScene {
 
  private:
   std::vector<CurveStyle> styles_;
-  Layout layout_;
+  FigureLayout layout_;
   vtkSmartPointer<VtkWindow> window_ = make_vtk_window();
   vtkNew<vtkRenderer> renderer_;
   vtkNew<vtkContextActor> actor_;

@@ -69,9 +69,17 @@ void drain(AVCodecContext* encoder, AVFormatContext* format) {
 }
 
 void turn(AVStream* stream, int clockwise_degrees) {
-  auto* matrix = reinterpret_cast<std::int32_t*>(
-      av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(std::int32_t)));
-  av_display_rotation_set(matrix, clockwise_degrees);
+  constexpr std::size_t kBytes = 9 * sizeof(std::int32_t);
+#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see ffmpeg_versions.h
+  std::uint8_t* data = av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, kBytes);
+#else
+  AVCodecParameters& codec = *stream->codecpar;
+  std::uint8_t* data =
+      av_packet_side_data_new(
+          &codec.coded_side_data, &codec.nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX, kBytes, 0)
+          ->data;
+#endif
+  av_display_rotation_set(reinterpret_cast<std::int32_t*>(data), clockwise_degrees);
 }
 
 }  // namespace
