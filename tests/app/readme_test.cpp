@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/app/program.h"
 
+#include <cctype>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -27,6 +29,52 @@ std::vector<std::string> readme_commands() {
     }
   }
   return commands;
+}
+
+/// Whether the line is a heading that a link may name: "## How fast" is #how-fast.
+bool is_heading(const std::string& line, const std::string& anchor) {
+  if (!line.starts_with("#")) return false;
+  std::string name;
+  for (const char c : line.substr(line.find_first_not_of('#') + 1)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      name += static_cast<char>(std::tolower(c));
+    if (c == ' ' && !name.empty()) name += '-';
+  }
+  return name == anchor;
+}
+
+/// Targets of the page's links and pictures: [text](target).
+std::vector<std::string> links_of(const std::string& page) {
+  static const std::regex link(R"(\]\(([^)]+)\))");
+  std::vector<std::string> links;
+  for (std::sregex_iterator it(page.begin(), page.end(), link), end; it != end; ++it)
+    links.push_back((*it)[1]);
+  return links;
+}
+
+// The README and the pages that it hands its long tables to.
+TEST(Readme, EveryLinkLeadsSomewhere) {
+  const fs::path top = GPO_SOURCE_DIR;
+  for (const char* page : {"README.md", "assets/nine/README.md", "tests/benchmark/README.md"}) {
+    const std::string text = test::read_file(top / page);
+    for (const std::string& link : links_of(text)) {
+      const fs::path target = (top / page).parent_path() / link.substr(0, link.find('#'));
+      EXPECT_TRUE(fs::exists(target)) << page << ": " << link;
+      if (link.find('#') == std::string::npos) continue;
+      std::istringstream lines(test::read_file(target));
+      bool found = false;
+      for (std::string line; std::getline(lines, line);)
+        found = found || is_heading(line, link.substr(link.find('#') + 1));
+      EXPECT_TRUE(found) << page << ": " << link;
+    }
+  }
+}
+
+TEST(Readme, IsShortEnoughForANewcomer) {
+  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  int lines = 0;
+  for (std::string line; std::getline(readme, line);) ++lines;
+  EXPECT_LE(lines, 380);
 }
 
 // In order, because some use what others wrote. ./test.sh is what runs this test.

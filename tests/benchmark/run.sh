@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, measures, and prints the README's tables; minutes, best on a
+# Installs what is missing, builds, measures, and prints the tables of README.md beside it; minutes, best on a
 # machine that does nothing else. tests/benchmark/run.sh ARGS... passes ARGS to Google Benchmark.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
