@@ -66,9 +66,12 @@ struct EvaluateArguments {
   std::string lengths = "5:60:5";            ///< of the windows [frames]
   std::string starts = "0:end:10";           ///< of the windows
   int jobs = 1;                              ///< windows of so many starts are computed at once
+  int timing_jobs = 1;                       ///< the same for those whose running times are told
+  std::size_t cache_mib = kDefaultCacheMib;  ///< of all recordings that are in work
   std::uint64_t seed = 1;                    ///< of every random choice
   std::optional<std::string> shard;          ///< "K/N"
   std::vector<std::filesystem::path> merge;  ///< folders of shards, instead of recordings
+  std::optional<std::string> figure_width;   ///< "85mm": of figures for print
   std::filesystem::path output;              ///< folder
 };
 

@@ -80,6 +80,9 @@ LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recordin
   }
   std::ranges::reverse(rows);
   LengthCurves curves{figure_over_length(rows, plan), {}, false};
+  // One window a length is what was asked for here, not few of many.
+  for (Chart& chart : curves.figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
   curves.figure.title =
       fmt::format("{}: windows from frame {}, by their length", recording->name, window.start);
   for (const Configuration& configuration : plan.configurations) {

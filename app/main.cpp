@@ -182,6 +182,13 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   command->add_option("--jobs", arguments.jobs, "Windows of so many starts are computed at once")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
+  command
+      ->add_option("--timing-jobs",
+                   arguments.timing_jobs,
+                   "The same for the windows of running_time.md, which come last")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  add_cache(*command, arguments.cache_mib);
   command->add_option("--shard",
                       arguments.shard,
                       "K/N: only this share of the windows, without the results; on any machine, "
@@ -189,6 +196,10 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
   command->add_option("--merge",
                       arguments.merge,
                       "Folders of all shards, instead of recordings: makes the results of one run");
+  command->add_option(
+      "--figure-width",
+      arguments.figure_width,
+      "Figures for a page: so wide, e.g. 85mm or 175mm, with type of 7 pt and more");
   command->add_option("--output", arguments.output, "Folder to write")->required();
 }
 

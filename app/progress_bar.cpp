@@ -22,7 +22,10 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(int done, int of) {
-  if (!progress_is_watched()) return;
+  if (!progress_is_watched()) {
+    if (pace_.due(Pace::Clock::now())) fmt::print(stderr, "{}: {}/{} frames\n", title_, done, of);
+    return;
+  }
   const int filled = kBarLength * done / of;
   const std::string bar = std::string(filled, '#') + std::string(kBarLength - filled, '.');
   fmt::print(stderr, "\r{} [{}] {}/{} frames", title_, bar, done, of);

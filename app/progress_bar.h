@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/pace.h"
+
 #include <string>
 
 namespace gpo {
 
-/// Whether standard error is a terminal: progress is for people who watch, not for logs.
+/// Whether standard error is a terminal.
 bool progress_is_watched();
 
-/// One line on standard error that is overwritten as work goes on, and ended at the end; nothing
-/// where nobody watches.
+/// One line on standard error that is overwritten as work goes on, and ended at the end; where
+/// nobody watches, as in a log, a line every ten seconds.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string what) : title_(std::move(what)) {}
@@ -18,11 +20,12 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// "WHAT [####....] DONE/OF frames".
+  /// "WHAT [####....] DONE/OF frames", in a log without the bar.
   void show(int done, int of);
 
  private:
   std::string title_;
+  Pace pace_{Pace::Clock::now()};
   bool begun_ = false;
 };
 

@@ -38,7 +38,6 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   const fs::path cache = GPO_RECORDINGS_DIR;
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
-  if (!progress_is_watched()) return synthesized_recordings(recipes, cache, threads);
   ProgressBar bar("synthesizing " + names_of_missing(recipes, cache));
   return synthesized_recordings(
       recipes, cache, threads, [&](int done, int of) { bar.show(done, of); });

@@ -3,10 +3,13 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,7 +20,7 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Of the files of an experiment; other programs' are refused.
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
 /// From a start so many frames fit; empty where none does.
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
@@ -31,7 +34,7 @@ ExperimentRecording plan_recording(const Recording& recording,
                                    const std::vector<Range>& starts) {
   const int frames = recording.frame_count();
   const std::vector<int> fit = fitting(lengths, frames);
-  ExperimentRecording planned{recording.name, recording.path, frames, {}};
+  ExperimentRecording planned{recording.name, recording.path, frames, {}, content_of(recording)};
   if (fit.empty()) return planned;
   planned.starts = numbers_in(starts, frames - fit.back());
   std::erase_if(planned.starts, [&](int start) { return start + fit.front() > frames; });
@@ -51,13 +54,54 @@ void check_names(const std::vector<ExperimentRecording>& recordings) {
   }
 }
 
+/// Whether both hold the recordings of the same names, in one order.
+bool same_names(const Experiment& a, const Experiment& b) {
+  return std::ranges::equal(
+      a.recordings, b.recordings, {}, &ExperimentRecording::name, &ExperimentRecording::name);
+}
+
+/// A positive number of few enough digits.
+std::optional<int> parse_count(std::string_view text) {
+  const auto number = parse_integer(text);
+  return number && *number > 0 && std::in_range<int>(*number) ? std::optional<int>(*number)
+                                                              : std::nullopt;
+}
+
 }  // namespace
+
+ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
+  ExperimentDifferences found;
+  if (a.configurations != b.configurations) found.plan.emplace_back("methods");
+  if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
+  if (a.seed != b.seed) found.plan.emplace_back("seed");
+  if (a.program != b.program) found.content.emplace_back("version of the program");
+  if (!same_names(a, b)) {
+    found.plan.emplace_back("recordings");
+    return found;
+  }
+  bool other_starts = false;
+  for (std::size_t i = 0; i < a.recordings.size(); ++i) {
+    const ExperimentRecording &one = a.recordings[i], &other = b.recordings[i];
+    const auto parts = differing_parts(one.content, other.content);
+    for (const std::string& part : parts)
+      found.content.push_back(fmt::format("{} of {}", part, one.name));
+    // `end` is where the longest window still fits: other lengths or frames, other starts.
+    other_starts = other_starts || (parts.empty() && one.starts != other.starts);
+  }
+  if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
+  return found;
+}
+
+std::string differ_text(const std::vector<std::string>& names) {
+  return fmt::format("`{}` {}", fmt::join(names, "`, `"), names.size() == 1 ? "differs" : "differ");
+}
 
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request) {
   Experiment experiment;
   experiment.configurations = request.configurations;
   experiment.seed = request.seed;
+  experiment.program = GPO_VERSION;
   int most_frames = 0;
   for (const auto& recording : recordings) {
     most_frames = std::max(most_frames, recording->frame_count());
@@ -104,22 +148,31 @@ std::vector<ExperimentTask> tasks_of(const Experiment& experiment) {
 }
 
 Shard parse_shard(const std::string& text) {
-  Shard shard;
-  char rest = 0;
-  const int read = std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest);
-  if (read != 2 || shard.index < 1 || shard.index > shard.count) {
+  const std::string_view whole = text;
+  const std::size_t slash = std::min(whole.find('/'), whole.size());
+  const auto index = parse_count(whole.substr(0, slash));
+  const auto count = parse_count(whole.substr(std::min(slash + 1, whole.size())));
+  if (!index || !count || *index > *count) {
     throw InputError(fmt::format("--shard: '{}', expected K/N with K from 1 to N, e.g. 2/8", text));
   }
-  return shard;
+  return {*index, *count};
 }
 
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& shard) {
-  std::vector<ExperimentTask> share;
-  const std::vector<ExperimentTask> tasks = tasks_of(experiment);
-  for (std::size_t i = shard.index - 1; i < tasks.size(); i += shard.count) {
-    share.push_back(tasks[i]);
+  std::vector<ExperimentTask> tasks = tasks_of(experiment);
+  const int windows = window_count(tasks);
+  const int even = windows / shard.count, more = windows % shard.count, before = shard.index - 1;
+  const int first = before * even + std::min(before, more);
+  const int end = first + even + (before < more ? 1 : 0);
+  int window = 0;
+  for (ExperimentTask& task : tasks) {
+    std::erase_if(task.lengths, [&](int) {
+      const int here = window++;
+      return here < first || here >= end;
+    });
   }
-  return share;
+  std::erase_if(tasks, [](const ExperimentTask& task) { return task.lengths.empty(); });
+  return tasks;
 }
 
 int window_count(std::span<const ExperimentTask> tasks) {
@@ -128,19 +181,26 @@ int window_count(std::span<const ExperimentTask> tasks) {
   });
 }
 
+int timed_length(const std::vector<int>& lengths) {
+  const auto above = std::ranges::upper_bound(lengths, kPaperFrames);
+  return above == lengths.begin() ? *above : *std::prev(above);
+}
+
 ordered_json to_json(const Experiment& experiment) {
   ordered_json recordings = ordered_json::array();
   for (const ExperimentRecording& recording : experiment.recordings) {
     recordings.push_back({{"name", recording.name},
                           {"path", recording.path.string()},
                           {"frames", recording.frames},
-                          {"starts", recording.starts}});
+                          {"starts", recording.starts},
+                          {"content", recording.content}});
   }
   ordered_json configurations = ordered_json::array();
   for (const Configuration& configuration : experiment.configurations) {
     configurations.push_back(key_of(configuration));
   }
   return {{"format", kFormat},
+          {"program", experiment.program},
           {"recordings", std::move(recordings)},
           {"lengths", experiment.lengths},
           {"configurations", std::move(configurations)},
@@ -148,19 +208,26 @@ ordered_json to_json(const Experiment& experiment) {
 }
 
 Experiment experiment_from_json(const ordered_json& json) {
-  if (json.at("format") != kFormat) throw InputError("key `format`: of another program version");
+  if (json.at("format") != kFormat) {
+    throw InputError(
+        fmt::format("key `format`: found {}, of another version of the program, expected {}",
+                    json.at("format").dump(),
+                    kFormat));
+  }
   Experiment experiment;
   for (const ordered_json& recording : json.at("recordings")) {
     experiment.recordings.push_back({recording.at("name").get<std::string>(),
                                      recording.at("path").get<std::string>(),
                                      recording.at("frames").get<int>(),
-                                     recording.at("starts").get<std::vector<int>>()});
+                                     recording.at("starts").get<std::vector<int>>(),
+                                     recording.at("content").get<RecordingContent>()});
   }
   experiment.lengths = json.at("lengths").get<std::vector<int>>();
   for (const ordered_json& key : json.at("configurations")) {
     experiment.configurations.push_back(parse_configuration(key.get<std::string>()));
   }
   experiment.seed = json.at("seed").get<std::uint64_t>();
+  experiment.program = json.at("program").get<std::string>();
   return experiment;
 }
 

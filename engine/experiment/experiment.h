@@ -4,6 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "engine/experiment/ranges.h"
+#include "engine/recording/content.h"
 #include "engine/recording/recording.h"
 
 #include <cstdint>
@@ -17,26 +18,41 @@
 
 namespace gpo {
 
+constexpr int kPaperFrames = 30;  ///< of the windows whose running times the paper tells
+
 /// A recording of an experiment, and where its windows start.
 struct ExperimentRecording {
   std::string name;            ///< no two have the same
-  std::filesystem::path path;  ///< as it was given
+  std::filesystem::path path;  ///< as it was given; says nothing of what is there
   int frames = 0;
   std::vector<int> starts;
+  RecordingContent content = {};  ///< what the results depend on
 
   bool operator==(const ExperimentRecording&) const = default;
 };
 
-/// What is compared on what: recordings x starts x lengths x configurations. All that the results
-/// depend on; equal experiments have equal results, times aside.
+/// What is compared on what: recordings x starts x lengths x configurations, and by which program.
+/// All that the results depend on.
 struct Experiment {
   std::vector<ExperimentRecording> recordings;
   std::vector<int> lengths;  ///< of the windows, ascending [frames]
   std::vector<Configuration> configurations;
   std::uint64_t seed = 1;
+  std::string program = {};  ///< its version
 
   bool operator==(const Experiment&) const = default;
 };
+
+/// In what two experiments differ, by names; where they do not, results are the same, times aside,
+/// wherever their recordings lie.
+struct ExperimentDifferences {
+  std::vector<std::string> plan;     ///< they ask for other things: "lengths", "methods"
+  std::vector<std::string> content;  ///< they ask the same of other things: "fx of desk"
+};
+ExperimentDifferences differences(const Experiment& a, const Experiment& b);
+
+/// "`lengths` differs" or "`lengths`, `methods` differ".
+std::string differ_text(const std::vector<std::string>& names);
 
 /// What a user asks for.
 struct ExperimentRequest {
@@ -46,7 +62,8 @@ struct ExperimentRequest {
   std::uint64_t seed = 1;
 };
 
-/// Throws InputError where two recordings have one name or no window fits.
+/// Throws InputError where two recordings have one name, no window fits, or a picture's file has
+/// gone.
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request);
 
@@ -63,7 +80,8 @@ struct ExperimentTask {
 /// In the order of the results.
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment);
 
-/// K of N, written `K/N`: every N-th task, from the K-th on.
+/// K of N, written `K/N`: of the windows in their order an N-th part, the K-th, so that those from
+/// one start are together as far as the parts, which differ by one window at most, allow.
 struct Shard {
   int index = 1;  ///< from 1
   int count = 1;
@@ -73,6 +91,10 @@ Shard parse_shard(const std::string& text);
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& shard);
 
 int window_count(std::span<const ExperimentTask> tasks);
+
+/// Of the windows whose running times are compared: the paper's 30 frames, or the longest length
+/// below, or where all are longer the shortest. `lengths`: ascending, at least one.
+int timed_length(const std::vector<int>& lengths);
 
 nlohmann::ordered_json to_json(const Experiment& experiment);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.

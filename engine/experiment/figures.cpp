@@ -14,41 +14,6 @@
 namespace gpo {
 namespace {
 
-bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
-
-bool is_of(const Configuration& c, MethodFamily family) {
-  return is_plain(c) && (c.method == "gpo" || find_method(c.method).family == family);
-}
-
-/// A figure of the paper, and which configurations are in it.
-struct PaperFigure {
-  const char* name;
-  const char* title;
-  bool (*shows)(const Configuration& configuration);
-};
-
-constexpr std::array kPaperFigures{
-    PaperFigure{"aggregation",
-                "GPO and aggregation-based methods",
-                [](const Configuration& c) { return is_of(c, MethodFamily::aggregation); }},
-    PaperFigure{"optimization",
-                "GPO and optimization-based methods",
-                [](const Configuration& c) { return is_of(c, MethodFamily::optimization); }},
-    PaperFigure{"gpo_ransac",
-                "GPO with and without RANSAC",
-                [](const Configuration& c) {
-                  return c.method == "gpo" && c.rotations == RotationSource::automatic;
-                }},
-    PaperFigure{"rotation_sources",
-                "GPO by the source of its rotations",
-                [](const Configuration& c) { return c.method == "gpo" && !c.ransac; }},
-    PaperFigure{"ba_ransac",
-                "BA with and without RANSAC",
-                [](const Configuration& c) {
-                  return c.method == "ba" && c.rotations == RotationSource::automatic;
-                }},
-};
-
 /// A column of results.csv as an axis.
 struct Axis {
   const char* column;
@@ -67,6 +32,13 @@ constexpr Axis kRmsAxis{"rms_px", "Reprojection error", "RMS [px]", 1, false};
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
 
+/// A method has its own in all figures, with whatever settings.
+int marker_of(const Configuration& configuration) {
+  const auto all = methods();
+  const auto found = std::ranges::find(all, configuration.method, &Method::key);
+  return static_cast<int>(found - all.begin());
+}
+
 Curve curve_of(const std::vector<Cell>& cells,
                const std::string& configuration,
                const std::string& column,
@@ -82,17 +54,19 @@ Curve curve_of(const std::vector<Cell>& cells,
     add(curve.y, d.median);
     add(curve.lower, d.lower);
     add(curve.upper, d.upper);
+    curve.counts.push_back(d.count);
   }
   return curve;
 }
 
 Curve bound_curve(const std::vector<Cell>& cells, const Configuration& configuration) {
   Curve curve = curve_of(cells, key_of(configuration), kBoundColumn, 1);
-  curve.name = fmt::format("bound ({})", title_of(configuration));
+  curve.name = fmt::format("bound for {}'s tracks", title_of(configuration));
   curve.rgb = kBoundColor;
   curve.dotted = true;
   curve.lower.clear();
   curve.upper.clear();
+  curve.counts.clear();
   return curve;
 }
 
@@ -103,6 +77,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
     if (curve.x.empty()) continue;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
+    curve.marker = marker_of(configuration);
     chart.curves.push_back(std::move(curve));
   }
   if (axis.column == std::string("pne_deg")) {
@@ -128,24 +103,16 @@ std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan)
   return text;
 }
 
-}  // namespace
-
-std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations) {
-  std::vector<FigurePlan> plans;
-  std::vector<Configuration> shown;
-  for (const PaperFigure& figure : kPaperFigures) {
-    FigurePlan plan{figure.name, figure.title, {}};
-    std::ranges::copy_if(configurations, std::back_inserter(plan.configurations), figure.shows);
-    if (plan.configurations.size() < 2) continue;
-    shown.insert(shown.end(), plan.configurations.begin(), plan.configurations.end());
-    plans.push_back(std::move(plan));
-  }
-  const bool all_shown = std::ranges::all_of(configurations, [&](const Configuration& c) {
-    return std::ranges::find(shown, c) != shown.end();
-  });
-  if (!all_shown) plans.push_back({"configurations", "All configurations", configurations});
-  return plans;
+/// What the dotted curve is.
+std::string note_of(const FigurePlan& plan) {
+  return fmt::format(
+      "Dotted: the least error (Cram\u00e9r-Rao) that the inliers of {}, their noise and known "
+      "rotations allow; with other tracks, inliers or noise the bound is another, and a curve may "
+      "be below this one.",
+      title_of(plan.configurations.front()));
 }
+
+}  // namespace
 
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
@@ -156,6 +123,7 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
                   windows_text(cells, plan)),
       {}};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
+  figure.note = note_of(plan);
   return figure;
 }
 

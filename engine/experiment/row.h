@@ -35,12 +35,14 @@ struct Row {
   std::string alignment;  ///< ok | degenerate; empty without ground truth
   std::optional<double> scale, ate_m, pne_deg, pne_aligned_deg, pde_m, pne_bound_deg;
   std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
+  std::optional<int> jobs;  ///< windows that were computed at once when these were measured
+  std::string processor;    ///< on which
 
   bool ok() const { return status == "ok"; }
 };
 
-/// The one declaration of the columns, in their order: `visit(name, value&)`. Times are the last,
-/// because all others are the same in every run.
+/// The one declaration of the columns, in their order: `visit(name, value&)`. Times, and on what
+/// they were measured, are the last, because all others are the same in every run.
 template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
@@ -75,6 +77,8 @@ void visit_row(R& row, Visitor&& visit) {
   visit("initialize_ms", row.initialize_ms);
   visit("optimize_ms", row.optimize_ms);
   visit("total_ms", row.total_ms);
+  visit("jobs", row.jobs);
+  visit("processor", row.processor);
 }
 
 /// What an inspection came to.

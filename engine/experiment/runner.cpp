@@ -3,6 +3,7 @@
 #include "engine/experiment/runner.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/processor.h"
 #include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
 
@@ -11,6 +12,8 @@
 #include <mutex>
 #include <numeric>
 #include <thread>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -23,9 +26,17 @@ std::vector<ExperimentTask> unfinished(const Experiment& experiment,
                                        std::vector<ExperimentTask> tasks) {
   for (ExperimentTask& task : tasks) {
     std::erase_if(task.lengths, [&](int frames) {
-      return load_window(folder, experiment, task, frames).has_value();
+      return load_window(folder, experiment, task, frames).rows.has_value();
     });
   }
+  std::erase_if(tasks, [](const ExperimentTask& task) { return task.lengths.empty(); });
+  return tasks;
+}
+
+/// Of the tasks' windows those of one length, or all others.
+std::vector<ExperimentTask> with_length(std::vector<ExperimentTask> tasks, int frames, bool with) {
+  for (ExperimentTask& task : tasks)
+    std::erase_if(task.lengths, [&](int length) { return (length == frames) != with; });
   std::erase_if(tasks, [](const ExperimentTask& task) { return task.lengths.empty(); });
   return tasks;
 }
@@ -49,6 +60,13 @@ std::vector<Row> compute_window(const Experiment& experiment,
   return rows;
 }
 
+/// Windows that are computed one as the other.
+struct Pass {
+  std::vector<ExperimentTask> tasks;
+  int jobs = 1;
+  bool timed = false;  ///< each decodes its own pictures
+};
+
 /// What the threads of a run share.
 class Run {
  public:
@@ -56,36 +74,45 @@ class Run {
       std::span<const std::shared_ptr<const Recording>> recordings,
       const fs::path& folder,
       const RunOptions& options)
-      : experiment_(experiment),
-        recordings_(recordings),
-        folder_(folder),
-        options_(options),
-        tasks_(unfinished(experiment, folder, tasks_of(experiment, options.shard))) {
-    progress_.of = window_count(tasks_of(experiment, options.shard));
-    progress_.done = progress_.of - window_count(tasks_);
-    for (const ExperimentTask& task : tasks_) {
+      : experiment_(experiment), recordings_(recordings), folder_(folder), options_(options) {
+    const auto all = tasks_of(experiment, options.shard);
+    const auto tasks = unfinished(experiment, folder, all);
+    const int timed = timed_length(experiment.lengths);
+    passes_ = {{with_length(tasks, timed, false), options.jobs, false},
+               {with_length(tasks, timed, true), options.timing_jobs, true}};
+    progress_.of = window_count(all);
+    progress_.done = progress_.of - window_count(tasks);
+    for (const ExperimentTask& task : tasks) {
       frames_ += std::accumulate(task.lengths.begin(), task.lengths.end(), 0.0);
     }
-    progress_.share = tasks_.empty() ? 1 : 0;
+    progress_.share = tasks.empty() ? 1 : 0;
     if (options_.progress) options_.progress(progress_);
   }
 
   bool finish() {
     const std::stop_callback forward(options_.stop, [this] { stop_.request_stop(); });
-    {
-      std::vector<std::jthread> threads;
-      threads.reserve(options_.jobs);
-      for (int i = 0; i < options_.jobs; ++i) threads.emplace_back([this] { work(); });
-    }
-    if (error_) std::rethrow_exception(error_);
+    for (const Pass& pass : passes_) finish(pass);
     return progress_.done == progress_.of;
   }
 
  private:
-  void work() {
+  void finish(const Pass& pass) {
+    next_ = 0;
+    left_.assign(recordings_.size(), 0);
+    for (const ExperimentTask& task : pass.tasks) ++left_[task.recording];
+    {
+      std::vector<std::jthread> threads;
+      threads.reserve(pass.jobs);
+      for (int i = 0; i < pass.jobs; ++i) threads.emplace_back([this, &pass] { work(pass); });
+    }
+    if (error_) std::rethrow_exception(error_);
+  }
+
+  void work(const Pass& pass) {
     try {
-      for (std::size_t i = next_++; i < tasks_.size() && !stop_.stop_requested(); i = next_++) {
-        compute(tasks_[i]);
+      for (std::size_t i = next_++; i < pass.tasks.size() && !stop_.stop_requested(); i = next_++) {
+        compute(pass.tasks[i], pass);
+        end(pass.tasks[i]);
       }
     } catch (...) {
       const std::scoped_lock lock(mutex_);
@@ -95,18 +122,33 @@ class Run {
   }
 
   /// The longest window first: the Inspector keeps its tracks for the others.
-  void compute(const ExperimentTask& task) {
+  void compute(const ExperimentTask& task, const Pass& pass) {
     const auto& recording = recordings_[task.recording];
+    if (pass.timed) forget_pictures(*recording);
     Inspector inspector(recording);
     for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
       const int frames = *length;
       const Settings window{.start = task.start, .frames = frames, .seed = experiment_.seed};
-      const std::vector<Row> rows =
+      std::vector<Row> rows =
           compute_window(experiment_, *recording, inspector, window, stop_.get_token());
       if (stop_.stop_requested()) return;
-      save_window(folder_, rows);
+      for (Row& row : rows) {
+        row.jobs = pass.jobs;
+        row.processor = processor_;
+      }
+      save_window(folder_, experiment_, rows);
       tell(frames);
     }
+  }
+
+  static void forget_pictures(const Recording& recording) {
+    if (recording.pictures) recording.pictures->forget();
+  }
+
+  /// Many recordings are open; the pictures of those that are done are not needed any more.
+  void end(const ExperimentTask& task) {
+    const std::scoped_lock lock(mutex_);
+    if (--left_[task.recording] == 0) forget_pictures(*recordings_[task.recording]);
   }
 
   void tell(int frames) {
@@ -120,11 +162,13 @@ class Run {
   std::span<const std::shared_ptr<const Recording>> recordings_;
   const fs::path& folder_;
   const RunOptions& options_;
-  const std::vector<ExperimentTask> tasks_;
+  const std::string processor_ = processor_name();
+  std::vector<Pass> passes_;
   double frames_ = 0;  ///< in all windows of this run
   std::atomic<std::size_t> next_ = 0;
   std::stop_source stop_;
   std::mutex mutex_;
+  std::vector<int> left_;  ///< tasks of the pass that are not done, by recording
   ExperimentProgress progress_;
   std::exception_ptr error_;
 };
@@ -135,7 +179,12 @@ bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const fs::path& folder,
                     const RunOptions& options) {
-  begin_experiment(folder, experiment);
+  const std::vector<std::string> differing = begin_experiment(folder, experiment);
+  if (!differing.empty() && options.note) {
+    options.note(fmt::format("{}: of the earlier run {}; the windows concerned are computed anew",
+                             folder.string(),
+                             differ_text(differing)));
+  }
   return Run(experiment, recordings, folder, options).finish();
 }
 

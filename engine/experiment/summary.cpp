@@ -2,31 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/figures.h"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
 
 namespace gpo {
 namespace {
-
-using nlohmann::ordered_json;
-
-constexpr std::array<const char*, 12> kColumns{"rms_px",
-                                               "ate_m",
-                                               "pne_deg",
-                                               "pne_aligned_deg",
-                                               "pde_m",
-                                               "pne_bound_deg",
-                                               "track_ms",
-                                               "ransac_ms",
-                                               "rotations_ms",
-                                               "initialize_ms",
-                                               "optimize_ms",
-                                               "total_ms"};
 
 double quantile(const std::vector<double>& ascending, double q) {
   const double place = q * static_cast<double>(ascending.size() - 1);
@@ -63,55 +45,8 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
       }
     });
   }
-  for (const char* name : kColumns) cell.values[name] = distribution(values[name]);
+  for (const char* name : kSummaryColumns) cell.values[name] = distribution(values[name]);
   return cell;
-}
-
-ordered_json optional_json(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json cells_json(std::span<const Row> rows) {
-  ordered_json cells = ordered_json::array();
-  for (const Cell& cell : summarize(rows)) {
-    ordered_json json = {{"configuration", cell.configuration},
-                         {"frames", cell.frames},
-                         {"windows", cell.windows},
-                         {"ok", cell.ok},
-                         {"failed", cell.windows - cell.ok}};
-    for (const char* name : kColumns) {
-      const Distribution& d = cell.values.at(name);
-      json[name] = {{"count", d.count},
-                    {"lower", optional_json(d.lower)},
-                    {"median", optional_json(d.median)},
-                    {"upper", optional_json(d.upper)}};
-    }
-    cells.push_back(std::move(json));
-  }
-  return cells;
-}
-
-ordered_json recordings_json(const Experiment& experiment, std::span<const Row> rows) {
-  ordered_json recordings = ordered_json::array();
-  for (const ExperimentRecording& recording : experiment.recordings) {
-    std::vector<Row> own;
-    std::ranges::copy_if(rows, std::back_inserter(own), [&](const Row& row) {
-      return row.recording == recording.name;
-    });
-    recordings.push_back({{"recording", recording.name}, {"cells", cells_json(own)}});
-  }
-  return recordings;
-}
-
-ordered_json figures_json(const Experiment& experiment, std::span<const Row> rows) {
-  ordered_json figures = ordered_json::array();
-  for (const FigurePlan& plan : figure_plans(experiment.configurations)) {
-    figures.push_back(
-        {{"figure", plan.name},
-         {"title", plan.title},
-         {"cells", cells_json(on_common_windows(rows_of(rows, plan.configurations)))}});
-  }
-  return figures;
 }
 
 }  // namespace
@@ -159,13 +94,6 @@ std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuratio
     return keys.contains(row.configuration);
   });
   return chosen;
-}
-
-ordered_json to_json(const Experiment& experiment, std::span<const Row> rows) {
-  return {{"experiment", to_json(experiment)},
-          {"all_windows", cells_json(rows)},
-          {"by_recording", recordings_json(experiment, rows)},
-          {"windows_that_all_solved", figures_json(experiment, rows)}};
 }
 
 }  // namespace gpo

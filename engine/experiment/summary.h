@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/experiment.h"
+#include "engine/experiment/configuration.h"
 #include "engine/experiment/row.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 
@@ -21,6 +20,20 @@ struct Distribution {
   std::optional<double> lower, median, upper;
 };
 Distribution distribution(std::vector<double> values);
+
+/// The columns of results.csv that are summarized.
+inline constexpr std::array<const char*, 12> kSummaryColumns{"rms_px",
+                                                             "ate_m",
+                                                             "pne_deg",
+                                                             "pne_aligned_deg",
+                                                             "pde_m",
+                                                             "pne_bound_deg",
+                                                             "track_ms",
+                                                             "ransac_ms",
+                                                             "rotations_ms",
+                                                             "initialize_ms",
+                                                             "optimize_ms",
+                                                             "total_ms"};
 
 /// A configuration on the windows of one length.
 struct Cell {
@@ -42,9 +55,5 @@ std::vector<Row> on_common_windows(std::span<const Row> rows);
 
 /// The rows of the configurations, in the rows' order.
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations);
-
-/// summary.json: the experiment; per configuration and length over all windows; the same for each
-/// recording; and for each of the figures over the windows that all of its configurations solved.
-nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row> rows);
 
 }  // namespace gpo

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/tables.h"
 
+#include "engine/experiment/experiment.h"
 #include "engine/experiment/summary.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,7 +16,6 @@
 namespace gpo {
 namespace {
 
-constexpr int kPaperFrames = 30;
 constexpr std::array<int, 3> kOverviewFrames{10, 30, 60};
 
 /// A column of numbers: what of results.csv, by which factor, and whether a frame's share of it.
@@ -23,8 +24,16 @@ struct NumberColumn {
   std::vector<const char*> columns;  ///< whose medians are added
   double factor;
   bool per_frame;
-  int digits;
+  int digits;  ///< after the point; kSignificant: three that count
 };
+constexpr int kSignificant = -1;
+
+/// With three digits that count, and none of them after an exponent: "0.0612", "3.98", "1235".
+std::string significant(double value) {
+  const double size = std::abs(value);
+  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
+  return fmt::format("{:.{}f}", value, std::clamp(2 - before, 0, 9));
+}
 
 std::set<int> lengths_in(std::span<const Row> rows) {
   std::set<int> lengths;
@@ -39,8 +48,9 @@ std::string number(const Cell& cell, const NumberColumn& column) {
     if (!median) return "-";
     sum += *median;
   }
-  return fmt::format(
-      "{:.{}f}", column.factor * sum / (column.per_frame ? cell.frames : 1), column.digits);
+  const double value = column.factor * sum / (column.per_frame ? cell.frames : 1);
+  return column.digits == kSignificant ? significant(value)
+                                       : fmt::format("{:.{}f}", value, column.digits);
 }
 
 std::string title_of_key(const std::string& key) { return title_of(parse_configuration(key)); }
@@ -74,6 +84,54 @@ std::set<int> lengths_to_show(const std::set<int>& all) {
   return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
 }
 
+/// How the windows of a length were measured: "one window at a time, one thread, on an AMD EPYC".
+std::string measured_text(std::span<const Row> rows, int frames) {
+  std::set<int> jobs;
+  std::set<std::string> processors;
+  for (const Row& row : rows) {
+    if (row.settings.frames != frames) continue;
+    jobs.insert(row.jobs.value_or(0));
+    if (!row.processor.empty()) processors.insert(row.processor);
+  }
+  std::string text = "one window at a time, one thread";
+  if (jobs.contains(0)) {
+    text = "it is not known how many windows at a time";
+  } else if (*jobs.rbegin() > 1) {
+    text =
+        fmt::format("up to {} windows at a time, which is slower than one alone (--timing-jobs 1)",
+                    *jobs.rbegin());
+  }
+  if (!processors.empty()) text += fmt::format(", on {}", fmt::join(processors, " and "));
+  return text;
+}
+
+std::vector<NumberColumn> error_columns() {
+  return {{"PNE [deg]", {"pne_deg"}, 1, false, 3},
+          {"ATE [mm]", {"ate_m"}, 1e3, false, kSignificant},
+          {"PDE [mm]", {"pde_m"}, 1e3, false, kSignificant}};
+}
+
+/// `solved(cell)`: the cells for how many windows were solved.
+template <class Solved>
+Table errors_table(std::span<const Row> rows,
+                   const std::vector<std::string>& header,
+                   const Solved& solved) {
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  Table table;
+  table.caption = "Medians over the solved windows";
+  table.header = {"method", "frames"};
+  table.header.insert(table.header.end(), header.begin(), header.end());
+  for (const NumberColumn& column : error_columns()) table.header.emplace_back(column.title);
+  for (const Cell& cell : summarize(rows)) {
+    if (!shown.contains(cell.frames)) continue;
+    std::vector<std::string> line{cell.configuration, std::to_string(cell.frames)};
+    for (const std::string& text : solved(cell)) line.push_back(text);
+    for (const NumberColumn& column : error_columns()) line.push_back(number(cell, column));
+    table.lines.push_back(std::move(line));
+  }
+  return table;
+}
+
 /// Of each line's cells the widest.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
@@ -88,32 +146,25 @@ std::vector<std::size_t> widths_of(const Table& table) {
 
 Table running_time_table(std::span<const Row> rows) {
   const std::set<int> lengths = lengths_in(rows);
-  const auto above = lengths.upper_bound(kPaperFrames);
-  const int frames = above == lengths.begin() ? *above : *std::prev(above);
+  const int frames = timed_length({lengths.begin(), lengths.end()});
   Table table = time_table(summarize(rows), frames);
   table.caption =
       fmt::format("Running time of different initialization methods with {} frames", frames);
   if (frames != kPaperFrames) table.caption += fmt::format(" (no windows of {})", kPaperFrames);
-  table.caption += ": medians over the solved windows, one thread";
+  table.caption += ": medians over the solved windows, " + measured_text(rows, frames);
   return table;
 }
 
 Table overview_table(std::span<const Row> rows) {
-  const std::set<int> shown = lengths_to_show(lengths_in(rows));
-  const std::vector<NumberColumn> columns{{"PNE [deg]", {"pne_deg"}, 1, false, 3},
-                                          {"ATE [mm]", {"ate_m"}, 1e3, false, 2},
-                                          {"PDE [mm]", {"pde_m"}, 1e3, false, 2}};
-  Table table;
-  table.caption = "Medians over the solved windows";
-  table.header = {"method", "frames", "solved"};
-  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
-  for (const Cell& cell : summarize(rows)) {
-    if (!shown.contains(cell.frames)) continue;
-    std::vector<std::string> line{
-        cell.configuration, std::to_string(cell.frames), windows_of(cell)};
-    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
-    table.lines.push_back(std::move(line));
-  }
+  return errors_table(
+      rows, {"solved"}, [](const Cell& cell) { return std::vector{windows_of(cell)}; });
+}
+
+Table overview_numbers(std::span<const Row> rows) {
+  Table table = errors_table(rows, {"solved", "of"}, [](const Cell& cell) {
+    return std::vector{std::to_string(cell.ok), std::to_string(cell.windows)};
+  });
+  for (auto& line : table.lines) std::ranges::replace(line, "-", "");
   return table;
 }
 

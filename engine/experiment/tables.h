@@ -18,12 +18,15 @@ struct Table {
 };
 
 /// The paper's running times: medians over the solved windows of 30 frames, or of the longest
-/// length below, or where all are longer of the shortest.
+/// length below, or where all are longer of the shortest. The caption says how they were measured:
+/// only what was computed one window at a time is called one thread's.
 Table running_time_table(std::span<const Row> rows);
 
 /// How many windows each configuration solved, and its median errors over them, at 10, 30 and 60
 /// frames; where these are not all there, at the shortest, a middle and the longest length.
 Table overview_table(std::span<const Row> rows);
+/// The same for programs: each cell a number, or nothing.
+Table overview_numbers(std::span<const Row> rows);
 
 std::string to_markdown(const Table& table);
 /// Without the caption.

@@ -5,6 +5,10 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
+#include "engine/files/output_folder.h"
+
+#include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,20 +25,24 @@ fs::path window_file(const fs::path& folder, const std::string& name, int start,
   return folder / "windows" / fmt::format("{}-{}-{}.json", name, start, frames);
 }
 
-/// The first key in which two definitions differ.
-std::string difference(const ordered_json& a, const ordered_json& b) {
-  for (const auto& [key, value] : a.items()) {
-    if (b.at(key) != value) return key;
-  }
-  return "nothing";
-}
-
 bool belongs(const std::vector<Row>& rows, const Experiment& experiment) {
   if (rows.size() != experiment.configurations.size()) return false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].configuration != key_of(experiment.configurations[i])) return false;
   }
   return true;
+}
+
+/// What a window's file says that it is of, against what it should be of.
+std::vector<std::string> differences_from(const Experiment& experiment,
+                                          const ExperimentRecording& recording,
+                                          const ordered_json& window) {
+  std::vector<std::string> differs;
+  if (window.at("program") != experiment.program) differs.emplace_back("version of the program");
+  const auto content = window.at("content").get<RecordingContent>();
+  for (const std::string& part : differing_parts(content, recording.content))
+    differs.push_back(fmt::format("{} of {}", part, recording.name));
+  return differs;
 }
 
 /// "desk from frame 10 (12 windows), ...", at most a line of them.
@@ -46,21 +54,51 @@ std::string list_of(const std::vector<std::string>& missing) {
   return list;
 }
 
+/// From the first folder that has it. Throws InputError where only one of something else is there.
+std::optional<std::vector<Row>> find_window(const Experiment& experiment,
+                                            std::span<const fs::path> folders,
+                                            const ExperimentTask& task,
+                                            int frames) {
+  std::string other;
+  for (const fs::path& folder : folders) {
+    WindowFile window = load_window(folder, experiment, task, frames);
+    if (window.rows) return std::move(window.rows);
+    if (window.differs.empty() || !other.empty()) continue;
+    const std::string& name = experiment.recordings[task.recording].name;
+    other = fmt::format("--merge: {}: is of another experiment than experiment.json ({})",
+                        window_file(folder, name, task.start, frames).string(),
+                        differ_text(window.differs));
+  }
+  if (!other.empty()) throw InputError(other);
+  return std::nullopt;
+}
+
 }  // namespace
 
-void begin_experiment(const fs::path& folder, const Experiment& experiment) {
-  if (!fs::exists(definition_file(folder))) {
-    make_folder(folder / "windows");
-    write_file(definition_file(folder), json_text(to_json(experiment), 2));
-    return;
+void check_experiment_folder(const fs::path& folder) {
+  check_output_folder(folder, "experiment.json");
+}
+
+std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment) {
+  ExperimentDifferences found;
+  const bool fresh = !fs::exists(definition_file(folder));
+  if (fresh) {
+    check_experiment_folder(folder);
+    make_folder(folder);
+  } else {
+    found = differences(read_experiment(folder), experiment);
   }
-  const Experiment there = read_experiment(folder);
-  if (there == experiment) return;
-  throw InputError(
-      fmt::format("{}: is of another experiment (`{}` differs), expected the same or another "
-                  "--output",
-                  definition_file(folder).string(),
-                  difference(to_json(there), to_json(experiment))));
+  if (!found.plan.empty()) {
+    throw InputError(
+        fmt::format("{}: is of another experiment ({}), expected the same or another --output",
+                    definition_file(folder).string(),
+                    differ_text(found.plan)));
+  }
+  // First of all files, because by it the folder is known as ours.
+  if (fresh || !found.content.empty())
+    write_file(definition_file(folder), json_text(to_json(experiment), 2));
+  make_folder(folder / "windows");
+  return found.content;
 }
 
 Experiment read_experiment(const fs::path& folder) {
@@ -80,32 +118,36 @@ Experiment read_experiment(const fs::path& folder) {
   }
 }
 
-void save_window(const fs::path& folder, std::span<const Row> rows) {
-  ordered_json json = ordered_json::array();
-  for (const Row& row : rows) json.push_back(to_json(row));
-  const Settings& window = rows.front().settings;
-  write_file(window_file(folder, rows.front().recording, window.start, window.frames),
+void save_window(const fs::path& folder, const Experiment& experiment, std::span<const Row> rows) {
+  const Row& first = rows.front();
+  const auto recording =
+      std::ranges::find(experiment.recordings, first.recording, &ExperimentRecording::name);
+  ordered_json json = {{"program", experiment.program},
+                       {"content", recording->content},
+                       {"rows", ordered_json::array()}};
+  for (const Row& row : rows) json["rows"].push_back(to_json(row));
+  write_file(window_file(folder, first.recording, first.settings.start, first.settings.frames),
              json_text(json, 1));
 }
 
-std::optional<std::vector<Row>> load_window(const fs::path& folder,
-                                            const Experiment& experiment,
-                                            const ExperimentTask& task,
-                                            int frames) {
-  const std::string& name = experiment.recordings[task.recording].name;
-  const fs::path file = window_file(folder, name, task.start, frames);
-  if (!fs::exists(file)) return std::nullopt;
+WindowFile load_window(const fs::path& folder,
+                       const Experiment& experiment,
+                       const ExperimentTask& task,
+                       int frames) {
+  const ExperimentRecording& recording = experiment.recordings[task.recording];
+  const fs::path file = window_file(folder, recording.name, task.start, frames);
+  if (!fs::exists(file)) return {};
   try {
+    const ordered_json json = read_json(file);
+    std::vector<std::string> differs = differences_from(experiment, recording, json);
+    if (!differs.empty()) return {std::nullopt, std::move(differs)};
     std::vector<Row> rows;
-    for (const ordered_json& row : read_json(file)) {
-      rows.push_back(row_from_json(row));
-    }
-    return belongs(rows, experiment) ? std::optional(std::move(rows)) : std::nullopt;
+    for (const ordered_json& row : json.at("rows")) rows.push_back(row_from_json(row));
+    if (belongs(rows, experiment)) return {std::move(rows), {}};
   } catch (const ordered_json::exception&) {
-    return std::nullopt;
   } catch (const InputError&) {
-    return std::nullopt;
   }
+  return {};
 }
 
 std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::path> folders) {
@@ -116,10 +158,7 @@ std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::
   for (const ExperimentTask& task : tasks) {
     int missing_here = 0;
     for (const int frames : task.lengths) {
-      std::optional<std::vector<Row>> window;
-      for (auto folder = folders.begin(); !window && folder != folders.end(); ++folder) {
-        window = load_window(*folder, experiment, task, frames);
-      }
+      const auto window = find_window(experiment, folders, task, frames);
       if (window) rows.insert(rows.end(), window->begin(), window->end());
       if (!window) ++missing_here;
     }
@@ -138,18 +177,20 @@ std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::
 Experiment merge_experiments(std::span<const fs::path> folders, const fs::path& output) {
   Experiment experiment = read_experiment(folders.front());
   for (const fs::path& folder : folders) {
-    const Experiment other = read_experiment(folder);
-    if (other == experiment) continue;
-    throw InputError(fmt::format("--merge: {} and {} are of different experiments (`{}` differs)",
+    ExperimentDifferences found = differences(experiment, read_experiment(folder));
+    std::vector<std::string>& names = found.plan;
+    names.insert(names.end(), found.content.begin(), found.content.end());
+    if (names.empty()) continue;
+    throw InputError(fmt::format("--merge: {} and {} are of different experiments ({})",
                                  folders.front().string(),
                                  folder.string(),
-                                 difference(to_json(experiment), to_json(other))));
+                                 differ_text(names)));
   }
   const std::vector<Row> rows = collect_rows(experiment, folders);
   begin_experiment(output, experiment);
   const std::size_t configurations = experiment.configurations.size();
   for (std::size_t i = 0; i < rows.size(); i += configurations) {
-    save_window(output, std::span(rows).subspan(i, configurations));
+    save_window(output, experiment, std::span(rows).subspan(i, configurations));
   }
   return experiment;
 }

@@ -12,6 +12,10 @@ std::string json_text(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+nlohmann::ordered_json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
 nlohmann::ordered_json read_json(const std::filesystem::path& file) {
   using Json = nlohmann::ordered_json;
   constexpr std::size_t kMostBytes = std::size_t{16} << 20;

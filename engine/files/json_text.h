@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,6 +13,9 @@ namespace gpo {
 /// JSON as a file's text, with a line end. Names of files may be no UTF-8; what is not becomes the
 /// replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
+
+/// What is unknown is null.
+nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
 /// Reads a file of JSON that the program wrote; discarded (`is_discarded`) where it is none, or so
 /// deep that libraries run out of stack. Throws InputError where it cannot be read or is too large.

@@ -10,14 +10,25 @@ namespace gpo {
 
 namespace fs = std::filesystem;
 
+void check_output_folder(const fs::path& folder, const std::string& ours) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  bool free = fs::is_directory(folder, error) && fs::is_empty(folder, error);
+  // Also while that file is being written, under a name that begins so.
+  if (!ours.empty() && fs::is_directory(folder, error))
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      free = free || entry.path().filename().string().starts_with(ours);
+  if (free) return;
+  throw InputError(
+      fmt::format("{}: found something there already, expected no folder or an empty one{}",
+                  folder.string(),
+                  ours.empty() ? "" : fmt::format(", or one with {}", ours)));
+}
+
 UnfinishedFolder::UnfinishedFolder(const fs::path& folder)
     : folder_(fs::absolute(folder / "").parent_path()), path_(folder_.string() + ".unfinished") {
+  check_output_folder(folder);
   std::error_code error;
-  if (fs::exists(folder_, error) &&
-      !(fs::is_directory(folder_, error) && fs::is_empty(folder_, error))) {
-    throw InputError(fmt::format(
-        "{}: found something there already, expected no folder or an empty one", folder.string()));
-  }
   fs::remove_all(path_, error);
   fs::create_directories(path_, error);
   if (error) {

@@ -3,8 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace gpo {
+
+/// The one rule of all output folders: refuses what is no folder, and a folder that is not empty,
+/// but for one that holds `ours`, the file by which a command knows a folder of its own. Throws
+/// InputError.
+void check_output_folder(const std::filesystem::path& folder, const std::string& ours = "");
 
 /// A folder that appears whole or not at all: filled under another name beside it, then renamed by
 /// `finish`. What is not finished is removed.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report.h"
 
+#include "engine/files/json_text.h"
 #include "engine/initializers/methods.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
@@ -24,10 +25,6 @@ ordered_json vector_json(const auto& v) {
 Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
   const Eigen::Quaterniond q(R);
   return (q.w() < 0 ? -1.0 : 1.0) * q.normalized().coeffs();
-}
-
-ordered_json optional_json(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 ordered_json settings_json(const Inspection& inspection) {
@@ -214,6 +211,16 @@ std::string uncertainty_text(const Initialization& result) {
   return text;
 }
 
+/// Nothing of a method that solves nothing.
+std::string solver_text(const SolverReport& solver) {
+  if (solver.unknowns == 0) return "";
+  return row("solver",
+             fmt::format("{} iterations, {} unknowns, {} residuals",
+                         solver.iterations,
+                         solver.unknowns,
+                         solver.residuals));
+}
+
 std::string metrics_text(const Evaluation& e) {
   const char* alignment = e.alignment == Alignment::ok ? "ok"
                           : e.alignment == Alignment::line
@@ -315,11 +322,7 @@ std::string to_text(const Inspection& inspection) {
             fmt::format(
                 "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
         uncertainty_text(result) + row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
-        row("solver",
-            fmt::format("{} iterations, {} unknowns, {} residuals",
-                        result.solver.iterations,
-                        result.solver.unknowns,
-                        result.solver.residuals));
+        solver_text(result.solver);
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "

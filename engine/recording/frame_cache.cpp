@@ -46,4 +46,11 @@ std::size_t FrameCache::bytes() const {
   return bytes_;
 }
 
+void FrameCache::forget() const {
+  const std::scoped_lock lock(mutex_);
+  by_index_.clear();
+  recent_.clear();
+  bytes_ = 0;
+}
+
 }  // namespace gpo

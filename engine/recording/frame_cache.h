@@ -28,6 +28,8 @@ class FrameCache {
   /// The same in gray, CV_8UC1; converted anew at every call.
   cv::Mat gray(int index) const;
   std::size_t bytes() const;
+  /// Lets go of what it keeps; pictures that are asked for again are decoded again.
+  void forget() const;
 
  private:
   struct Entry {

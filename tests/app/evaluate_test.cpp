@@ -28,12 +28,14 @@ std::string evaluate(const std::string& arguments) {
   return "evaluate " + desk().string() + " " + arguments;
 }
 
-/// results.csv up to the times, which are its last six columns. No cell of these tests is quoted.
+/// results.csv up to the times, and on what they were measured, which are its last eight columns.
+/// No cell of these tests is quoted but the last.
 std::string results_without_times(const fs::path& folder) {
   std::istringstream csv(read_file(folder / "results.csv"));
   std::string kept;
   for (std::string line; std::getline(csv, line);) {
-    for (int column = 0; column < 6; ++column) line.resize(line.rfind(','));
+    if (line.ends_with('"')) line.resize(line.rfind(",\"") + 1);
+    for (int column = 0; column < 8; ++column) line.resize(line.rfind(','));
     kept += line + "\n";
   }
   return kept;
@@ -43,7 +45,9 @@ std::string results_without_times(const fs::path& folder) {
 std::string summary_without_times(const fs::path& folder) {
   const auto keep = [](int, json::parse_event_t event, json& parsed) {
     const bool is_key = event == json::parse_event_t::key;
-    return !is_key || !parsed.get<std::string>().ends_with("_ms");
+    if (!is_key) return true;
+    const auto key = parsed.get<std::string>();
+    return !key.ends_with("_ms") && key != "timing";
   };
   return json::parse(read_file(folder / "summary.json"), keep).dump();
 }
@@ -81,9 +85,12 @@ TEST(Evaluate, LeavesAFolderOfResults) {
                 "transfer,squared,estimated,false,ok,,"));
   EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
   EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));
+  EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("one window at a time, one thread"));
   EXPECT_THAT(read_file(folder / "running_time.csv"), HasSubstr("\nGPO,1/1,"));
+  EXPECT_THAT(read_file(folder / "errors.csv"), HasSubstr("\ngpo+no-ransac,6,1,1,"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.png"), HasSubstr("PNG"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), ::testing::StartsWith("%PDF-"));
 }
 
 TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {
@@ -171,15 +178,111 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"sequences/desk --starts -1", "--starts"},
         BadInput{"sequences/desk --lengths 61", "no window fits"},
         BadInput{"sequences/desk --jobs 0", "--jobs"},
+        BadInput{"sequences/desk --figure-width 85",
+                 "--figure-width: '85', expected 50mm to 400mm"},
+        BadInput{"sequences/desk --figure-width 8mm", "--figure-width: '8mm'"},
+        BadInput{"sequences/desk --timing-jobs 0", "--timing-jobs"},
+        BadInput{"sequences/desk --cache 1", "--cache"},
         BadInput{"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
         BadInput{"--merge no/such/folder", "no/such/folder/experiment.json"}));
+
+/// A recording that a test may change.
+fs::path copy_of_desk(const fs::path& folder) {
+  fs::create_directories(folder.parent_path());
+  fs::copy(desk(), folder, fs::copy_options::recursive);
+  return folder;
+}
+
+/// Another focal length in the calibration.
+void change_focal_length(const fs::path& recording) {
+  const fs::path file = recording / "mav0" / "cam0" / "sensor.yaml";
+  std::string yaml = read_file(file);
+  const std::size_t at = yaml.find("intrinsics: [") + 13;
+  ASSERT_NE(at, std::string::npos + 13);
+  yaml.replace(at, yaml.find(',', at) - at, "512.5");
+  test::write_file(file, yaml);
+}
+
+TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
+  const fs::path folder = fresh_folder();
+  const fs::path recording = copy_of_desk(folder / "desk");
+  const auto line = [&](const std::string& recording_path, const std::string& output) {
+    return "evaluate " + recording_path + " --methods gpo --lengths 5,6 --starts 0 " + output;
+  };
+  const std::string out = "--output " + (folder / "out").string();
+  ASSERT_EQ(program(line(recording.string(), out)).exit_code, 0);
+  const std::string before = results_without_times(folder / "out");
+  // By another spelling it is the same one: nothing is done again.
+  const Outcome again = program(line((folder / "." / "desk" / "").string(), out));
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("evaluating 2/2 windows"));
+  EXPECT_EQ(again.err.find("evaluating 0/2"), std::string::npos) << again.err;
+  const std::string shard = "--output " + (folder / "shards").string() + " --shard ";
+  ASSERT_EQ(program(line(recording.string(), shard + "1/2")).exit_code, 0);
+  change_focal_length(recording);
+  const Outcome anew = program(line(recording.string(), out));
+  EXPECT_EQ(anew.exit_code, 0) << anew.err;
+  EXPECT_THAT(anew.err, HasSubstr("`fx of desk` differs"));
+  EXPECT_THAT(anew.err, HasSubstr("evaluating 0/2"));
+  EXPECT_NE(results_without_times(folder / "out"), before);
+  ASSERT_EQ(program(line(recording.string(), shard + "2/2")).exit_code, 0);
+  const Outcome merged = program("evaluate --merge " + (folder / "shards").string() + " --output " +
+                                 (folder / "merged").string());
+  EXPECT_EQ(merged.exit_code, 2);
+  EXPECT_THAT(merged.err, HasSubstr("`fx of desk` differs"));
+}
+
+TEST(Evaluate, OtherFilesInTheFolderAreLeftAlone) {
+  const fs::path folder = fresh_folder();
+  test::write_file(folder / "mine.txt", "keep");
+  const Outcome outcome =
+      program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string()));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("found something there already"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST(Evaluate, FiguresForPrintAreAsWideAsAsked) {
+  const fs::path folder = fresh_folder() / "print";
+  const Outcome outcome = program(evaluate(
+      "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
+      folder.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("width=\"85mm\""));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), HasSubstr("/MediaBox [0 0 240.94"));
+}
+
+TEST(Evaluate, EveryShardOfOneStartComputesSomething) {
+  const fs::path folder = fresh_folder() / "shard";
+  const Outcome outcome = program(evaluate(
+      "--methods gpo --lengths 5:12:1 --starts 0 --shard 2/8 --output " + folder.string()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("evaluating 1/1 windows"));
+}
+
+TEST(Evaluate, MoreRecordingsTakeNoMoreMemory) {
+  const fs::path folder = fresh_folder();
+  std::string four;
+  for (const char* name : {"a", "b", "c", "d"}) four += copy_of_desk(folder / name).string() + " ";
+  const auto peak_mib = [&](const std::string& recordings, const char* output) {
+    const Outcome outcome = program("evaluate " + recordings +
+                                    " --methods dbscan --lengths 60 --starts 0 --jobs 1 --output " +
+                                    (folder / output).string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return static_cast<double>(outcome.peak_kib) / 1024;
+  };
+  const double one = peak_mib((folder / "a").string(), "one");
+  // Each has 60 pictures of 0.9 MB.
+  EXPECT_LT(peak_mib(four, "four"), one + 60);
+}
 
 TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
   const std::string output = " --output " + (fresh_folder() / "taken").string();
   EXPECT_EQ(program(evaluate("--methods gpo --lengths 6 --starts 0" + output)).exit_code, 0);
   const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("experiment.json: is of another experiment"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("experiment.json: is of another experiment (`lengths` differs)"));
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 

@@ -22,9 +22,4 @@ MemoryFile::~MemoryFile() { close(descriptor_); }
 
 std::string MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
-std::string MemoryFile::content() const {
-  std::ifstream stream(path(), std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace gpo

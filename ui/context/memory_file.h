@@ -7,7 +7,7 @@
 
 namespace gpo {
 
-/// A file without a place on the disk, for libraries that read or write by a file's name only.
+/// A file without a place on the disk, for libraries that read by a file's name only.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view content = {});
@@ -17,7 +17,6 @@ class MemoryFile {
 
   /// While this object lives, in this process.
   std::string path() const;
-  std::string content() const;
 
  private:
   int descriptor_;

@@ -4,6 +4,8 @@
 
 #include "tests/engine/test_folder.h"
 
+#include <tuple>
+
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -69,25 +71,107 @@ TEST(Experiment, ComesBackFromJson) {
   EXPECT_EQ(experiment_from_json(to_json(planned)), planned);
 }
 
+std::vector<std::string> plan_differences(const Experiment& a, const Experiment& b) {
+  EXPECT_TRUE(differences(a, b).content.empty());
+  return differences(a, b).plan;
+}
+
+TEST(Experiment, IsTheSameWhereverItsRecordingsLie) {
+  const Experiment here =
+      plan_experiment(std::vector{recording("a", 90)}, request("5:60:5", "0:end:10"));
+  Experiment there = here;
+  there.recordings[0].path = "/another/machine/a/";
+  EXPECT_TRUE(plan_differences(here, there).empty());
+}
+
+TEST(Experiment, NamesWhatDiffers) {
+  const std::vector recordings{recording("a", 90), recording("b", 70)};
+  const auto planned = [&](const char* lengths, const char* starts) {
+    return plan_experiment(recordings, request(lengths, starts));
+  };
+  const Experiment base = planned("5:60:5", "0:end:10");
+  // Other lengths, and so another last start.
+  EXPECT_THAT(plan_differences(base, planned("5:50:5", "0:end:10")), ElementsAre("lengths"));
+  EXPECT_THAT(plan_differences(base, planned("5:60:5", "0:end:5")), ElementsAre("starts"));
+  Experiment other = base;
+  other.configurations.pop_back();
+  other.seed = 6;
+  EXPECT_THAT(plan_differences(base, other), ElementsAre("methods", "seed"));
+  EXPECT_EQ(differ_text({"methods", "seed"}), "`methods`, `seed` differ");
+  other = base;
+  other.recordings.pop_back();
+  EXPECT_THAT(plan_differences(base, other), ElementsAre("recordings"));
+  other = base;
+  other.recordings[1].content["fx"] = "601";
+  other.recordings[1].starts = {0};  // may follow from the other content
+  other.program = "0.0.9";
+  EXPECT_TRUE(differences(base, other).plan.empty());
+  EXPECT_THAT(differences(base, other).content, ElementsAre("version of the program", "fx of b"));
+}
+
+TEST(Experiment, TimesTheWindowsOfThirtyFramesOrTheNextBelow) {
+  EXPECT_EQ(timed_length({10, 30, 60}), 30);
+  EXPECT_EQ(timed_length({10, 20, 60}), 20);
+  EXPECT_EQ(timed_length({40, 60}), 40);
+}
+
+TEST(Shards, AreEvenToAWindow) {
+  const std::vector recordings{recording("a", 60)};
+  const Experiment one_start = plan_experiment(recordings, request("5:60:5", "0"));
+  for (const int count : {1, 5, 8, 12, 20}) {
+    std::vector<int> lengths;
+    for (int k = 1; k <= count; ++k) {
+      const auto tasks = tasks_of(one_start, {k, count});
+      const int even = 12 / count;
+      EXPECT_GE(window_count(tasks), even) << k << "/" << count;
+      EXPECT_LE(window_count(tasks), even + 1) << k << "/" << count;
+      for (const ExperimentTask& task : tasks)
+        lengths.insert(lengths.end(), task.lengths.begin(), task.lengths.end());
+    }
+    EXPECT_EQ(lengths, one_start.lengths) << count;
+  }
+  EXPECT_THAT(tasks_of(one_start, {2, 8})[0].lengths, ElementsAre(15, 20));
+}
+
+TEST(Shards, KeepTheWindowsOfAStartTogether) {
+  const std::vector recordings{recording("a", 90)};
+  const Experiment planned = plan_experiment(recordings, request("5:60:5", "0:end:10"));
+  for (int k = 1; k <= 4; ++k) {
+    const auto tasks = tasks_of(planned, {k, 4});
+    ASSERT_EQ(tasks.size(), 1U);
+    EXPECT_EQ(tasks[0].start, 10 * (k - 1));
+    EXPECT_EQ(tasks[0].lengths.size(), 12U);
+  }
+}
+
 TEST(Shards, AreDisjointAndTogetherAll) {
   const std::vector recordings{recording("a", 90), recording("b", 85)};
   const Experiment planned = plan_experiment(recordings, request("5:60:5", "0:end:10"));
-  std::vector<std::pair<std::size_t, int>> seen;
-  for (int k = 1; k <= 3; ++k) {
-    for (const ExperimentTask& task : tasks_of(planned, {k, 3})) {
-      seen.emplace_back(task.recording, task.start);
-    }
-  }
-  std::ranges::sort(seen);
-  std::vector<std::pair<std::size_t, int>> all;
-  for (const ExperimentTask& task : tasks_of(planned)) all.emplace_back(task.recording, task.start);
+  using Window = std::tuple<std::size_t, int, int>;
+  const auto add = [](std::vector<Window>& to, const std::vector<ExperimentTask>& tasks) {
+    for (const ExperimentTask& task : tasks)
+      for (const int frames : task.lengths) to.emplace_back(task.recording, task.start, frames);
+  };
+  std::vector<Window> seen, all;
+  for (int k = 1; k <= 7; ++k) add(seen, tasks_of(planned, {k, 7}));
+  add(all, tasks_of(planned));
   EXPECT_EQ(seen, all);
 }
 
 TEST(Shards, AreWrittenKOfN) {
   EXPECT_EQ(parse_shard("2/8").index, 2);
   EXPECT_EQ(parse_shard("2/8").count, 8);
-  for (const char* text : {"", "2", "0/8", "9/8", "2/8x", "-1/8", "a/b"}) {
+  for (const char* text : {"",
+                           "2",
+                           "2/",
+                           "/8",
+                           "0/8",
+                           "9/8",
+                           "2/8x",
+                           "-1/8",
+                           "a/b",
+                           "2/99999999999",
+                           "4294967297/4294967298"}) {
     EXPECT_THAT(error_of([&] { parse_shard(text); }), HasSubstr("--shard: '")) << text;
   }
 }

@@ -38,6 +38,8 @@ std::string csv_without_times(std::vector<Row> rows) {
                        &row.total_ms}) {
       time->reset();
     }
+    row.jobs.reset();
+    row.processor.clear();
   }
   return to_csv(rows);
 }

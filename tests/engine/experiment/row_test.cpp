@@ -41,9 +41,12 @@ TEST(Row, HasEveryNumberOfTheReportAndTimesLast) {
   for (const auto& [key, value] : report["timing_ms"].items()) {
     EXPECT_TRUE(columns.contains(key + "_ms")) << key;
   }
-  for (std::size_t i = names.size() - 6; i < names.size(); ++i) {
+  const std::size_t first_time = names.size() - 8;
+  for (std::size_t i = first_time; i < first_time + 6; ++i) {
     EXPECT_TRUE(names[i].ends_with("_ms")) << names[i];
   }
+  EXPECT_EQ(names[first_time + 6], "jobs");
+  EXPECT_EQ(names[first_time + 7], "processor");
 }
 
 TEST(Row, ComesBackFromJsonToTheBit) {

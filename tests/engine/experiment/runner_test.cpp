@@ -31,6 +31,18 @@ class RunnerTest : public ::testing::Test {
                             parse_ranges("0:20:10", "--starts"),
                             3});
   }
+  static Experiment plan_of(const std::vector<std::shared_ptr<const Recording>>& recordings) {
+    return plan_experiment(recordings,
+                           {parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
+                            parse_ranges("5,7", "--lengths"),
+                            parse_ranges("0:20:10", "--starts"),
+                            3});
+  }
+  std::shared_ptr<const Recording> with_focal_length(double fx) const {
+    Recording other = *recordings_[0];
+    other.camera.fx = fx;
+    return std::make_shared<const Recording>(other);
+  }
   bool run(const fs::path& folder, const RunOptions& options = {}) const {
     return run_experiment(experiment_, recordings_, folder, options);
   }
@@ -85,7 +97,7 @@ TEST_F(RunnerTest, FinishedWindowsAreNotDoneAgain) {
   for (const auto& file : fs::directory_iterator(a_ / "windows")) {
     const std::string name = "a/windows/" + file.path().filename().string();
     auto window = nlohmann::ordered_json::parse(folder_.read(name));
-    for (auto& row : window) row["track_ms"] = 12345.0;
+    for (auto& row : window["rows"]) row["track_ms"] = 12345.0;
     folder_.write(name, window.dump());
   }
   int first_done = -1;
@@ -119,11 +131,104 @@ TEST_F(RunnerTest, AnotherExperimentIsRefused) {
       error_of([&] { run_experiment(plan("5,8"), recordings_, a_, {}); }),
       HasSubstr(
           "experiment.json: is of another experiment (`lengths` differs), expected the same"));
+  EXPECT_THAT(error_of([&] {
+                Experiment other = experiment_;
+                other.configurations.pop_back();
+                run_experiment(other, recordings_, a_, {});
+              }),
+              HasSubstr("(`methods` differs)"));
   EXPECT_EQ(windows_in(a_), 1);
   folder_.write("a/experiment.json", std::string("{\"format\": 0}"));
   EXPECT_THAT(error_of([&] { run(a_); }), HasSubstr("experiment.json: key `format`"));
   folder_.write("a/experiment.json", std::string("{"));
   EXPECT_THAT(error_of([&] { run(a_); }), HasSubstr("is not the definition of an experiment"));
+}
+
+TEST_F(RunnerTest, TheSameRecordingByAnotherPathGoesOn) {
+  interrupt(a_, 2);
+  Experiment moved = experiment_;
+  moved.recordings[0].path = "/another/machine/./desk/";
+  int first_done = -1;
+  RunOptions options;
+  options.progress = [&](const ExperimentProgress& progress) {
+    if (first_done < 0) first_done = progress.done;
+  };
+  ASSERT_TRUE(run_experiment(moved, recordings_, a_, options));
+  EXPECT_EQ(first_done, 2);
+}
+
+TEST_F(RunnerTest, WindowsOfAnotherCalibrationAreDoneAnew) {
+  ASSERT_TRUE(run(a_));
+  const std::vector changed{with_focal_length(600)};
+  const Experiment other = plan_of(changed);
+  std::vector<std::string> notes;
+  int first_done = -1;
+  RunOptions options;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  options.progress = [&](const ExperimentProgress& progress) {
+    if (first_done < 0) first_done = progress.done;
+  };
+  ASSERT_TRUE(run_experiment(other, changed, a_, options));
+  EXPECT_EQ(first_done, 0);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], HasSubstr("`fx of desk` differs; the windows concerned are computed anew"));
+  ASSERT_TRUE(run_experiment(other, changed, b_, {}));
+  EXPECT_EQ(csv_without_times(collect_rows(other, std::span(&a_, 1))),
+            csv_without_times(collect_rows(other, std::span(&b_, 1))));
+  EXPECT_EQ(read_experiment(a_), other);
+}
+
+TEST_F(RunnerTest, MergeRefusesWindowsOfAnotherCalibrationOrProgram) {
+  const std::vector changed{with_focal_length(600)};
+  ASSERT_TRUE(run(a_, {.shard = {1, 2}}));
+  ASSERT_TRUE(run_experiment(plan_of(changed), changed, b_, {.shard = {2, 2}}));
+  const fs::path merged = folder_.path() / "merged";
+  const std::vector folders{a_, b_};
+  EXPECT_THAT(error_of([&] { merge_experiments(folders, merged); }),
+              HasSubstr("different experiments (`fx of desk` differs)"));
+  // Two shards in one folder: the second one takes it over.
+  ASSERT_TRUE(run_experiment(plan_of(changed), changed, a_, {.shard = {2, 2}}));
+  EXPECT_THAT(error_of([&] { merge_experiments(std::span(&a_, 1), merged); }),
+              HasSubstr("desk-0-5.json: is of another experiment than experiment.json (`fx of "
+                        "desk` differs)"));
+  EXPECT_FALSE(fs::exists(merged));
+  const std::string name = "b/windows/desk-20-7.json";
+  auto window = nlohmann::ordered_json::parse(folder_.read(name));
+  window["program"] = "0.0.1";
+  folder_.write(name, window.dump());
+  const ExperimentTask task{0, 20, {7}};
+  EXPECT_EQ(load_window(b_, plan_of(changed), task, 7).differs,
+            std::vector<std::string>{"version of the program"});
+}
+
+TEST_F(RunnerTest, AFolderOfOtherThingsIsRefused) {
+  folder_.write("a/mine.txt", std::string("keep"));
+  EXPECT_THAT(error_of([&] { run(a_); }),
+              HasSubstr("found something there already, expected no folder or an empty one, or one "
+                        "with experiment.json"));
+  EXPECT_FALSE(fs::exists(a_ / "experiment.json"));
+}
+
+TEST_F(RunnerTest, WindowsWhoseTimesAreToldComeLastAndSayTheirJobs) {
+  std::vector<std::string> timed_too_early;  // 7 frames are nearest to 30
+  RunOptions options{.jobs = 2, .timing_jobs = 1};
+  options.progress = [&](const ExperimentProgress& progress) {
+    if (progress.done > 3 || !fs::exists(a_ / "windows")) return;
+    for (const auto& file : fs::directory_iterator(a_ / "windows"))
+      if (file.path().stem().string().ends_with("-7"))
+        timed_too_early.push_back(file.path().filename());
+  };
+  ASSERT_TRUE(run(a_, options));
+  EXPECT_TRUE(timed_too_early.empty());
+  for (const Row& row : rows(a_)) {
+    EXPECT_EQ(row.jobs, row.settings.frames == 7 ? 1 : 2);
+    EXPECT_FALSE(row.processor.empty());
+  }
+}
+
+TEST_F(RunnerTest, PicturesOfWhatIsDoneAreLetGo) {
+  ASSERT_TRUE(run(a_, {.jobs = 2}));
+  EXPECT_EQ(recordings_[0]->pictures->bytes(), 0U);
 }
 
 TEST_F(RunnerTest, ShardsMergeToWhatOneRunMakes) {

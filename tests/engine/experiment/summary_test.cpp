@@ -3,6 +3,7 @@
 #include "engine/experiment/summary.h"
 
 #include "engine/experiment/figures.h"
+#include "engine/experiment/summary_json.h"
 #include "engine/experiment/tables.h"
 #include "tests/engine/experiment/made_rows.h"
 
@@ -68,7 +69,7 @@ TEST(Summary, ComparesOnTheWindowsThatAllSolved) {
 }
 
 Experiment made_experiment() {
-  return {{{"made", "somewhere/made", 22, {0, 1, 2}}},
+  return {{{"made", "somewhere/made", 22, {0, 1, 2}, {}}},
           {10, 20},
           parse_configurations("gpo,gpo+no-ransac"),
           1};
@@ -102,6 +103,50 @@ TEST(Figures, AreThosePapersThatHaveSomethingToCompare) {
   EXPECT_THAT(names("gpo"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo,gpo+truth,gpo+no-ransac+truth"),
               ElementsAre("rotation_sources", "configurations"));
+}
+
+TEST(Figures, AreMadeOnlyWhereTheirTitlesAreTrue) {
+  const auto names = [](const std::string& configurations) {
+    return names_of(figure_plans(parse_configurations(configurations)));
+  };
+  // Neither is one with and one without RANSAC, and the rotations are the same.
+  EXPECT_THAT(names("gpo,gpo+anchored"), ElementsAre("configurations"));
+  EXPECT_THAT(names("gpo,gpo+consistent,gpo+anchored"), ElementsAre("configurations"));
+  EXPECT_THAT(names("gpo,gpo+no-ransac+anchored"), ElementsAre("configurations"));
+  EXPECT_THAT(names("ba,ba+anchored"), ElementsAre("configurations"));
+  // "GPO and ..." without GPO.
+  EXPECT_THAT(names("pnp,dbscan"), ElementsAre("configurations"));
+  EXPECT_THAT(names("gpo+anchored,pba,fpba"), ElementsAre("configurations"));
+  EXPECT_THAT(names("gpo,pnp,dbscan"), ElementsAre("aggregation"));
+  const auto plans = figure_plans(parse_configurations("gpo,gpo+no-ransac,gpo+anchored"));
+  ASSERT_EQ(plans[0].name, "gpo_ransac");
+  EXPECT_EQ(plans[0].configurations.size(), 2U);
+}
+
+TEST(Figures, SayWhoseTheBoundIsAndHowManyWindowsAPointIs) {
+  const std::vector<Figure> all = figures(made_rows(), made_experiment().configurations);
+  EXPECT_THAT(all[0].note, HasSubstr("the inliers of GPO"));
+  EXPECT_THAT(all[0].note, HasSubstr("a curve may be below this one"));
+  const Chart& pne = all[0].charts[1];
+  EXPECT_THAT(pne.curves[0].counts, ElementsAre(2, 1));
+  EXPECT_EQ(pne.curves[2].name, "bound for GPO's tracks");
+  EXPECT_TRUE(pne.curves[2].counts.empty());
+}
+
+TEST(Figures, GiveAMethodItsOwnMarkerEverywhere) {
+  const auto marker = [](const Figure& figure, const std::string& name) {
+    return std::ranges::find(figure.charts[1].curves, name, &Curve::name)->marker;
+  };
+  const std::vector<Row> rows{made_row("gpo", 0, 10, 1.0),
+                              made_row("ba", 0, 10, 1.0),
+                              made_row("pba", 0, 10, 1.0),
+                              made_row("gpo+no-ransac", 0, 10, 1.0)};
+  const Figure some = figure_over_length(rows, {"", "", parse_configurations("pba,ba")});
+  const Figure others =
+      figure_over_length(rows, {"", "", parse_configurations("gpo+no-ransac,gpo,ba")});
+  EXPECT_EQ(marker(some, "BA"), marker(others, "BA"));
+  EXPECT_NE(marker(some, "BA"), marker(some, "PBA"));
+  EXPECT_EQ(marker(others, "GPO"), marker(others, "GPO without RANSAC"));
 }
 
 TEST(Figures, HoldMediansQuartilesAndTheDottedBound) {
@@ -147,9 +192,47 @@ TEST(Tables, RunningTimesAreOfThirtyFramesOrTheNextBelow) {
   EXPECT_THAT(running_time_table(longer).caption, HasSubstr("with 40 frames"));
 }
 
+TEST(Tables, RunningTimesSayHowTheyWereMeasured) {
+  std::vector<Row> rows{made_row("gpo", 0, 30, 1.0), made_row("gpo", 0, 60, 1.0)};
+  EXPECT_THAT(running_time_table(rows).caption, HasSubstr("not known how many"));
+  rows[0].jobs = 1;
+  rows[1].jobs = 8;  // of another length
+  rows[0].processor = "a processor";
+  EXPECT_THAT(running_time_table(rows).caption,
+              HasSubstr("one window at a time, one thread, on a processor"));
+  rows.push_back(made_row("gpo", 10, 30, 1.0));
+  rows.back().jobs = 2;
+  rows.back().processor = "another";
+  EXPECT_THAT(running_time_table(rows).caption, HasSubstr("up to 2 windows at a time"));
+  EXPECT_THAT(running_time_table(rows).caption, HasSubstr("on a processor and another"));
+  EXPECT_THAT(running_time_table(rows).caption, ::testing::Not(HasSubstr("one thread")));
+  const auto timing = to_json(made_experiment(), rows)["timing"];
+  EXPECT_EQ(timing["jobs"].dump(), "[1,2,8]");
+  EXPECT_EQ(timing["processors"].dump(), R"(["a processor","another"])");
+}
+
 TEST(Tables, OverviewShowsSolvedOfTriedWindows) {
   const std::string text = to_text(overview_table(made_rows()));
-  EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000     40.00         -\n"));
+  EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000      40.0         -\n"));
+}
+
+TEST(Tables, OverviewForProgramsHasANumberACell) {
+  const std::string csv = to_csv(overview_numbers(made_rows()));
+  EXPECT_THAT(csv, HasSubstr("method,frames,solved,of,PNE [deg],ATE [mm],PDE [mm]\n"));
+  EXPECT_THAT(csv, HasSubstr("\ngpo+no-ransac,10,2,3,4.000,40.0,\n"));
+}
+
+TEST(Tables, LengthsHaveThreeSignificantDigits) {
+  const auto ate = [](double ate_m) {
+    std::vector<Row> rows{made_row("gpo", 0, 10, 1.0)};
+    rows[0].ate_m = ate_m;
+    return overview_table(rows).lines[0][4];
+  };
+  EXPECT_EQ(ate(0.0000123456), "0.0123");
+  EXPECT_EQ(ate(0.000654321), "0.654");
+  EXPECT_EQ(ate(0.0123456), "12.3");
+  EXPECT_EQ(ate(1.23456), "1235");
+  EXPECT_EQ(ate(0), "0.00");
 }
 
 }  // namespace

@@ -70,6 +70,17 @@ TEST(FrameCache, HoldsTheNewestPictureWhateverTheLimit) {
   EXPECT_EQ(counted.cache.bytes(), kPictureBytes);
 }
 
+TEST(FrameCache, LetsGoOfAllAndDecodesAgain) {
+  const Counted counted(10 * kPictureBytes);
+  for (const int i : {0, 1, 2}) counted.cache.bgr(i);
+  const cv::Mat held = counted.cache.bgr(2);
+  counted.cache.forget();
+  EXPECT_EQ(counted.cache.bytes(), 0U);
+  EXPECT_EQ(held.at<cv::Vec3b>(5, 5)[1], 2);
+  EXPECT_EQ(counted.cache.bgr(2).at<cv::Vec3b>(5, 5)[1], 2);
+  EXPECT_EQ(*counted.decoded, 4);
+}
+
 TEST(FrameCache, GivesManyThreadsTheRightPictures) {
   const Counted counted(5 * kPictureBytes);
   std::atomic<int> wrong = 0;

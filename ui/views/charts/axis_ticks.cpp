@@ -13,6 +13,7 @@ namespace gpo {
 namespace {
 
 constexpr std::array kSteps = {1.0, 2.0, 5.0};
+constexpr int kFewest = 3;  ///< ticks from which a scale can be read
 
 /// The `index`-th of ..., 0.5, 1, 2, 5, 10, ...; the 0th is 1.
 double round_number(int index) {
@@ -48,6 +49,10 @@ AxisTicks linear_ticks(double low, double high, int most) {
   int index = round_number_below((high - low) / most);
   while (std::floor(high / round_number(index)) - std::ceil(low / round_number(index)) >= most)
     ++index;
+  const auto count = [&] {
+    return std::floor(high / round_number(index)) - std::ceil(low / round_number(index)) + 1;
+  };
+  while (count() < kFewest) --index;
   const double step = round_number(index);
   AxisTicks ticks{low, high, {}, {}};
   const double slack = 1e-9 * (high - low) / step;
@@ -63,9 +68,18 @@ AxisTicks logarithmic_ticks(double low, double high, int most) {
   int last = round_number_below(high);
   if (round_number(last) < high * (1 - 1e-9) || last == first) ++last;
   AxisTicks ticks{round_number(first), round_number(last), {}, {}};
+  const auto count = [&](int every) {
+    return static_cast<int>(std::floor(1.0 * last / every) - std::ceil(1.0 * first / every)) + 1;
+  };
   int every = 1;
   for (const int candidate : {3, 6, 9, 15, 30})
-    if ((last - first) / every + 1 > most) every = candidate;
+    if ((last - first) / every + 1 > most && count(candidate) >= kFewest) every = candidate;
+  if (count(every) < kFewest) {
+    const AxisTicks between = linear_ticks(ticks.low, ticks.high, std::max(most, kFewest));
+    ticks.values = between.values;
+    ticks.labels = between.labels;
+    return ticks;
+  }
   for (int index = first; index <= last; ++index)
     if (index % every == 0) add_tick(ticks, round_number(index));
   return ticks;

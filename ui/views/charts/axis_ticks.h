@@ -14,12 +14,13 @@ struct AxisTicks {
   std::vector<std::string> labels;  ///< as many as values
 };
 
-/// At most about `most` ticks at multiples of 1, 2 or 5 times a power of ten, over [low, high],
-/// which is not extended. One value is given some room on both sides.
+/// At least three, else at most about `most` ticks at multiples of 1, 2 or 5 times a power of ten,
+/// over [low, high], which is not extended. One value is given some room on both sides.
 AxisTicks linear_ticks(double low, double high, int most);
 
 /// Extends to 1, 2 or 5 times a power of ten below `low` and above `high`, both > 0. Ticks there,
-/// or at powers of ten only where these are enough, or at some of them where they are too many.
+/// or at powers of ten only where these are enough, or at some of them where they are too many, or
+/// where they are fewer than three at round numbers between.
 AxisTicks logarithmic_ticks(double low, double high, int most);
 
 }  // namespace gpo

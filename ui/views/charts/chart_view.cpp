@@ -6,6 +6,7 @@
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
 #include "ui/look/palette.h"
+#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/figure_plots.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/picture_texture.h"
@@ -21,7 +22,6 @@
 #include <vtkContextActor.h>
 #include <vtkContextScene.h>
 #include <vtkNew.h>
-#include <vtkPlotPoints.h>
 #include <vtkRenderer.h>
 
 namespace gpo {
@@ -69,9 +69,9 @@ std::vector<CurveStyle> screen_styles(const Chart& chart) {
     const bool marked = !curve.dotted && curve.lower.empty() && curve.x.size() <= kMostMarked;
     styles.push_back({curve.name,
                       curve.rgb,
-                      curve.dotted ? Dash::dotted : Dash::solid,
-                      marked ? vtkPlotPoints::CIRCLE : vtkPlotPoints::NONE,
-                      false,
+                      curve.dotted,
+                      {},
+                      marked ? std::optional<int>(0) : std::nullopt,
                       5});
   }
   return styles;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/chart.h"
+#include "engine/base/chart.h"
 #include "ui/views/charts/chart_mapping.h"
 #include "ui/views/picture/image_geometry.h"
 

@@ -3,21 +3,36 @@
 #include "ui/views/charts/curve_style.h"
 
 #include "ui/look/palette.h"
-#include "ui/views/overlay/dash_pattern.h"
+#include "ui/views/charts/marker_shapes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
-#include <vtkContext2D.h>
-#include <vtkNew.h>
-#include <vtkPen.h>
-#include <vtkPlotPoints.h>
+#include <Eigen/Core>
 
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
+/// Of the curves with one marker, in turn [px].
+const std::vector<double>& dashes_of(int turn) {
+  static const std::array<std::vector<double>, 6> kPatterns = {
+      std::vector<double>{}, {8, 5}, {9, 4, 2, 4}, {3, 3}, {16, 5}, {9, 3, 2, 3, 2, 3}};
+  return kPatterns[static_cast<std::size_t>(turn) % kPatterns.size()];
+}
+
+/// For curves that look like another; none is light or like another.
+constexpr std::array<std::uint32_t, 10> kOthers = {0x0072B2,
+                                                   0xD55E00,
+                                                   0x8844AA,
+                                                   0x222222,
+                                                   0x56B4E9,
+                                                   0xAA1144,
+                                                   0x8B5A2B,
+                                                   0xE377C2,
+                                                   0x117733,
+                                                   0xB8860B};
 
 /// Relative luminance of a channel: 0 black, 1 white.
 double linear(double channel) {
@@ -36,67 +51,53 @@ std::uint32_t on_white(std::uint32_t rgb) {
   return channel(red(rgb)) << 16 | channel(green(rgb)) << 8 | channel(blue(rgb));
 }
 
-}  // namespace
-
-std::vector<double> dash_lengths(Dash dash, double scale) {
-  if (dash == Dash::dashed) return {8 * scale, 5 * scale};
-  return {9 * scale, 4 * scale, 2 * scale, 4 * scale};
+/// CIE L*a*b* of sRGB, white point D65.
+Eigen::Vector3d lab(std::uint32_t rgb) {
+  Eigen::Matrix3d M;
+  M << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
+  const Eigen::Vector3d white(0.9505, 1, 1.089);
+  const Eigen::Vector3d xyz =
+      M * Eigen::Vector3d(linear(red(rgb)), linear(green(rgb)), linear(blue(rgb)));
+  const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
+  const Eigen::Vector3d g = xyz.cwiseQuotient(white).unaryExpr(f);
+  return {116 * g.y() - 16, 500 * (g.x() - g.y()), 200 * (g.y() - g.z())};
 }
 
+/// From the nearest of the others that are not dotted; much where there are none.
+double distance(std::uint32_t rgb, const std::vector<CurveStyle>& others) {
+  double least = 1000;
+  for (const CurveStyle& other : others)
+    if (!other.dotted) least = std::min(least, color_difference(rgb, other.rgb));
+  return least;
+}
+
+std::uint32_t unlike(const std::vector<CurveStyle>& others, std::uint32_t own) {
+  constexpr double kClear = 25;
+  if (distance(own, others) >= kClear) return own;
+  return *std::ranges::max_element(
+      kOthers, {}, [&](std::uint32_t rgb) { return distance(rgb, others); });
+}
+
+}  // namespace
+
+double color_difference(std::uint32_t a, std::uint32_t b) { return (lab(a) - lab(b)).norm(); }
+
 std::vector<CurveStyle> curve_styles(const Figure& figure) {
-  constexpr std::array kMarkers = {
-      vtkPlotPoints::CIRCLE, vtkPlotPoints::SQUARE, vtkPlotPoints::DIAMOND};
-  constexpr std::array kDashes = {Dash::solid, Dash::dashed, Dash::dash_dot};
   std::vector<CurveStyle> styles;
-  std::size_t results = 0;
+  std::map<int, int> turns;  // by marker
+  int next = 0;
   for (const Chart& chart : figure.charts)
     for (const Curve& curve : chart.curves) {
       if (std::ranges::count(styles, curve.name, &CurveStyle::name) > 0) continue;
-      CurveStyle style{curve.name, on_white(curve.rgb), Dash::dotted, vtkPlotPoints::NONE, false};
+      CurveStyle style{curve.name, on_white(curve.rgb), curve.dotted};
       if (!curve.dotted) {
-        style.marker = kMarkers[results % kMarkers.size()];
-        style.hollow = results / kMarkers.size() % 2 == 1;
-        style.dash = kDashes[results / (2 * kMarkers.size()) % kDashes.size()];
-        ++results;
+        style.rgb = unlike(styles, style.rgb);
+        style.marker = curve.marker.value_or(next++) % marker_shape_count();
+        style.dashes = dashes_of(turns[*style.marker]++);
       }
-      styles.push_back(style);
+      styles.push_back(std::move(style));
     }
   return styles;
-}
-
-void paint_sample(vtkContext2D& painter,
-                  const CurveStyle& style,
-                  const vtkRectf& rect,
-                  double scale) {
-  const double y = rect.GetY() + rect.GetHeight() / 2;
-  const std::array line = {Vector2d(rect.GetX(), y), Vector2d(rect.GetX() + rect.GetWidth(), y)};
-  vtkNew<vtkPen> pen;
-  pen->SetColorF(red(style.rgb), green(style.rgb), blue(style.rgb));
-  const auto mark = [&](const Vector2d& at, int marker, double size_px) {
-    pen->SetWidth(static_cast<float>(size_px));
-    painter.ApplyPen(pen);
-    Eigen::Vector2f point = at.cast<float>();
-    painter.DrawMarkers(marker, false, point.data(), 1);
-  };
-  if (style.dash == Dash::dotted) {
-    for (const Vector2d& dot : points_along(line, kDotSpacing_px * scale))
-      mark(dot, vtkPlotPoints::CIRCLE, kDotSize_px * scale);
-    return;
-  }
-  pen->SetWidth(static_cast<float>(kCurveWidth_px * scale));
-  painter.ApplyPen(pen);
-  const std::vector<double> pattern = style.dash == Dash::solid
-                                          ? std::vector<double>{rect.GetWidth()}
-                                          : dash_lengths(style.dash, scale);
-  for (const auto& [from, to] : dashes_along(line, pattern)) {
-    const Eigen::Vector2f a = from.cast<float>(), b = to.cast<float>();
-    painter.DrawLine(a.x(), a.y(), b.x(), b.y());
-  }
-  if (style.marker == vtkPlotPoints::NONE) return;
-  const Vector2d middle = (line[0] + line[1]) / 2;
-  mark(middle, style.marker, kMarkerSize_px * scale);
-  pen->SetColor(255, 255, 255);
-  if (style.hollow) mark(middle, style.marker, kHollow_px * scale);
 }
 
 }  // namespace gpo

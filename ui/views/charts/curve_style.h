@@ -2,44 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/chart.h"
+#include "engine/experiment/figure.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-class vtkContext2D;
-class vtkRectf;
-
 namespace gpo {
 
-enum class Dash { solid, dashed, dash_dot, dotted };
-
 // Sizes at scale 1 [px].
-constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9, kHollow_px = 5;
-constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of Dash::dotted
+constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9;
+constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of dotted curves
 
 /// How the curves of one name are drawn in all charts of a figure, and explained in its legend.
 struct CurveStyle {
   std::string name;
   std::uint32_t rgb = 0;  ///< on paper dark enough for white
-  Dash dash = Dash::solid;
-  int marker = 0;       ///< vtkPlotPoints' marker; 0: none
-  bool hollow = false;  ///< the marker
+  bool dotted = false;
+  std::vector<double> dashes = {};           ///< and gaps in turn, at scale 1 [px]; empty: solid
+  std::optional<int> marker = std::nullopt;  ///< of `marker_shape`; on the screen a circle
   double marker_px = kMarkerSize_px;
 };
 
-/// Of Dash::dashed and dash_dot: dashes and gaps in turn [px].
-std::vector<double> dash_lengths(Dash dash, double scale);
-
-/// One a name, in the order in which they appear. Markers differ, then dashes: a figure can be read
-/// without its colors.
+/// For print, one a name, in the order in which they appear. Curves with one marker differ in their
+/// dashes: a figure can be read without its colors. No two colors look alike: of those that would,
+/// the later one gets another.
 std::vector<CurveStyle> curve_styles(const Figure& figure);
 
-/// A piece of the curve, as wide as the rectangle, in its middle.
-void paint_sample(vtkContext2D& painter,
-                  const CurveStyle& style,
-                  const vtkRectf& rect,
-                  double scale);
+/// How different two colors look, as CIE 1976 has it: 2 is just seen, 100 is black on white.
+double color_difference(std::uint32_t a, std::uint32_t b);
 
 }  // namespace gpo

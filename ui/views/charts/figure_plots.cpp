@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/charts/figure_plots.h"
 
+#include "ui/look/palette.h"
 #include "ui/views/charts/axis_ticks.h"
+#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/vtk_text.h"
 #include "ui/views/overlay/dash_pattern.h"
 
@@ -35,51 +37,6 @@ void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(r
 
 bool drawable(double value, bool logarithmic) {
   return std::isfinite(value) && (!logarithmic || value > 0);
-}
-
-struct Extent {
-  double low = INFINITY, high = -INFINITY;
-
-  void take(std::span<const double> values, bool logarithmic) {
-    for (const double value : values) {
-      if (!drawable(value, logarithmic)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-  bool empty() const { return low > high; }
-};
-
-Extent x_extent(const Chart& chart) {
-  Extent extent;
-  for (const Curve& curve : chart.curves) extent.take(curve.x, false);
-  return extent;
-}
-
-Extent y_extent(const Chart& chart) {
-  Extent extent;
-  for (const Curve& curve : chart.curves)
-    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
-      extent.take(*values, chart.logarithmic);
-  return extent;
-}
-
-AxisTicks x_ticks(const Chart& chart, double width_px, double scale) {
-  const Extent extent = x_extent(chart);
-  // Room for the markers at both ends.
-  const double room = 0.03 * (extent.high - extent.low);
-  const int most = std::max(2, static_cast<int>(width_px / (50 * scale)));
-  return linear_ticks(extent.low - room, extent.high + room, most);
-}
-
-/// Errors are drawn from zero on.
-AxisTicks y_ticks(const Chart& chart, double height_px, double spacing_px) {
-  const Extent extent = y_extent(chart);
-  const int most = std::max(2, static_cast<int>(height_px / spacing_px));
-  if (chart.logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
-  const double low = std::min(0.0, extent.low);
-  const double room = 0.05 * (extent.high - low);
-  return linear_ticks(low < 0 ? low - room : 0, extent.high + room, most);
 }
 
 /// A chart on its way to VTK, in pixels: VTK's own scaling of a chart would stretch the strokes of
@@ -131,33 +88,21 @@ vtkPlot& add_plot(const Plot& plot, int type, const Line& line, std::uint32_t rg
   return added;
 }
 
-void add_markers(
-    const Plot& plot, const Line& points, std::uint32_t rgb, int marker, double size_px) {
+void add_markers(const Plot& plot, const Line& points, std::uint32_t rgb, double size_px) {
   if (points.empty()) return;
   auto& added = dynamic_cast<vtkPlotPoints&>(add_plot(plot, vtkChart::POINTS, points, rgb));
-  added.SetMarkerStyle(marker);
+  added.SetMarkerStyle(vtkPlotPoints::CIRCLE);
   added.SetMarkerSize(static_cast<float>(size_px));
 }
 
-void add_line(const Plot& plot, const Line& line, std::uint32_t rgb, Dash dash, double width_px) {
-  if (dash == Dash::dotted) {
-    add_markers(plot,
-                points_along(line, kDotSpacing_px * plot.scale),
-                rgb,
-                vtkPlotPoints::CIRCLE,
-                kDotSize_px * plot.scale);
-    return;
-  }
+void add_line(const Plot& plot, const Line& line, std::uint32_t rgb, double width_px) {
   if (line.size() < 2) return;
-  Line pieces = line;
-  if (dash != Dash::solid) {
-    pieces.clear();
-    for (const auto& [from, to] : dashes_along(line, dash_lengths(dash, plot.scale)))
-      pieces.insert(pieces.end(), {from, to});
-  }
-  auto& added = dynamic_cast<vtkPlotLine&>(add_plot(plot, vtkChart::LINE, pieces, rgb));
+  auto& added = dynamic_cast<vtkPlotLine&>(add_plot(plot, vtkChart::LINE, line, rgb));
   added.GetPen()->SetWidth(static_cast<float>(width_px));
-  added.SetPolyLine(dash == Dash::solid);
+}
+
+void add_dots(const Plot& plot, const Line& line, std::uint32_t rgb) {
+  add_markers(plot, points_along(line, kDotSpacing_px * plot.scale), rgb, kDotSize_px * plot.scale);
 }
 
 void add_band(const Plot& plot, const Curve& curve, std::uint32_t rgb) {
@@ -170,7 +115,7 @@ void add_band(const Plot& plot, const Curve& curve, std::uint32_t rgb) {
   const std::vector<Line> below = runs(plot, curve.x, lower), above = runs(plot, curve.x, upper);
   for (std::size_t i = 0; i < below.size(); ++i) {
     if (below[i].size() == 1) {
-      add_line(plot, {below[i][0], above[i][0]}, rgb, Dash::solid, plot.scale);
+      add_line(plot, {below[i][0], above[i][0]}, rgb, plot.scale);
       continue;
     }
     // VTK 9.1 leaves out a band of two points; the last one twice makes three.
@@ -188,12 +133,13 @@ void add_curve(const Plot& plot, const Curve& curve, const CurveStyle& style) {
   Line points;
   for (const Line& run : runs(plot, curve.x, curve.y)) {
     points.insert(points.end(), run.begin(), run.end());
-    add_line(plot, run, style.rgb, style.dash, kCurveWidth_px * plot.scale);
+    if (style.dotted) {
+      add_dots(plot, run, style.rgb);
+    } else {
+      add_line(plot, run, style.rgb, kCurveWidth_px * plot.scale);
+    }
   }
-  if (style.marker == vtkPlotPoints::NONE) return;
-  add_markers(plot, points, style.rgb, style.marker, style.marker_px * plot.scale);
-  if (style.hollow)
-    add_markers(plot, points, plot.look.ground, style.marker, kHollow_px * plot.scale);
+  if (style.marker) add_markers(plot, points, style.rgb, style.marker_px * plot.scale);
 }
 
 /// `range_px` and `places_px` along the axis.
@@ -244,8 +190,6 @@ const CurveStyle& style_of(const Curve& curve, const std::vector<CurveStyle>& st
 
 }  // namespace
 
-bool has_values(const Chart& chart) { return !x_extent(chart).empty() && !y_extent(chart).empty(); }
-
 ChartMapping fill_chart(vtkChartXY& vtk,
                         const Chart& chart,
                         const std::vector<CurveStyle>& styles,
@@ -268,7 +212,7 @@ ChartMapping fill_chart(vtkChartXY& vtk,
     set_axes(plot, {}, {});
     return to;
   }
-  const AxisTicks x = x_ticks(chart, to.width, scale);
+  const AxisTicks x = x_ticks(chart, to.width, 50 * scale);
   const AxisTicks y = y_ticks(chart, to.height, look.tick_spacing_px * scale);
   to.logarithmic = chart.logarithmic;
   std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);

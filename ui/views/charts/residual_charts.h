@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/chart.h"
+#include "engine/base/chart.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/track_life.h"
 

@@ -6,13 +6,10 @@
 #include "ui/context/memory_file.h"
 #include "ui/look/palette.h"
 
-#include <array>
 #include <cmath>
+#include <string>
 
-#include <vtkNew.h>
-#include <vtkStdString.h>
 #include <vtkTextProperty.h>
-#include <vtkTextRenderer.h>
 
 namespace gpo {
 namespace {
@@ -33,16 +30,6 @@ void set_font(vtkTextProperty& property, Weight weight, double size_px, std::uin
   property.SetShadow(0);
   property.SetFontSize(static_cast<int>(std::lround(size_px)));
   property.SetColor(red(rgb), green(rgb), blue(rgb));
-}
-
-double text_width(const std::string& text, Weight weight, double size_px) {
-  constexpr int kDotsPerInch = 72;  // a point is a pixel
-  vtkNew<vtkTextProperty> property;
-  set_font(*property, weight, size_px, 0);
-  std::array<int, 4> box = {0, -1, 0, -1};
-  vtkTextRenderer::GetInstance()->GetBoundingBox(
-      property, vtkStdString(text), box.data(), kDotsPerInch);
-  return box[1] - box[0] + 1;
 }
 
 }  // namespace gpo

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 class vtkTextProperty;
 
@@ -13,8 +12,5 @@ enum class Weight { regular, bold };
 
 /// The program's own font for VTK, as Dear ImGui draws it. `size_px`: of the em.
 void set_font(vtkTextProperty& property, Weight weight, double size_px, std::uint32_t rgb);
-
-/// How wide VTK draws a text [px].
-double text_width(const std::string& text, Weight weight, double size_px);
 
 }  // namespace gpo

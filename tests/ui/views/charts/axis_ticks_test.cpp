@@ -57,5 +57,21 @@ TEST(AxisTicks, LogarithmicOfOneValueHaveALength) {
   EXPECT_EQ(ticks.high, 2);
 }
 
+TEST(AxisTicks, AreAtLeastThree) {
+  for (const double low : {0.0, 0.013, 1.0, 9.6, 3700.0})
+    for (const double length : {0.003, 0.4, 1.01, 2.9, 30.0, 720.0})
+      for (const int most : {1, 2, 3, 8})
+        EXPECT_GE(linear_ticks(low, low + length, most).values.size(), 3U) << low << " " << length;
+  for (const double low : {0.0012, 0.1, 0.5, 1.0, 7.0})
+    for (const double factor : {1.0, 1.05, 1.9, 2.5, 6.0, 40.0, 900.0, 1e7})
+      for (const int most : {2, 3, 4, 8}) {
+        const AxisTicks ticks = logarithmic_ticks(low, factor * low, most);
+        EXPECT_GE(ticks.values.size(), 3U) << low << " x " << factor << ", " << most;
+        EXPECT_GE(ticks.values.front(), ticks.low);
+        EXPECT_LE(ticks.values.back(), ticks.high);
+      }
+  EXPECT_THAT(logarithmic_ticks(0.12, 0.18, 4).labels, ElementsAre("0.1", "0.15", "0.2"));
+}
+
 }  // namespace
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct Curve {
   bool dotted = false;               ///< a bound, not a result
   std::vector<double> x, y;          ///< same length, x ascending
   std::vector<double> lower, upper;  ///< the band; as long as y, or empty: none
+  std::vector<int> counts = {};      ///< values behind each point; as long as y, or empty: not told
+  std::optional<int> marker = {};    ///< which of the markers for print; nothing: the next one
 };
 
 struct Chart {
@@ -23,13 +26,6 @@ struct Chart {
   std::string y_label;       ///< with its unit
   bool logarithmic = false;  ///< the y axis
   std::vector<Curve> curves;
-};
-
-/// Charts that stand side by side and share one legend. What is drawn; `ui/views` draws it.
-struct Figure {
-  std::string name;  ///< of its files, without extension
-  std::string title;
-  std::vector<Chart> charts;
 };
 
 }  // namespace gpo

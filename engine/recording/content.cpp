@@ -1,0 +1,137 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/content.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+
+#include <array>
+#include <memory>
+#include <set>
+#include <span>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+extern "C" {
+#include <libavutil/mem.h>
+#include <libavutil/sha.h>
+}
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string sha256(const std::string& bytes) {
+  const std::unique_ptr<AVSHA, void (*)(void*)> sum(av_sha_alloc(), av_free);
+  std::array<std::uint8_t, 32> digest{};
+  av_sha_init(sum.get(), 256);
+  av_sha_update(sum.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  av_sha_final(sum.get(), digest.data());
+  return fmt::format("{:02x}", fmt::join(digest, ""));
+}
+
+std::string text_of(const auto& matrix) {
+  const std::span numbers(matrix.data(), static_cast<std::size_t>(matrix.size()));
+  return fmt::format("{} ", fmt::join(numbers, " "));
+}
+
+std::string text_of(const Pose& pose) { return text_of(pose.R_wc) + text_of(pose.p_wc); }
+
+std::string text_of(const Plane& plane) {
+  return fmt::format("{}{}", text_of(plane.normal), plane.distance);
+}
+
+void add_camera(RecordingContent& content, const Camera& camera) {
+  content["picture size"] = fmt::format("{}x{}", camera.width, camera.height);
+  content["fx"] = fmt::format("{}", camera.fx);
+  content["fy"] = fmt::format("{}", camera.fy);
+  content["cx"] = fmt::format("{}", camera.cx);
+  content["cy"] = fmt::format("{}", camera.cy);
+  content["lens"] = fmt::format(
+      "{} {}", static_cast<int>(camera.distortion), fmt::join(camera.coefficients, " "));
+}
+
+std::string digest_of(const Gyroscope& gyroscope) {
+  std::string text = fmt::format("{}{} {}{}\n{}",
+                                 text_of(gyroscope.R_gyro_camera),
+                                 gyroscope.time_offset_ns,
+                                 text_of(gyroscope.bias_rad_s),
+                                 gyroscope.bias_sigma_rad_s,
+                                 fmt::join(gyroscope.timestamps_ns, " "));
+  for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s) text += text_of(rate);
+  return sha256(text);
+}
+
+std::string digest_of(const GroundTruth& truth) {
+  std::string text;
+  for (const auto& pose : truth.poses) text += pose ? text_of(*pose) : "-";
+  return sha256(text);
+}
+
+std::string text_of(const Board& board) {
+  return fmt::format("{}x{} {} {} {}",
+                     board.columns,
+                     board.rows,
+                     board.square_m,
+                     board.markers ? board.markers->side_m : 0,
+                     board.markers ? board.markers->dictionary : "");
+}
+
+std::string digest_of(const std::vector<TrackObservation>& tracks) {
+  std::string text;
+  for (const TrackObservation& one : tracks)
+    text += fmt::format("{} {} {}", one.frame, one.track, text_of(one.raw_px));
+  return sha256(text);
+}
+
+std::string digest_of(const std::vector<fs::path>& pictures) {
+  std::string text;
+  for (const fs::path& file : pictures) {
+    std::error_code error;
+    const auto size = fs::file_size(file, error);
+    if (error) {
+      throw InputError(fmt::format("{}: cannot be read ({}), expected a picture of the recording",
+                                   file.string(),
+                                   error.message()));
+    }
+    text += fmt::format("{} {}\n", file.filename().string(), size);
+  }
+  return sha256(text);
+}
+
+bool is_recipe(const fs::path& path) {
+  return (path.extension() == ".yaml" || path.extension() == ".yml") && is_file(path);
+}
+
+}  // namespace
+
+RecordingContent content_of(const Recording& recording) {
+  RecordingContent content;
+  add_camera(content, recording.camera);
+  content["time stamps"] = sha256(fmt::format("{}", fmt::join(recording.timestamps_ns, " ")));
+  if (recording.T_body_camera) content["camera in the body"] = text_of(*recording.T_body_camera);
+  if (recording.pictures) content["pictures"] = digest_of(recording.picture_files);
+  if (recording.gyroscope) content["gyroscope"] = digest_of(*recording.gyroscope);
+  if (recording.truth) content["truth"] = digest_of(*recording.truth);
+  if (recording.plane) content["plane"] = text_of(*recording.plane);
+  if (recording.board) content["board"] = text_of(*recording.board);
+  if (!recording.tracks.empty()) content["tracks"] = digest_of(recording.tracks);
+  if (is_recipe(recording.path)) content["recipe"] = sha256(read_file(recording.path));
+  return content;
+}
+
+std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b) {
+  std::set<std::string> names;
+  for (const auto& [name, part] : a) {
+    const auto other = b.find(name);
+    if (other == b.end() || other->second != part) names.insert(name);
+  }
+  for (const auto& [name, part] : b)
+    if (!a.contains(name)) names.insert(name);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace gpo

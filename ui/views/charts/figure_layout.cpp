@@ -1,0 +1,95 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/figure_layout.h"
+
+#include "ui/views/charts/glyphs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+// At scale 1.
+constexpr double kFreeHeight = 205;  ///< of the axes, where the height is free
+constexpr double kMargin = 10, kBesideSample = 8, kBetweenKeys = 26;
+
+/// Rows of samples with their names, centered, from `y` down. Returns where they end.
+double place_legend(FigureLayout& layout,
+                    const std::vector<CurveStyle>& styles,
+                    bool few,
+                    double y) {
+  const double s = layout.scale, size = layout.type.legend, row = 1.7 * size;
+  std::vector<LegendKey> keys;
+  for (const CurveStyle& style : styles) keys.push_back({&style, style.name, {}});
+  if (few) keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows), {}});
+  const auto width_of_key = [&](const LegendKey& key) {
+    return (kSampleLength + kBesideSample + kBetweenKeys) * s + width_of(key.text, size);
+  };
+  const double room = layout.width - 2 * kMargin * s + kBetweenKeys * s;
+  for (std::size_t first = 0; first < keys.size();) {
+    std::size_t end = first;
+    double total = 0;
+    while (end < keys.size() && (end == first || total + width_of_key(keys[end]) <= room))
+      total += width_of_key(keys[end++]);
+    double x = (layout.width - total + kBetweenKeys * s) / 2;
+    for (; first < end; ++first) {
+      keys[first].at = {x, y + row / 2};
+      x += width_of_key(keys[first]);
+    }
+    y += row;
+  }
+  layout.keys = std::move(keys);
+  return y;
+}
+
+}  // namespace
+
+bool has_few_windows(const Figure& figure) {
+  for (const Chart& chart : figure.charts)
+    for (const Curve& curve : chart.curves)
+      for (const int count : curve.counts)
+        if (count > 0 && count < kFewWindows) return true;
+  return false;
+}
+
+FigureLayout lay_out(const Figure& figure,
+                     const std::vector<CurveStyle>& styles,
+                     const FigureSheet& sheet) {
+  const double s = sheet.scale;
+  const FigureType& type = sheet.type;
+  FigureLayout layout{sheet.width, 0, s, type, {}, {}, {}, 0, 0, {}};
+  const double room = sheet.width - 2 * kMargin * s;
+  layout.title = wrapped(figure.title, type.title, true, room);
+  layout.note = wrapped(figure.note, type.note, false, room);
+  const double lines = kLineSpacing * type.title * static_cast<double>(layout.title.size());
+  layout.title_y = kMargin * s + kLineSpacing * type.title / 2;
+  const double top = kMargin * s + lines;
+  // What is below the charts is laid out from 0 on, and moved when their height is known.
+  const double legend_height = place_legend(layout, styles, has_few_windows(figure), 0);
+  const double note_height = kLineSpacing * type.note * static_cast<double>(layout.note.size());
+  const double below = legend_height + note_height + (layout.note.empty() ? 1 : 1.6) * kMargin * s;
+  const auto charts = static_cast<int>(figure.charts.size());
+  const int columns = std::clamp(sheet.columns, 1, std::max(1, charts));
+  const int rows = std::max(1, (charts + columns - 1) / columns);
+  const double head = 2.1 * type.chart_title;
+  const double foot = 0.5 * type.tick + 8 * s + type.tick + 2.2 * type.axis_title;
+  double height = kFreeHeight * s;
+  if (sheet.height) height = std::max(20 * s, (*sheet.height - top - below) / rows - head - foot);
+  const double left = 3.3 * type.tick + 2 * type.axis_title, right = 1.3 * type.tick;
+  const double column = sheet.width / columns;
+  for (int i = 0; i < charts; ++i)
+    layout.axes.emplace_back(std::round(column * (i % columns) + left),
+                             std::round(top + head + (head + height + foot) * (i / columns)),
+                             std::max(20 * s, std::round(column - left - right)),
+                             std::round(height));
+  const double end = top + rows * (head + height + foot);
+  for (LegendKey& key : layout.keys) key.at.y() += end;
+  layout.note_y = end + legend_height + 0.6 * kMargin * s + kLineSpacing * type.note / 2;
+  layout.height = sheet.height.value_or(std::ceil(end + below));
+  return layout;
+}
+
+}  // namespace gpo
