@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/frontend/rotations.h"
-#include "engine/recording/recording.h"
+#include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
 #include <span>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/recording.h"
+#include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
 #include <cstdint>

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera.h"
 
-#include "engine/geometry/lens_distortion.h"
-
 #include <algorithm>
 
 #include <Eigen/Geometry>
@@ -16,6 +14,8 @@ using Eigen::Vector2d;
 Vector2d to_pixel(const Camera& camera, const Vector2d& x) {
   return {camera.fx * x.x() + camera.cx, camera.fy * x.y() + camera.cy};
 }
+
+Lens lens_of(const Camera& camera) { return {camera.distortion, camera.coefficients}; }
 
 Vector2d from_pixel(const Camera& camera, const Vector2d& px) {
   return {(px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy};
@@ -34,17 +34,18 @@ Vector2d project_undistorted(const Camera& camera, const Eigen::Vector3d& point_
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {
-  return to_pixel(camera, distort_normalized(camera, point_c.hnormalized()));
+  return to_pixel(camera, distort_normalized(lens_of(camera), point_c.hnormalized()));
 }
 
 Vector2d distort(const Camera& camera, const Vector2d& undistorted_px) {
-  return to_pixel(camera, distort_normalized(camera, from_pixel(camera, undistorted_px)));
+  return to_pixel(camera, distort_normalized(lens_of(camera), from_pixel(camera, undistorted_px)));
 }
 
 Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   if (camera.distortion == Distortion::none) return raw_px;
   const double tolerance = 1e-10 / std::max(camera.fx, camera.fy);
-  return to_pixel(camera, undistort_normalized(camera, from_pixel(camera, raw_px), tolerance));
+  return to_pixel(camera,
+                  undistort_normalized(lens_of(camera), from_pixel(camera, raw_px), tolerance));
 }
 
 }  // namespace gpo

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/lens_distortion.h"
+
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
-
-enum class Distortion { none, radial_tangential, equidistant };
 
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
 /// is (0, 0), as in OpenCV. "Raw" pixels are those of the picture, "undistorted" ones those of the
@@ -21,10 +21,7 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]] (Brown, rational,
-  /// thin prism and tilted sensor, as OpenCV orders them);
-  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt); none: empty. Missing ones are zero.
-  std::vector<double> coefficients;
+  std::vector<double> coefficients;  ///< as `Lens` orders them; missing ones are zero
 
   bool operator==(const Camera&) const = default;
 };

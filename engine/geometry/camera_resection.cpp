@@ -3,6 +3,7 @@
 #include "engine/geometry/camera_resection.h"
 
 #include "engine/geometry/median.h"
+#include "engine/geometry/sqpnp.h"
 
 #include <cmath>
 #include <limits>
@@ -10,8 +11,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -93,20 +93,11 @@ std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Matrix3d& K) {
   if (points_w.cols() < kLeastPoints) return std::nullopt;
-  std::vector<cv::Point3d> objects;
-  for (const auto& p : points_w.colwise()) objects.emplace_back(p.x(), p.y(), p.z());
-  std::vector<cv::Point2d> images;
-  for (const auto& p : pixels.colwise()) images.emplace_back(p.x(), p.y());
-  cv::Mat K_cv, rotation, translation;
-  cv::eigen2cv(K, K_cv);
-  if (!cv::solvePnP(objects, images, K_cv, {}, rotation, translation, false, cv::SOLVEPNP_SQPNP))
-    return std::nullopt;
-  Vector3d r, t_cw;
-  cv::cv2eigen(rotation, r);
-  cv::cv2eigen(translation, t_cw);
-  if (!r.allFinite() || !t_cw.allFinite()) return std::nullopt;
-  const Matrix3d R_cw = so3_exp(r);
-  return refine_pose({R_cw.transpose(), -R_cw.transpose() * t_cw}, points_w, pixels, K);
+  const Eigen::Matrix2Xd seen =
+      (K.inverse() * pixels.colwise().homogeneous()).colwise().hnormalized();
+  const std::optional<Pose> start = pose_of_least_algebraic_error(points_w, seen);
+  if (!start) return std::nullopt;
+  return refine_pose(*start, points_w, pixels, K);
 }
 
 }  // namespace gpo

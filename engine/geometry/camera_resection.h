@@ -24,8 +24,8 @@ std::optional<Resection> refine_pose(const Pose& start,
                                      const Eigen::Matrix2Xd& pixels,
                                      const Eigen::Matrix3d& K);
 
-/// Perspective-n-point without a start: SQPnP (Terzakis & Lourakis 2020, OpenCV's), which unlike
-/// EPnP also suits points near a plane, and `refine_pose` from it. n >= 4.
+/// Perspective-n-point without a start: SQPnP, which unlike EPnP also suits points near a plane,
+/// and `refine_pose` from it. n >= 4.
 std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Eigen::Matrix3d& K);

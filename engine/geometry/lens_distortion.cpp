@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/lens_distortion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -21,8 +22,8 @@ constexpr int kSamples = 64;          // of the way from the axis, to find a fol
 constexpr double kDifference = 1e-6;  // of the central differences, in normalized coordinates
 const Vector2d kNowhere(kNaN, kNaN);
 
-double coefficient(const Camera& camera, std::size_t i) {
-  return i < camera.coefficients.size() ? camera.coefficients[i] : 0.0;
+double coefficient(const Lens& lens, std::size_t i) {
+  return i < lens.coefficients.size() ? lens.coefficients[i] : 0.0;
 }
 
 /// A tilted sensor behind the lens, tau_x and tau_y [rad], as OpenCV's CALIB_TILTED_MODEL.
@@ -39,7 +40,7 @@ Vector2d tilted(double tau_x, double tau_y, const Vector2d& x) {
 
 /// Brown's model with OpenCV's order of coefficients:
 /// k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y.
-Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
+Vector2d radial_tangential(const Lens& c, const Vector2d& x) {
   const double r2 = x.squaredNorm();
   const double radial =
       (1 + r2 * (coefficient(c, 0) + r2 * (coefficient(c, 1) + r2 * coefficient(c, 4)))) /
@@ -57,7 +58,7 @@ Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
 }
 
 /// Whether the radial part r N(r^2) / D(r^2) of Brown's model rises at s = r^2, and has no pole.
-bool rises(const Camera& c, double s) {
+bool rises(const Lens& c, double s) {
   const double k1 = coefficient(c, 0), k2 = coefficient(c, 1), k3 = coefficient(c, 4);
   const double k4 = coefficient(c, 5), k5 = coefficient(c, 6), k6 = coefficient(c, 7);
   const double N = 1 + s * (k1 + s * (k2 + s * k3));
@@ -68,7 +69,7 @@ bool rises(const Camera& c, double s) {
 }
 
 /// Surely without a fold up to r^2 = s: the negative terms together do not reach the leading 1.
-bool plainly_rises(const Camera& c, double s) {
+bool plainly_rises(const Lens& c, double s) {
   if (c.coefficients.size() > 5) return false;
   const auto falling = [](double k) { return std::max(0.0, -k); };
   return s * (3 * falling(coefficient(c, 0)) +
@@ -76,59 +77,57 @@ bool plainly_rises(const Camera& c, double s) {
          1;
 }
 
-bool within_valid_radius(const Camera& camera, const Vector2d& ideal) {
+bool within_valid_radius(const Lens& lens, const Vector2d& ideal) {
   const double s = ideal.squaredNorm();
   if (!std::isfinite(s)) return false;
-  if (plainly_rises(camera, s)) return true;
+  if (plainly_rises(lens, s)) return true;
   for (int i = 1; i <= kSamples; ++i) {
     const double part = static_cast<double>(i) / kSamples;
-    if (!rises(camera, s * part * part)) return false;
+    if (!rises(lens, s * part * part)) return false;
   }
   return true;
 }
 
 /// Kannala-Brandt: the angle from the optical axis that the picture shows, for the true one.
-double distorted_angle(const Camera& c, double theta) {
+double distorted_angle(const Lens& c, double theta) {
   const double t2 = theta * theta;
   return theta *
          (1 + t2 * (coefficient(c, 0) +
                     t2 * (coefficient(c, 1) + t2 * (coefficient(c, 2) + t2 * coefficient(c, 3)))));
 }
 
-double slope_of_angle(const Camera& c, double theta) {
+double slope_of_angle(const Lens& c, double theta) {
   const double t2 = theta * theta;
   return 1 + t2 * (3 * coefficient(c, 0) +
                    t2 * (5 * coefficient(c, 1) +
                          t2 * (7 * coefficient(c, 2) + t2 * 9 * coefficient(c, 3))));
 }
 
-bool angle_is_valid(const Camera& camera, double theta) {
+bool angle_is_valid(const Lens& lens, double theta) {
   for (int i = 1; i <= kSamples; ++i) {
-    if (!(slope_of_angle(camera, theta * i / kSamples) > 0)) return false;
+    if (!(slope_of_angle(lens, theta * i / kSamples) > 0)) return false;
   }
   return true;
 }
 
-Vector2d equidistant(const Camera& camera, const Vector2d& x) {
+Vector2d equidistant(const Lens& lens, const Vector2d& x) {
   const double r = x.norm();
   if (r < 1e-12) return x;
   const double theta = std::atan(r);
-  if (!angle_is_valid(camera, theta)) return kNowhere;
-  return x * (distorted_angle(camera, theta) / r);
+  if (!angle_is_valid(lens, theta)) return kNowhere;
+  return x * (distorted_angle(lens, theta) / r);
 }
 
-Vector2d invert_radial_tangential(const Camera& camera,
-                                  const Vector2d& distorted,
-                                  double tolerance) {
+Vector2d invert_radial_tangential(const Lens& lens, const Vector2d& distorted, double tolerance) {
   Vector2d x = distorted;
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const Vector2d error = radial_tangential(camera, x) - distorted;
-    if (error.norm() < tolerance) return within_valid_radius(camera, x) ? x : kNowhere;
+    const Vector2d error = radial_tangential(lens, x) - distorted;
+    if (error.norm() < tolerance) return within_valid_radius(lens, x) ? x : kNowhere;
     Matrix2d J;
     for (int k = 0; k < 2; ++k) {
       const Vector2d h = kDifference * Vector2d::Unit(k);
       J.col(k) =
-          (radial_tangential(camera, x + h) - radial_tangential(camera, x - h)) / (2 * kDifference);
+          (radial_tangential(lens, x + h) - radial_tangential(lens, x - h)) / (2 * kDifference);
     }
     if (!(J.determinant() > 0)) return kNowhere;
     x -= J.inverse() * error;
@@ -136,17 +135,17 @@ Vector2d invert_radial_tangential(const Camera& camera,
   return kNowhere;
 }
 
-Vector2d invert_equidistant(const Camera& camera, const Vector2d& distorted, double tolerance) {
+Vector2d invert_equidistant(const Lens& lens, const Vector2d& distorted, double tolerance) {
   const double r_distorted = distorted.norm();
   if (r_distorted < 1e-12) return distorted;
   double theta = r_distorted;
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const double error = distorted_angle(camera, theta) - r_distorted;
+    const double error = distorted_angle(lens, theta) - r_distorted;
     if (std::abs(error) < tolerance) {
-      const bool seen = theta < std::numbers::pi / 2 && angle_is_valid(camera, theta);
+      const bool seen = theta < std::numbers::pi / 2 && angle_is_valid(lens, theta);
       return seen ? Vector2d(distorted * (std::tan(theta) / r_distorted)) : kNowhere;
     }
-    const double slope = slope_of_angle(camera, theta);
+    const double slope = slope_of_angle(lens, theta);
     if (!(slope > 0)) return kNowhere;
     theta -= error / slope;
   }
@@ -155,24 +154,24 @@ Vector2d invert_equidistant(const Camera& camera, const Vector2d& distorted, dou
 
 }  // namespace
 
-Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
-  switch (camera.distortion) {
+Vector2d distort_normalized(const Lens& lens, const Vector2d& ideal) {
+  switch (lens.distortion) {
     case Distortion::radial_tangential:
-      return within_valid_radius(camera, ideal) ? radial_tangential(camera, ideal) : kNowhere;
+      return within_valid_radius(lens, ideal) ? radial_tangential(lens, ideal) : kNowhere;
     case Distortion::equidistant:
-      return equidistant(camera, ideal);
+      return equidistant(lens, ideal);
     case Distortion::none:
       break;
   }
   return ideal;
 }
 
-Vector2d undistort_normalized(const Camera& camera, const Vector2d& distorted, double tolerance) {
-  switch (camera.distortion) {
+Vector2d undistort_normalized(const Lens& lens, const Vector2d& distorted, double tolerance) {
+  switch (lens.distortion) {
     case Distortion::radial_tangential:
-      return invert_radial_tangential(camera, distorted, tolerance);
+      return invert_radial_tangential(lens, distorted, tolerance);
     case Distortion::equidistant:
-      return invert_equidistant(camera, distorted, tolerance);
+      return invert_equidistant(lens, distorted, tolerance);
     case Distortion::none:
       break;
   }

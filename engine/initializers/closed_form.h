@@ -4,23 +4,9 @@
 
 #include "engine/initializers/common/initialization.h"
 #include "engine/initializers/common/watch.h"
-#include "engine/initializers/plane/plane_motion.h"
 #include "engine/window/window.h"
 
-#include <optional>
-
 namespace gpo {
-
-/// tau n^T of a frame, the rank-one part I - H' / lambda of its homography; not finite where it has
-/// none.
-Eigen::Matrix3d translation_times_normal(const Window& window, int frame);
-
-/// Normal and translations from all homographies at once, without a choice among decompositions:
-/// I - H'_i / lambda_i = tau_i n^T with H'_i = R_wci K^-1 H_i1 K and lambda_i its middle singular
-/// value; stacked over the frames, the matrix has rank one and n is its right singular vector
-/// (method.md, "Closed form"). Its sign is that of a visible plane. Nothing where a homography is
-/// missing.
-std::optional<PlaneMotion> closed_form_motion(const Window& window);
 
 /// The closed form's normal, with translations by linear least squares over the inliers.
 Initialization initialize_closed_form(const Window& window, const Watch& watch);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo.h"
 
-#include "engine/initializers/closed_form.h"
 #include "engine/initializers/common/window_checks.h"
+#include "engine/initializers/plane/closed_form_motion.h"
 #include "engine/initializers/plane/delivery.h"
 #include "engine/initializers/plane/plane_solver.h"
 

@@ -22,20 +22,6 @@
 
 namespace gpo {
 
-Initialization failed(std::string reason, SolverReport solver) {
-  Initialization result;
-  result.reason = std::move(reason);
-  result.solver = std::move(solver);
-  return result;
-}
-
-void continue_trace(const SolverReport& before, SolverReport& next) {
-  std::vector<SolverStep> trace = before.trace;
-  if (!next.trace.empty()) trace.insert(trace.end(), next.trace.begin() + 1, next.trace.end());
-  next.trace = std::move(trace);
-  next.initial_cost = before.initial_cost;
-}
-
 namespace {
 
 /// Of a method that leaves its user no choice.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking.h"
 #include "engine/initializers/common/initialization.h"
 #include "engine/initializers/common/initializer_options.h"
 #include "engine/initializers/common/watch.h"

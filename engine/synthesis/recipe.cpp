@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
-#include "engine/synthesis/scene.h"
 #include "engine/synthesis/strict_yaml.h"
 #include "engine/synthesis/textures.h"
 
@@ -237,6 +236,10 @@ double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns) {
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row) {
   const double place = static_cast<double>(row) / (recipe.camera.height - 1) - 0.5;
   return trajectory_seconds(recipe, timestamp_ns) + place * recipe.picture.rolling_shutter;
+}
+
+Eigen::Matrix3d turn_into(double angle) {
+  return Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board) {

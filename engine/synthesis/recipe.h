@@ -98,6 +98,9 @@ double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 /// read at t + (r / (height - 1) - 0.5) * readout, in the trajectory's time [s].
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
+/// Rotation from the world into axes that are turned counter-clockwise by an angle [rad].
+Eigen::Matrix3d turn_into(double angle);
+
 /// The board's inner corners in the world, row by row [m].
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board);
 

@@ -206,10 +206,6 @@ SceneBox make_box(const BoxRecipe& box, Random random) {
 
 }  // namespace
 
-Eigen::Matrix3d turn_into(double angle) {
-  return Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
 Scene make_scene(const DeskRecipe& desk, int threads) {
   Scene scene;
   scene.desk_size = desk.size;

@@ -37,7 +37,4 @@ Scene make_scene(const DeskRecipe& desk, int threads);
 /// Interpolated texture at the fraction (u, v) of its width and height, v downwards.
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v);
 
-/// Rotation from the world into axes that are turned counter-clockwise by an angle [rad].
-Eigen::Matrix3d turn_into(double angle);
-
 }  // namespace gpo

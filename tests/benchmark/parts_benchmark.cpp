@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/growth.h"
-#include "engine/initializers/closed_form.h"
 #include "engine/initializers/gpo.h"
+#include "engine/initializers/plane/closed_form_motion.h"
 #include "engine/initializers/plane/plane_kernel.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/peak.h"

@@ -4,7 +4,7 @@
 
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/certainty/window_evidence.h"
-#include "engine/initializers/closed_form.h"
+#include "engine/initializers/plane/closed_form_motion.h"
 #include "engine/initializers/plane/plane_motion.h"
 
 #include <algorithm>

@@ -4,33 +4,16 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/initializers/common/uncertainty.h"
 #include "engine/initializers/plane/plane_kernel.h"
 #include "engine/window/window.h"
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
-
-/// First-order uncertainty of a solution, in the gauge of an initialization (world = reference
-/// camera, d = 1); independent noise of `sigma_px` on each coordinate of the inliers, reference
-/// points exact, what `rotations` leaves unknown marginalized. Where a method takes a gyroscope's
-/// rotations as known, their bias is wrong as its prior says, and the result with it.
-struct Uncertainty {
-  double sigma_px = 0;  ///< from the residuals, unknowns counted
-  RotationModel rotations = RotationModel::known;
-  Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
-  double normal_sigma_deg = 0;                                  ///< root of its trace
-  std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
-  std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i
-  std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope's axes
-  /// Cramer-Rao bounds of the normal's angle [deg] at this solution.
-  std::optional<double> bound_known_rotations_deg;
-  std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only
-};
 
 /// Information on what the frames share, the translations (and free rotations) marginalized, per
 /// square pixel of noise: over the normal's tangents u and, with an unknown bias, the bias.

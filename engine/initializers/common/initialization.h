@@ -5,7 +5,7 @@
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/initializers/certainty/uncertainty.h"
+#include "engine/initializers/common/uncertainty.h"
 #include "engine/initializers/common/verdict.h"
 
 #include <optional>

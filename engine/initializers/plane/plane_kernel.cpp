@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_kernel.h"
 
-#include "engine/initializers/plane/plane_observations.h"
-
 #include <cstring>
 
 namespace gpo {

@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
+#include "engine/initializers/plane/plane_observations.h"
 
 #include <Eigen/Core>
 
 namespace gpo {
-
-struct FrameObservations;
-
-inline constexpr std::size_t kKernelWidth = 4;  ///< observations a step of the kernels takes
 
 /// Where a frame's transfer error is linearized.
 struct FrameState {

@@ -4,11 +4,14 @@
 
 #include "engine/window/window.h"
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
+
+inline constexpr std::size_t kKernelWidth = 4;  ///< observations a step of the kernels takes
 
 /// The inliers of one frame, a structure of arrays for the vector units. Padded with copies of the
 /// first one, masked, to whole vectors.

@@ -3,6 +3,7 @@
 #include "engine/initializers/closed_form.h"
 
 #include "engine/initializers/gpo.h"
+#include "engine/initializers/plane/closed_form_motion.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_solver.h"
 
-#include "engine/initializers/closed_form.h"
+#include "engine/initializers/plane/closed_form_motion.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
