@@ -8,6 +8,7 @@
 #include "engine/experiment/summary.h"
 #include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/inspector.h"
 
 #include <algorithm>
 

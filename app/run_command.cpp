@@ -5,6 +5,7 @@
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
+#include "engine/inspection/inspector.h"
 #include "engine/inspection/report.h"
 
 #include <fmt/format.h>

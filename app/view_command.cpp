@@ -4,6 +4,7 @@
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
 #include "ui/window_input.h"

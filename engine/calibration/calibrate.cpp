@@ -4,6 +4,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/board/board_pose.h"
 
 #include <algorithm>
@@ -176,17 +177,12 @@ std::optional<Solution> solve(const Views& views, const Board& board, const Star
   return std::nullopt;
 }
 
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
 /// Leaves out the views that fit far worse than the others and solves again, while there are such.
 std::optional<Solution> solve_without_bad(Views& views, const Board& board, const Camera& start) {
   constexpr int kRounds = 4;
   auto solution = solve(views, board, {start});
   for (int round = 0; solution && round < kRounds; ++round) {
-    const double most = kMostTimesMedian * quantile(solution->view_rms_px, 0.5);
+    const double most = kMostTimesMedian * median(solution->view_rms_px);
     Views good;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (solution->view_rms_px[i] <= most) good.push_back(views[i]);
@@ -327,7 +323,9 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   }
   const auto solution = solve_without_bad(views, board, unknown_camera(search.size, options));
   if (!solution) return failed(result, "the views fix no camera; show the board from more sides");
-  const double slant = quantile(solution->slant_deg, 0.9);
+  std::vector<double> slants_deg = solution->slant_deg;
+  std::ranges::sort(slants_deg);
+  const double slant = quantile(slants_deg, 0.9);
   if (slant < kLeastSlantDeg) {
     return failed(
         result,

@@ -3,6 +3,7 @@
 #include "engine/calibration/calibration_views.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/pictures/each_picture.h"
@@ -38,12 +39,6 @@ std::vector<int> regular_sample(int count, int most) {
 std::size_t seen_count(const std::vector<Eigen::Vector2d>& corners) {
   return std::count_if(
       corners.begin(), corners.end(), [](const auto& corner) { return corner.allFinite(); });
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Gray by bilinear interpolation; nothing outside of the picture.

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/bound.h"
 
+#include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/residuals/transfer.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -18,9 +18,7 @@ std::optional<double> normal_bound_deg(const Window& window,
                                        double sigma_px) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const Eigen::Vector3d& n = plane.normal;
-  Eigen::Matrix<double, 3, 2> N;  // two directions in which the normal can move
-  N.col(0) = n.unitOrthogonal();
-  N.col(1) = n.cross(N.col(0));
+  const Eigen::Matrix<double, 3, 2> N = normal_tangents(n);
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (int i = 1; i < window.frame_count(); ++i) {
     Eigen::Matrix2d nn = Eigen::Matrix2d::Zero();
@@ -41,13 +39,6 @@ std::optional<double> normal_bound_deg(const Window& window,
   const Eigen::Matrix2d covariance = sigma_px * sigma_px * information.inverse();
   const double bound_deg = degrees(std::sqrt(covariance.trace()));
   return std::isfinite(bound_deg) ? std::optional(bound_deg) : std::nullopt;
-}
-
-double noise_from_residuals_px(std::span<const double> errors_px, int frames) {
-  double sum = 0;
-  for (const double e : errors_px) sum += e * e;
-  const double freedom = 2.0 * static_cast<double>(errors_px.size()) - (3.0 * frames - 1);
-  return std::sqrt(sum / std::max(freedom, 1.0));
 }
 
 }  // namespace gpo

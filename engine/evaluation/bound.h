@@ -11,17 +11,13 @@
 
 namespace gpo {
 
-/// Cramer-Rao bound of the normal's angle [deg]: the root of the trace of its covariance with the
-/// translations unknown, rotations known, reference points exact and independent noise of
-/// `sigma_px` on each coordinate of the inlier observations. Nothing where the window does not
-/// determine it.
+/// Cramer-Rao bound of the normal's angle [deg] (engine/method.md, eq. 13 and 14): the root of the
+/// trace of its covariance with the translations unknown, rotations known, reference points exact
+/// and independent noise of `sigma_px` on each coordinate of the inlier observations. Nothing where
+/// the window does not determine it.
 std::optional<double> normal_bound_deg(const Window& window,
                                        const Plane& plane,
                                        std::span<const Pose> cameras,
                                        double sigma_px);
-
-/// Noise of one coordinate [px], from the residuals of a fit: sqrt(sum of squares / (residuals -
-/// unknowns)), unknowns = 3 frames - 1.
-double noise_from_residuals_px(std::span<const double> errors_px, int frames);
 
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
 
 #include <cmath>
@@ -84,11 +85,12 @@ Evaluation evaluate(const Initialization& initialization,
   if (plane_known && estimated_plane) measure_plane(*estimated_plane, truth, evaluation);
   const std::vector<double> errors =
       reprojection_errors_px(window, initialization.plane, initialization.cameras);
-  evaluation.pne_bound_deg =
-      normal_bound_deg(window,
-                       initialization.plane,
-                       initialization.cameras,
-                       noise_from_residuals_px(errors, window.frame_count()));
+  evaluation.pne_bound_deg = normal_bound_deg(window,
+                                              initialization.plane,
+                                              initialization.cameras,
+                                              noise_px(sum_of_squares(errors),
+                                                       2.0 * static_cast<double>(errors.size()),
+                                                       3.0 * window.frame_count() - 1));
   return evaluation;
 }
 

@@ -29,7 +29,8 @@ struct Evaluation {
   std::optional<double> pne_bound_deg;
 };
 
-/// Measures an initialization that is `ok`; method.md, "Metrics". `seed` drives the plane RANSAC.
+/// Measures an initialization that is `ok`; engine/method.md, "Metrics". `seed` drives the plane
+/// RANSAC.
 Evaluation evaluate(const Initialization& initialization,
                     const Window& window,
                     const WindowTruth& truth,

@@ -109,7 +109,7 @@ Row make_row(const Configuration& configuration, const Inspection& inspection) {
   row.residuals = result.solver.residuals;
   row.initial_cost = result.solver.initial_cost;
   row.final_cost = result.solver.final_cost;
-  row.termination = result.solver.termination;
+  row.termination = to_string(result.solver.termination);
   if (inspection.evaluation) add_evaluation(row, *inspection.evaluation);
   add_timing(row, inspection.timing);
   return row;

@@ -6,6 +6,7 @@
 #include "engine/experiment/processor.h"
 #include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/inspector.h"
 
 #include <atomic>
 #include <exception>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
+#include "engine/geometry/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,13 +11,6 @@
 
 namespace gpo {
 namespace {
-
-double quantile(const std::vector<double>& ascending, double q) {
-  const double place = q * static_cast<double>(ascending.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, ascending.size() - 1);
-  return std::lerp(ascending[below], ascending[above], place - std::floor(place));
-}
 
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames
 WindowKey window_of(const Row& row) {

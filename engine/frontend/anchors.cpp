@@ -5,6 +5,7 @@
 #include "engine/geometry/homography.h"
 #include "engine/window/tracks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -34,8 +35,8 @@ cv::Mat smooth(const cv::Mat& gray, const AnchorOptions& options) {
   return smoothed;
 }
 
-/// Bilinear; NaN outside of the picture. Our own, because OpenCV's `remap` rounds places to 1/32 px
-/// (pitfall E7).
+/// Bilinear; NaN outside of the picture. Our own, because OpenCV's `remap` rounds places to 1/32
+/// px.
 float sample(const cv::Mat& picture, const Vector2f& px) {
   const bool inside = px.x() >= 0 && px.y() >= 0 && px.x() < static_cast<float>(picture.cols - 1) &&
                       px.y() < static_cast<float>(picture.rows - 1);
@@ -104,6 +105,8 @@ Search search(const cv::Mat& picture,
               const Camera& camera,
               const Matrix3d& H,
               const AnchorOptions& options) {
+  if (look.width < 2 || look.height < 2)
+    return {.end = TrackEnd{.reason = LossReason::look_not_found}};
   Nodes nodes;
   for (int k = 0; k < 9; ++k) nodes.col(k) = carried(camera, H, look.undistorted_px.col(k));
   if (!nodes.allFinite()) return {.end = TrackEnd{.reason = LossReason::look_not_found}};
@@ -146,13 +149,23 @@ std::optional<RobustHomography> plane_homography(const Anchors& anchors,
   return of_all;
 }
 
+/// What of the square around a pixel is in the picture; empty of what is no pixel at all.
+cv::Rect patch_around(const Vector2d& raw_px, int half, const cv::Size& size) {
+  const double most = std::max(size.width, size.height) + half;
+  if (!raw_px.allFinite() || raw_px.cwiseAbs().maxCoeff() > most) return {};
+  const cv::Point center(cvRound(raw_px.x()), cvRound(raw_px.y()));
+  return cv::Rect(center.x - half, center.y - half, 2 * half + 1, 2 * half + 1) &
+         cv::Rect({0, 0}, size);
+}
+
 /// The pixels of `patch` in the smoothed reference picture and its slopes.
 Look look_at(const cv::Rect& patch,
              const cv::Mat& smoothed,
              const cv::Mat& slope_x,
              const cv::Mat& slope_y,
              const Camera& camera) {
-  Look look{patch.width, patch.height, {}, {}, {}};
+  Look look{patch.width, patch.height, Nodes::Zero(), {}, Eigen::Matrix4f::Zero()};
+  if (patch.empty()) return look;
   for (int k = 0; k < 9; ++k) {
     const int column = k % 3;
     const int row = k / 3;
@@ -207,13 +220,10 @@ Anchors make_anchors(const cv::Mat& gray,
   cv::Mat slope_y;
   cv::Sobel(smoothed, slope_x, CV_32F, 1, 0, 1, 0.5);
   cv::Sobel(smoothed, slope_y, CV_32F, 0, 1, 1, 0.5);
-  const int half = options.half_patch_px;
   Anchors anchors{camera, Matrix2Xd(2, raw_px.cols()), {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     anchors.undistorted_px.col(j) = undistort(camera, raw_px.col(j));
-    const cv::Point center(cvRound(raw_px(0, j)), cvRound(raw_px(1, j)));
-    const cv::Rect patch = cv::Rect(center.x - half, center.y - half, 2 * half + 1, 2 * half + 1) &
-                           cv::Rect(0, 0, gray.cols, gray.rows);
+    const cv::Rect patch = patch_around(raw_px.col(j), options.half_patch_px, gray.size());
     anchors.looks.push_back(look_at(patch, smoothed, slope_x, slope_y, camera));
   }
   return anchors;

@@ -3,7 +3,7 @@
 #include "engine/frontend/consistent_inliers.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,6 @@ namespace {
 using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
 
-/// The median length of a two-dimensional Gaussian error of standard deviation 1 (Rayleigh's).
-const double kRayleighMedian = std::sqrt(2 * std::log(2));
 /// Where a Gaussian's upper quartile is.
 constexpr double kQuartileSigmas = 0.6745;
 
@@ -62,7 +60,7 @@ Errors errors_of(const PlaneTracks& tracks,
       if (tracks.inlier[i][j]) of_inliers_px.push_back(error_px);
     }
     const double sigma_px =
-        std::max(median(std::move(of_inliers_px)) / kRayleighMedian, options.least_sigma_px);
+        std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, options.least_sigma_px);
     errors.normalized.row(i) /= sigma_px;
     errors.gate[i] = std::min(options.sigmas, options.threshold_px / sigma_px);
   }

@@ -5,8 +5,8 @@
 #include "engine/frontend/rotation_averaging.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/homography_decomposition.h"
-#include "engine/geometry/median.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -211,7 +211,7 @@ Rotations rotations_given_plane(const Window& window,
     R_wc.push_back(relative.back().R_ij);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (stop.stop_requested()) return {{}, "stopped"};
+    if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
     for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
       const auto pair = decompose_pair(window, i, j);
       if (pair)

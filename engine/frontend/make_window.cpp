@@ -3,6 +3,7 @@
 #include "engine/frontend/make_window.h"
 
 #include "engine/frontend/consistent_inliers.h"
+#include "engine/window/frame_errors.h"
 
 #include <algorithm>
 #include <limits>
@@ -62,6 +63,7 @@ Window make_window(const Tracks& tracks,
     keep_consistent(window, ransac.threshold_px);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Eigen::Matrix3d::Identity());
+  window.errors = frame_errors(window);
   return window;
 }
 

@@ -22,6 +22,7 @@ struct Rotations {
   RotationModel model = RotationModel::known;          ///< what is uncertain of them
   std::optional<GyroSensitivity> gyro = std::nullopt;  ///< where they are a gyroscope's
   double sigma_rad = 0;                                ///< of rotations from pictures, roughly
+  bool stopped = false;                                ///< there are none because of that
 };
 
 enum class RotationSource { automatic, gyro, gyro_calibrated, averaging, truth };
@@ -36,7 +37,7 @@ const char* to_string(RotationSource source);
 RotationSource rotation_source(const std::string& key);
 
 /// R_wc at each of the times, world = camera at the first: mid-point integration of (w - bias) on
-/// SO(3), interpolated at the frame times (method.md, "Pipeline", step 3). Throws InputError where
+/// SO(3), interpolated at the frame times (engine/method.md, eq. 5). Throws InputError where
 /// the samples do not cover the times or leave a gap of more than five sample periods between them.
 std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
                                             std::span<const std::int64_t> frame_times_ns);

@@ -7,7 +7,7 @@
 namespace gpo {
 
 /// How corners are followed: from each frame to the next, as the paper does, or held to their own
-/// first look, so that they do not drift (method.md, "Tracks drift, and on a plane they need not").
+/// first look, so that they do not drift (engine/method.md, "Tracks").
 enum class Tracking { frame_to_frame, anchored };
 
 template <>

@@ -29,10 +29,6 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   return K;
 }
 
-Vector2d project_undistorted(const Camera& camera, const Eigen::Vector3d& point_c) {
-  return to_pixel(camera, point_c.hnormalized());
-}
-
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {
   return to_pixel(camera, distort_normalized(lens_of(camera), point_c.hnormalized()));
 }

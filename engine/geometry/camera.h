@@ -29,9 +29,6 @@ struct Camera {
 /// K, 3x3, of the undistorted image [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Undistorted pixel of a point in the camera frame (z > 0).
-Eigen::Vector2d project_undistorted(const Camera& camera, const Eigen::Vector3d& point_c);
-
 /// Raw pixel of a point in the camera frame (z > 0); NaN beyond the lens model's valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera_resection.h"
 
-#include "engine/geometry/median.h"
 #include "engine/geometry/sqpnp.h"
+#include "engine/geometry/statistics.h"
 
 #include <cmath>
 #include <limits>
@@ -21,8 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kLeastPoints = 4;
-/// Median length of a two-dimensional Gaussian, in standard deviations of a coordinate.
-constexpr double kMedianToSigma = 1.1774;
 
 /// Reprojection errors [px], infinite behind the camera.
 std::vector<double> errors_px(const Pose& pose,
@@ -76,7 +74,7 @@ std::optional<Resection> refine_pose(const Pose& start,
     const double median_px = median(errors_px(pose, points_w, pixels, K));
     if (!std::isfinite(median_px)) return std::nullopt;
     // A hundredth of a pixel more, so that rounding rejects nothing where there is no noise.
-    const double most_px = 3 * median_px / kMedianToSigma + 0.01;
+    const double most_px = 3 * median_px / kMedianOfRayleigh + 0.01;
     const auto delta = gauss_newton_step(pose, points_w, pixels, K, most_px);
     if (!delta.allFinite()) return std::nullopt;
     pose.p_wc += pose.R_wc * delta.tail<3>();

@@ -9,7 +9,7 @@
 namespace gpo {
 
 /// One reading of a Euclidean homography H' ~ R_21 (I - tau n^T), |n| = 1, n.x < 0 for visible
-/// points (method.md's signs; frame 1 -> frame 2).
+/// points (the signs of engine/method.md, eq. 4; frame 1 -> frame 2).
 struct HomographyMotion {
   Eigen::Matrix3d R_21;
   Eigen::Vector3d tau;     ///< in frame 1, in units of the plane's distance

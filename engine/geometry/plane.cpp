@@ -17,7 +17,7 @@ Plane plane_in_camera(const Plane& plane_w, const Pose& pose) {
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c) {
-  // Depth along the ray: m = (-d - n.p_wc) / (n . R_wc x); method.md, "Pipeline", step 5.
+  // Depth along the ray: m = (-d - n.p_wc) / (n . R_wc x); engine/method.md, eq. 12.
   const Eigen::Vector3d ray_w = pose.R_wc * ray_c;
   const double along = plane_w.normal.dot(ray_w);
   const double depth = (-plane_w.distance - plane_w.normal.dot(pose.p_wc)) / along;

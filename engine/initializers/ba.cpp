@@ -152,15 +152,10 @@ Initialization refine_bundle(const Window& window,
                                                        watch);
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
-  if (solver.termination != "convergence") {
-    return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
-  }
+  if (solver.termination != Termination::convergence) return not_converged(solver);
   Initialization result = deliver(window, adjusted);
   if (result.cameras.empty()) return result;
-  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
-    return failed(*reason, solver);
-  result.ok = true;
-  return result;
+  return trusted(window, std::move(result));
 }
 
 Initialization initialize_ba(const Window& window, const Watch& watch) {

@@ -4,8 +4,8 @@
 
 #include "engine/initializers/candidates/density_clusters.h"
 #include "engine/initializers/candidates/homography_candidates.h"
-#include "engine/initializers/common/map_points.h"
 #include "engine/initializers/common/window_checks.h"
+#include "engine/initializers/plane/delivery.h"
 #include "engine/initializers/plane/plane_translations.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Candidates cluster_candidates(const std::vector<std::vector<HomographyCandidate>
     c.all.insert(c.all.end(), of_frame.begin(), of_frame.end());
   }
   for (int k = 0; k < static_cast<int>(c.all.size()); ++k) {
-    if (!c.all[k].rejected.empty()) continue;
+    if (!c.all[k].taken()) continue;
     const HomographyMotion& motion = c.all[k].motion;
     c.possible.push_back(k);
     c.on_sphere.push_back({motion.normal, motion.tau.squaredNorm() / weights});
@@ -179,7 +179,8 @@ void reject_far_from(const Vector3d& normal, Candidates& candidates) {
     HomographyCandidate& candidate = candidates.all[k];
     const double angle = angle_deg(candidate.motion.normal, normal);
     if (angle > kRadiusDeg)
-      candidate.rejected = fmt::format("normal {:.1f} deg from where the density peaks", angle);
+      candidate.reject(Rejection::normal,
+                       fmt::format("normal {:.1f} deg from where the density peaks", angle));
   }
 }
 
@@ -211,7 +212,7 @@ std::vector<NormalCluster> normal_clusters(
 Initialization initialize_dbscan(const Window& window, const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Candidates candidates = cluster_candidates(candidates_of_window(window, watch.stop));
-  if (watch.stop_requested()) return failed("stopped");
+  if (watch.stop_requested()) return stopped_early();
   const auto start = highest_member(candidates, [](const Vector3d&) { return true; });
   if (!start) {
     return failed_with(fmt::format("no plane: the {} possible normals of {} homographies gather "
@@ -229,16 +230,11 @@ Initialization initialize_dbscan(const Window& window, const Watch& watch) {
   result.plane = {normal, 1};
   result.cameras.push_back({});
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (watch.stop_requested()) return failed("stopped");
+    if (watch.stop_requested()) return stopped_early();
     result.cameras.push_back({window.R_wc[i], -translation_given_normal(window, i, normal)});
   }
-  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
-    return failed_with(*reason, candidates);
   result.candidates = std::move(candidates.all);
-  result.points = lift_to_plane(window, result.plane, result.cameras);
-  result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
-  result.ok = true;
-  return result;
+  return delivered(window, std::move(result));
 }
 
 }  // namespace gpo

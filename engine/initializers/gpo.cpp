@@ -7,8 +7,6 @@
 #include "engine/initializers/plane/delivery.h"
 #include "engine/initializers/plane/plane_solver.h"
 
-#include <fmt/format.h>
-
 namespace gpo {
 
 PlaneSolution solve_gpo(const Window& window,
@@ -20,7 +18,7 @@ PlaneSolution solve_gpo(const Window& window,
   const auto closed = closed_form_motion(window);
   if (closed) {
     PlaneSolution solution = solve_plane(window, observations, *closed, {}, watch);
-    if (solution.solver.termination != "failure") return solution;
+    if (solution.solver.termination != Termination::failure) return solution;
   }
   return solve_plane(window, observations, resting(window), {}, watch);
 }
@@ -30,9 +28,7 @@ Initialization initialize_gpo(const Window& window,
                               const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const auto [motion, solver] = solve_gpo(window, options, watch);
-  if (solver.termination != "convergence") {
-    return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
-  }
+  if (solver.termination != Termination::convergence) return not_converged(solver);
   return deliver(window, motion, solver);
 }
 

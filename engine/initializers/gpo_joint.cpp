@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo_joint.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/gpo.h"
@@ -17,8 +18,6 @@
 namespace gpo {
 namespace {
 
-/// The median length of a two-dimensional error of unit variance in each coordinate (Rayleigh).
-constexpr double kMedianOfRayleigh = 1.1774;
 /// Rounds of reweighting, each a solve from the last one.
 constexpr int kWeightRounds = 10;
 /// More unknowns must lower the cost so much: chi-square of what noise alone does, 4 sigma.
@@ -158,9 +157,7 @@ Initialization initialize_gpo_joint(const Window& window,
   Fit fit = best_fit(task, facing(window, start.motion));
   SolverReport& solver = fit.solution.solver;
   solver.milliseconds += start.solver.milliseconds;
-  if (solver.termination != "convergence") {
-    return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
-  }
+  if (solver.termination != Termination::convergence) return not_converged(solver);
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
     return failed(wrong, solver);
   Initialization result = deliver(fit.window, fit.solution.motion, solver);

@@ -8,8 +8,6 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 
@@ -52,14 +50,8 @@ Initialization refine_on_plane(const Window& window,
   const AdjustedPlaneBundle adjusted =
       adjust_plane_bundle(window.K, bundle, inlier_observations(window), normal, watch);
   const SolverReport& solver = adjusted.solver;
-  if (solver.termination != "convergence") {
-    return failed(fmt::format("no convergence after {} iterations", solver.iterations), solver);
-  }
-  Initialization result = deliver(window, adjusted);
-  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
-    return failed(*reason, solver);
-  result.ok = true;
-  return result;
+  if (solver.termination != Termination::convergence) return not_converged(solver);
+  return trusted(window, deliver(window, adjusted));
 }
 
 Initialization initialize_pba(const Window& window, const Watch& watch) {

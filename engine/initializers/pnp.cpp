@@ -3,8 +3,8 @@
 #include "engine/initializers/pnp.h"
 
 #include "engine/geometry/camera_resection.h"
-#include "engine/geometry/median.h"
 #include "engine/geometry/plane_fit.h"
+#include "engine/geometry/statistics.h"
 #include "engine/geometry/triangulation.h"
 #include "engine/initializers/candidates/homography_candidates.h"
 #include "engine/initializers/common/window_checks.h"
@@ -109,7 +109,7 @@ std::optional<std::string> reason_to_doubt(const HomographyCandidate& best,
   }
   for (const HomographyCandidate& other : candidates) {
     const double apart_deg = angle_deg(other.motion.normal, best.motion.normal);
-    if (!other.rejected.empty() || apart_deg < kSameTwinDeg) continue;
+    if (!other.taken() || apart_deg < kSameTwinDeg) continue;
     return fmt::format(
         "its twin, {:.0f} deg away, fits the given rotation alike ({:.1f} and {:.1f} deg)",
         apart_deg,
@@ -125,7 +125,7 @@ std::optional<std::string> reason_to_doubt(const HomographyCandidate& best,
 const HomographyCandidate* indistinct_twin(const HomographyCandidate& best,
                                            std::span<const HomographyCandidate> candidates) {
   for (const HomographyCandidate& other : candidates) {
-    if (&other == &best || !other.rejected.empty()) continue;
+    if (&other == &best || !other.taken()) continue;
     if (other.score < kClearlyWorseFactor * best.score) return &other;
   }
   return nullptr;
@@ -174,9 +174,14 @@ Pair try_pair(const Window& window, int frame) {
   }
   for (HomographyCandidate& candidate : pair.candidates) {
     const bool taken = !pair.reason && (&candidate == best || &candidate == second);
-    if (taken || !candidate.rejected.empty()) continue;
-    candidate.rejected = pair.reason.value_or(
-        fmt::format("score {:.2f} deg worse than its twin's", candidate.score - best->score));
+    if (taken || !candidate.taken()) continue;
+    if (pair.reason) {
+      candidate.reject(Rejection::pair, *pair.reason);
+    } else {
+      candidate.reject(
+          Rejection::rotation,
+          fmt::format("score {:.2f} deg worse than its twin's", candidate.score - best->score));
+    }
   }
   return pair;
 }
@@ -199,10 +204,8 @@ Pair find_pair(const Window& window) {
 /// The pose of a frame from the points that it sees, by PnP or from its neighbor's, whichever sees
 /// them better.
 std::optional<Pose> resect_frame(const Window& window, const Reconstruction& scene, int frame) {
-  std::vector<int> seen;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (window.inlier[frame][j] && scene.points[j]) seen.push_back(j);
-  }
+  std::vector<int> seen = window.inlier_tracks(frame);
+  std::erase_if(seen, [&](int track) { return !scene.points[track]; });
   if (static_cast<int>(seen.size()) < kLeastSeenPoints) return std::nullopt;
   Eigen::Matrix3Xd points(3, seen.size());
   for (std::size_t k = 0; k < seen.size(); ++k)
@@ -215,12 +218,12 @@ std::optional<Pose> resect_frame(const Window& window, const Reconstruction& sce
   return anew->median_px < followed->median_px ? anew->pose : followed->pose;
 }
 
-/// Adds all other frames in order; why it could not, or nothing.
+/// Adds all other frames in order; why it could not, or nothing, also where it was stopped.
 std::optional<std::string> add_frames(const Window& window,
                                       const Watch& watch,
                                       Reconstruction& scene) {
   for (int i = 1; i < window.frame_count(); ++i) {
-    if (watch.stop_requested()) return "stopped";
+    if (watch.stop_requested()) return std::nullopt;
     if (scene.cameras[i]) continue;
     scene.cameras[i] = resect_frame(window, scene, i);
     if (!scene.cameras[i])
@@ -245,11 +248,8 @@ Initialization deliver(const Window& window, const Reconstruction& scene) {
   for (MapPoint& point : result.points) point.position /= plane->distance;
   for (const auto& camera : scene.cameras)
     result.cameras.push_back({camera->R_wc, camera->p_wc / plane->distance});
-  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
-    return failed(*reason);
   result.rms_px = root_mean_square(reprojection_errors_px(window, result.cameras, result.points));
-  result.ok = true;
-  return result;
+  return trusted(window, std::move(result));
 }
 
 }  // namespace
@@ -262,6 +262,7 @@ Initialization initialize_pnp(const Window& window, const Watch& watch) {
                             : add_frames(window, watch, pair.scene);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin;
+  if (watch.stop_requested()) return stopped_early();
   Initialization result = reason ? failed(*reason) : deliver(window, pair.scene);
   result.solver.milliseconds = elapsed.count();  // PnP and triangulation are optimizations, too
   result.candidates = std::move(pair.candidates);

@@ -14,9 +14,9 @@
 
 namespace gpo {
 
-/// Where the virtual cube stands (method.md, "The virtual cube"). Base edges along the columns x
-/// and y of `axes`, which lie on the plane; column z is the plane's normal, towards the camera; x
-/// cross y points away from the camera, as rows and columns of a picture do.
+/// Where the virtual cube stands (engine/method.md, "The virtual cube"). Base edges along the
+/// columns x and y of `axes`, which lie on the plane; column z is the plane's normal, towards the
+/// camera; x cross y points away from the camera, as rows and columns of a picture do.
 struct CubeAnchor {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< on the plane
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

@@ -11,10 +11,8 @@
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,26 +47,5 @@ struct Inspection {
 
 /// What its inliers are a share of and how they were told, for people: "tracks, consistent".
 std::string inliers_note(const Inspection& inspection);
-
-/// "tracking 41/60": a stage's name, what is done, of how many (0: unknown).
-using Progress = std::function<void(const std::string& stage, int done, int of)>;
-
-/// Computes inspections; keeps each stage (tracks, truth, inliers, rotations) until its own inputs
-/// change, and of the windows from one start the tracks and the truth of the longest, which begin
-/// with those of the shorter ones. One thread at a time.
-class Inspector {
- public:
-  explicit Inspector(std::shared_ptr<const Recording> recording);
-  ~Inspector();
-  /// The whole chain. Null where it was stopped (within 50 ms). Throws InputError, e.g. for a
-  /// window that does not fit or an unknown method.
-  std::shared_ptr<const Inspection> inspect(const Settings& settings,
-                                            const std::stop_token& stop = {},
-                                            const Progress& progress = {});
-
- private:
-  struct Stages;
-  std::unique_ptr<Stages> stages_;
-};
 
 }  // namespace gpo

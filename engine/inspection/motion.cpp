@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/motion.h"
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 
 #include <cmath>
 #include <limits>

@@ -280,7 +280,7 @@ ordered_json to_json(const Inspection& inspection) {
                     {"final_cost", solver.final_cost},
                     {"unknowns", solver.unknowns},
                     {"residuals", solver.residuals},
-                    {"termination", solver.termination}};
+                    {"termination", to_string(solver.termination)}};
   json["timing_ms"] = {{"track", t.track},
                        {"ransac", t.ransac},
                        {"rotations", t.rotations},

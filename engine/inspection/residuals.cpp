@@ -3,11 +3,9 @@
 #include "engine/inspection/residuals.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/initializers/common/window_checks.h"
 #include "engine/window/window.h"
 
 #include <cmath>
-#include <limits>
 
 #include <Eigen/LU>
 
@@ -38,16 +36,6 @@ std::vector<double> residuals_px(const Inspection& inspection, int frame_in_wind
     if (std::isfinite(residual)) residuals.push_back(residual);
   }
   return residuals;
-}
-
-std::vector<double> frame_rms_px(const Inspection& inspection) {
-  std::vector<double> rms;
-  for (int i = 0; inspection.initialization->ok && i < inspection.window->frame_count(); ++i) {
-    const std::vector<double> residuals = residuals_px(inspection, i);
-    rms.push_back(residuals.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                    : root_mean_square(residuals));
-  }
-  return rms;
 }
 
 }  // namespace gpo

@@ -20,8 +20,4 @@ std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection
 /// to where the result puts what the reference frame saw. Empty where the initialization failed.
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
 
-/// Their root mean square, one a frame of the window; NaN of a frame without inliers. Empty where
-/// the initialization failed.
-std::vector<double> frame_rms_px(const Inspection& inspection);
-
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "engine/inspection/survey.h"
 
 #include "engine/base/error.h"
+#include "engine/inspection/inspector.h"
 
 #include <algorithm>
 #include <exception>

@@ -3,6 +3,7 @@
 #include "engine/inspection/worker.h"
 
 #include "engine/base/error.h"
+#include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 
 #include <exception>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/progress.h"
 
 #include <condition_variable>
 #include <cstdint>

@@ -20,7 +20,7 @@
 
 namespace gpo {
 
-enum class Layout { euroc, tum_rgbd, pictures, tracks };  ///< contract.md's layouts 1 to 4
+enum class Layout { euroc, tum_rgbd, pictures, tracks };  ///< README, "Recordings"
 
 /// ArUco markers in the light squares of a board.
 struct BoardMarkers {

@@ -25,7 +25,7 @@ std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
-/// Writes the recording as an EuRoC folder (contract.md, layout 1) with its truth, `plane.yaml` and
+/// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
 /// `board.yaml`. World: the desk is z = 0, z up. Same recipe, same bytes, whatever the threads.
 /// Throws InputError where `output` exists and is not empty, or cannot be written; a folder that is
 /// not finished is never left behind.

@@ -10,6 +10,14 @@ int Window::inlier_count(int frame) const {
   return static_cast<int>(std::ranges::count(inlier[frame], true));
 }
 
+std::vector<int> Window::inlier_tracks(int frame) const {
+  std::vector<int> tracks;
+  for (int j = 0; j < track_count(); ++j) {
+    if (inlier[frame][j]) tracks.push_back(j);
+  }
+  return tracks;
+}
+
 bool Window::is_inlier_track(int track) const {
   int seen = 0;
   int agreeing = 0;

@@ -22,6 +22,14 @@ struct ChoiceKeys<Inliers> {
   static constexpr std::array keys{"per-frame", "consistent"};
 };
 
+/// How a homography and the best rotation explain one frame's inliers.
+struct FrameErrors {
+  int inliers = 0;
+  double homography_px = 0;       ///< median transfer error of the frame's homography
+  double rotation_px = 0;         ///< the same of the best rotation
+  double homography_squares = 0;  ///< summed over both coordinates [px^2]
+  double rotation_squares = 0;    ///< [px^2]
+};
 /// What is taken to be known of a window's rotations: all; all but a constant gyroscope bias (three
 /// unknowns, Gaussian prior); nothing.
 enum class RotationModel { known, bias, free };
@@ -55,11 +63,15 @@ struct Window {
   std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< what is uncertain of them
   std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope
+  /// One a frame, of the members above; empty: whoever needs them computes them (`frame_errors`).
+  std::vector<FrameErrors> errors = {};
   bool all_tracks = false;  ///< methods that need no plane use the tracks off it, too
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
   int inlier_count(int frame) const;
+  /// Those of a frame, ascending.
+  std::vector<int> inlier_tracks(int frame) const;
   /// Whether the track agrees with the homography in at least half of the frames that see it, the
   /// reference frame aside. These are the inliers that the results count and the points that they
   /// deliver.

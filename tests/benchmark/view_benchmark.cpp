@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/inspector.h"
 #include "engine/inspection/normal_study.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/benchmark/measure.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/bundle/bundle_adjustment.h"
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/residuals/point_view.h"
 #include "engine/initializers/residuals/pose_block.h"
 
@@ -20,8 +20,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// The median length of a two-dimensional Gaussian vector of unit standard deviations.
-constexpr double kMedianLength = 1.1774;
 /// An observation is dropped beyond so many robust standard deviations; 1 % of good ones are.
 constexpr double kDropAtSigmas = 3;
 /// The loss turns linear at so many standard deviations of the expected noise.
@@ -72,12 +70,6 @@ int widest_frame(std::span<const Pose> cameras) {
   return static_cast<int>(widest - cameras.begin());
 }
 
-double half_summed_squares(std::span<const double> errors) {
-  double sum = 0;
-  for (const double e : errors) sum += e * e;
-  return sum / 2;
-}
-
 struct PointTally {
   int seen = 0;
   int agreeing = 0;
@@ -90,7 +82,7 @@ std::vector<Observation> without_outliers(const Matrix3d& K,
                                           std::span<const Observation> observations,
                                           double least_sigma_px) {
   const std::vector<double> errors = reprojection_errors_px(K, bundle, observations);
-  const double limit = kDropAtSigmas * std::max(least_sigma_px, median(errors) / kMedianLength);
+  const double limit = kDropAtSigmas * std::max(least_sigma_px, median(errors) / kMedianOfRayleigh);
   std::vector<bool> agrees(observations.size());
   std::vector<PointTally> tally(bundle.points.cols());
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -169,20 +161,20 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (std::isfinite(errors[k])) usable.push_back(observations[k]);
   }
-  const double sigma_px = std::max(kLeastNoisePx, error_px / kMedianLength);
+  const double sigma_px = std::max(kLeastNoisePx, error_px / kMedianOfRayleigh);
   const double huber_px = kHuberAtSigmas * sigma_px;
   const AdjustedBundle robust =
       adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, watch);
   RobustBundle result{
       robust.bundle, without_outliers(K, robust.bundle, usable, sigma_px), robust.solver};
-  if (robust.solver.termination == "failure") return result;
+  if (robust.solver.termination == Termination::failure) return result;
   AdjustedBundle final_round = adjust_bundle(K, robust.bundle, result.kept, {}, watch);
   result.bundle = std::move(final_round.bundle);
   result.solver = std::move(final_round.solver);
   result.solver.iterations += robust.solver.iterations;
   result.solver.milliseconds += robust.solver.milliseconds;
   continue_trace(robust.solver, result.solver);
-  result.solver.initial_cost = half_summed_squares(reprojection_errors_px(K, start, usable));
+  result.solver.initial_cost = 0.5 * sum_of_squares(reprojection_errors_px(K, start, usable));
   if (!result.solver.trace.empty()) result.solver.trace[0].cost = result.solver.initial_cost;
   return result;
 }

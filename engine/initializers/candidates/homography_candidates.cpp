@@ -24,11 +24,7 @@ bool same_reading(const HomographyMotion& a, const HomographyMotion& b) {
 }
 
 Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
-  std::vector<int> inliers;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (window.inlier[frame][j]) inliers.push_back(j);
-  }
-  const Eigen::Matrix2Xd points = window.points_px[0](Eigen::all, inliers);
+  const Eigen::Matrix2Xd points = window.points_px[0](Eigen::all, window.inlier_tracks(frame));
   return window.K.inverse() * points.colwise().homogeneous();
 }
 
@@ -57,12 +53,14 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
   for (const Decomposition algorithm : kDecompositions) {
     for (const HomographyMotion& motion : decompose_homography(H, algorithm)) {
       const double score = rotation_angle_deg(motion.R_21, window.R_wc[frame].transpose());
-      HomographyCandidate candidate{frame, algorithm, motion, score, ""};
+      HomographyCandidate candidate{frame, algorithm, motion, score};
       candidate.behind = points_behind(motion, rays_1);
       candidate.of = static_cast<int>(rays_1.cols());
-      candidate.rejected = reason_of_sight(candidate);
-      if (candidate.rejected.empty())
-        candidate.rejected = reason_of_repetition(candidate, candidates);
+      if (std::string reason = reason_of_sight(candidate); !reason.empty()) {
+        candidate.reject(Rejection::sight, std::move(reason));
+      } else if (reason = reason_of_repetition(candidate, candidates); !reason.empty()) {
+        candidate.reject(Rejection::repetition, std::move(reason));
+      }
       candidates.push_back(std::move(candidate));
     }
   }
@@ -75,13 +73,14 @@ void reject_worse_rotations(std::span<HomographyCandidate> candidates) {
   const double least_deg = best->score;
   for (HomographyCandidate& candidate : candidates) {
     const double worse_deg = candidate.score - least_deg;
-    if (!candidate.rejected.empty() || worse_deg < kClearlyWorseDeg ||
+    if (!candidate.taken() || worse_deg < kClearlyWorseDeg ||
         candidate.score < kClearlyWorseFactor * least_deg)
       continue;
-    candidate.rejected =
+    candidate.reject(
+        Rejection::rotation,
         fmt::format("rotation {:.1f} deg from the given rotation's, {:.1f} deg worse than its twin",
                     candidate.score,
-                    worse_deg);
+                    worse_deg));
   }
 }
 
@@ -98,7 +97,7 @@ std::vector<std::vector<HomographyCandidate>> candidates_of_window(const Window&
 const HomographyCandidate* best_of(std::span<const HomographyCandidate> candidates) {
   const HomographyCandidate* best = nullptr;
   for (const HomographyCandidate& candidate : candidates) {
-    if (!candidate.rejected.empty()) continue;
+    if (!candidate.taken()) continue;
     if (best == nullptr || candidate.score < best->score) best = &candidate;
   }
   return best;

@@ -4,8 +4,10 @@
 
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/certainty/window_evidence.h"
+#include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/closed_form_motion.h"
 #include "engine/initializers/plane/plane_motion.h"
+#include "engine/window/frame_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +129,7 @@ Verdict judged(const Window& window, const Growing& growing) {
     travel = std::max(travel, f.tau.norm());
   }
   const int unknowns = 3 * static_cast<int>(growing.frames.size()) + 2;
-  const double sigma_px = std::sqrt(2 * cost / std::max(1, 2 * growing.observations - unknowns));
+  const double sigma_px = noise_px(2 * cost, 2 * growing.observations, unknowns);
   SharedInformation information = prior_information(window, window.rotations, sigma_px);
   for (const LinearizedFrame& f : growing.frames) information += f.information;
   return judged(growing.evidence, normal_sigma_deg(information, sigma_px), travel);
@@ -138,10 +140,11 @@ Verdict judged(const Window& window, const Growing& growing) {
 std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) {
   std::vector<GrowthStep> steps;
   Growing growing{{window.K(0, 0), window.K(1, 1), {}}, {}, -Vector3d::UnitZ(), {}, 0};
+  const std::vector<FrameErrors> errors = frame_errors(window);
   for (int i = 1; i < window.frame_count() && !stop.stop_requested(); ++i) {
     if (window.inlier_count(i) < kLeastInliers) return {};
     growing.frames.push_back({frame_observations(window, i), translation_times_normal(window, i)});
-    growing.evidence.add(frame_errors(window, i));
+    growing.evidence.add(errors[i]);
     growing.observations += growing.frames.back().observations.count;
     const Vector3d closed = closed_form_normal(growing, growing.normal);
     if (i == 1 || angle_deg(closed, growing.normal) > kAstray_deg) growing.normal = closed;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/uncertainty.h"
 
+#include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/plane_motion.h"
 
 #include <algorithm>
@@ -80,8 +81,8 @@ std::optional<Linearization> linearize(const Window& window,
     if (!all.frames[i].in_front) return std::nullopt;
     cost += all.frames[i].cost;
   }
-  const int freedom = 2 * observations.count() - unknown_count(window.frame_count(), model);
-  all.sigma_px = std::sqrt(2 * cost / std::max(1, freedom));
+  all.sigma_px =
+      noise_px(2 * cost, 2 * observations.count(), unknown_count(window.frame_count(), model));
   return all;
 }
 

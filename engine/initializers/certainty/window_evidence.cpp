@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/window_evidence.h"
 
+#include "engine/initializers/common/window_checks.h"
+#include "engine/window/frame_errors.h"
+
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -31,16 +33,17 @@ void WindowEvidence::add(const FrameErrors& errors) {
 }
 
 double WindowEvidence::noise_px() const {
-  return std::sqrt(homography_squares_ / std::max(1.0, residuals_ - 8.0 * frames_));
+  return gpo::noise_px(homography_squares_, residuals_, 8.0 * frames_);
 }
 
 double WindowEvidence::rotation_rms_px() const {
-  return std::sqrt(rotation_squares_ / std::max(1.0, residuals_ - 3.0 * frames_));
+  return gpo::noise_px(rotation_squares_, residuals_, 3.0 * frames_);
 }
 
 WindowEvidence evidence_of(const Window& window) {
   WindowEvidence evidence;
-  for (int i = 1; i < window.frame_count(); ++i) evidence.add(frame_errors(window, i));
+  const std::vector<FrameErrors> errors = frame_errors(window);
+  for (int i = 1; i < window.frame_count(); ++i) evidence.add(errors[i]);
   return evidence;
 }
 

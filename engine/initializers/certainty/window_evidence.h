@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/initializers/common/verdict.h"
-#include "engine/initializers/common/window_checks.h"
 #include "engine/window/window.h"
 
 #include <optional>
@@ -30,7 +29,7 @@ class WindowEvidence {
 WindowEvidence evidence_of(const Window& window);
 
 /// Ready, weak or degenerate, by thresholds that tell simulated windows apart without an error
-/// (method.md, "Telling degenerate windows").
+/// (engine/method.md, "The verdict on a window").
 Verdict judged(const WindowEvidence& evidence,
                std::optional<double> normal_sigma_deg,
                double largest_translation);

@@ -4,12 +4,25 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace gpo {
 
 Initialization failed(std::string reason, SolverReport solver) {
   Initialization result;
   result.reason = std::move(reason);
   result.solver = std::move(solver);
+  return result;
+}
+
+Initialization not_converged(SolverReport solver) {
+  std::string reason = fmt::format("no convergence after {} iterations", solver.iterations);
+  return failed(std::move(reason), std::move(solver));
+}
+
+Initialization stopped_early() {
+  Initialization result = failed("stopped");
+  result.stopped = true;
   return result;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
@@ -10,11 +11,21 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
+
+/// How a solver ended.
+enum class Termination { none, convergence, no_convergence, failure };
+
+template <>
+struct ChoiceKeys<Termination> {
+  static constexpr const char* option = "termination";
+  static constexpr std::array keys{"none", "convergence", "no_convergence", "failure"};
+};
 
 struct MapPoint {
   int track;                 ///< column in the window
@@ -35,7 +46,7 @@ struct SolverReport {
   double final_cost = 0;    ///< half the summed squares [px^2]
   int unknowns = 0;
   int residuals = 0;
-  std::string termination = "none";  ///< convergence | no_convergence | failure | none
+  Termination termination = Termination::none;  ///< none: of methods that do not optimize
   double milliseconds = 0;
   /// The start, then one an iteration; empty of methods that do not optimize. An iteration whose
   /// step was refused repeats the state before it, with step 0. Ceres counts the start in
@@ -50,21 +61,39 @@ struct SolverReport {
 /// cost of the first to the final cost of the last.
 void continue_trace(const SolverReport& before, SolverReport& next);
 
+/// Why a reading of a homography was not taken.
+enum class Rejection {
+  none,        ///< it was
+  sight,       ///< it puts points behind a camera, or the plane between the cameras
+  repetition,  ///< another algorithm's reading is the same, or has none like it
+  rotation,    ///< its rotation, or its score, is worse than its twin's
+  normal,      ///< its normal is far from where all others gather
+  pair         ///< the pair of frames that it is of will not do
+};
+
 /// One reading of a frame's homography, kept for people to look at.
 struct HomographyCandidate {
   int frame;  ///< of the window; the homography is from frame 0 to it
   Decomposition algorithm;
   HomographyMotion motion;
   double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
-  std::string rejected;  ///< why it was not taken, with numbers; empty: it was
-  int behind = 0;        ///< inliers that it puts behind a camera
-  int of = 0;            ///< inliers
+  Rejection rejection = Rejection::none;
+  std::string rejected = {};  ///< why it was not taken, for people, with numbers; empty: it was
+  int behind = 0;             ///< inliers that it puts behind a camera
+  int of = 0;                 ///< inliers
+
+  bool taken() const { return rejection == Rejection::none; }
+  void reject(Rejection why, std::string in_words) {
+    rejection = why;
+    rejected = std::move(in_words);
+  }
 };
 
 /// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
 /// false, `reason` says why and no poses, points or plane are delivered.
 struct Initialization {
   bool ok = false;
+  bool stopped = false;  ///< by its watch: a failure that says nothing of the window
   std::string reason;
   Plane plane;
   std::vector<Pose> cameras;     ///< one a frame
@@ -81,5 +110,9 @@ struct Initialization {
 };
 
 Initialization failed(std::string reason, SolverReport solver = {});
+/// Of a solver that did not converge.
+Initialization not_converged(SolverReport solver);
+/// Of a method that its watch stopped.
+Initialization stopped_early();
 
 }  // namespace gpo

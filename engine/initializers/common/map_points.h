@@ -10,7 +10,7 @@
 
 namespace gpo {
 
-/// Map points without triangulation (method.md, "Pipeline", step 5): each inlier observation is
+/// Map points without triangulation (engine/method.md, eq. 12): each inlier observation is
 /// lifted to where its ray meets the plane, and a landmark is the mean over its frames. Inlier
 /// tracks only; in the world of the poses.
 std::vector<MapPoint> lift_to_plane(const Window& window,

@@ -11,10 +11,11 @@
 
 namespace gpo {
 
-/// First-order uncertainty of a solution, in the gauge of an initialization (world = reference
-/// camera, d = 1); independent noise of `sigma_px` on each coordinate of the inliers, reference
-/// points exact, what `rotations` leaves unknown marginalized. Where a method takes a gyroscope's
-/// rotations as known, their bias is wrong as its prior says, and the result with it.
+/// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15), in the gauge of an
+/// initialization (world = reference camera, d = 1); independent noise of `sigma_px` on each
+/// coordinate of the inliers, reference points exact, what `rotations` leaves unknown marginalized.
+/// Where a method takes a gyroscope's rotations as known, their bias is wrong as its prior says,
+/// and the result with it.
 struct Uncertainty {
   double sigma_px = 0;  ///< from the residuals, unknowns counted
   RotationModel rotations = RotationModel::known;

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/common/window_checks.h"
 
-#include "engine/geometry/homography.h"
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,9 +16,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
-using Eigen::Matrix3Xd;
 
 /// A rotation leaves at least this multiple of the homography's error where there is parallax.
 constexpr double kParallaxToNoise = 2;
@@ -29,49 +27,7 @@ constexpr double kLeastParallaxPx = 0.5;
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
 
-/// A frame's inliers in the reference picture and in its own [px].
-struct Pairs {
-  Matrix2Xd from, to;
-};
-
-Pairs inlier_pairs(const Window& window, int frame) {
-  std::vector<int> inliers;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (window.inlier[frame][j]) inliers.push_back(j);
-  }
-  return {window.points_px[0](Eigen::all, inliers), window.points_px[frame](Eigen::all, inliers)};
-}
-
-std::vector<double> transfer_errors_px(const Matrix3d& H, const Pairs& pairs) {
-  std::vector<double> errors;
-  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
-    errors.push_back((transfer(H, pairs.from.col(k)) - pairs.to.col(k)).norm());
-  return errors;
-}
-
-double sum_of_squares(std::span<const double> values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return sum;
-}
-
 }  // namespace
-
-FrameErrors frame_errors(const Window& window, int frame) {
-  const Pairs pairs = inlier_pairs(window, frame);
-  const Matrix3d K_inverse = window.K.inverse();
-  const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
-  const Matrix3Xd rays_i = (K_inverse * pairs.to.colwise().homogeneous()).colwise().normalized();
-  const Matrix3d R_i1 = Eigen::umeyama(rays_1, rays_i, false).topLeftCorner<3, 3>();
-  auto homography = transfer_errors_px(window.H_i1[frame], pairs);
-  auto rotation = transfer_errors_px(window.K * R_i1 * K_inverse, pairs);
-  FrameErrors errors{.inliers = static_cast<int>(homography.size())};
-  errors.homography_squares = sum_of_squares(homography);
-  errors.rotation_squares = sum_of_squares(rotation);
-  errors.homography_px = median(std::move(homography));
-  errors.rotation_px = median(std::move(rotation));
-  return errors;
-}
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
   if (window.track_count() < kLeastInliers) {
@@ -92,8 +48,9 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
   }
   FrameErrors widest;
   double least_px = 0;
+  const std::vector<FrameErrors> of_frames = frame_errors(window);
   for (int i = 1; i < window.frame_count(); ++i) {
-    const FrameErrors errors = frame_errors(window, i);
+    const FrameErrors& errors = of_frames[i];
     least_px = std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px);
     if (errors.rotation_px > least_px) return std::nullopt;
     if (errors.rotation_px > widest.rotation_px) widest = errors;
@@ -139,16 +96,8 @@ std::vector<double> reprojection_errors_px(const Window& window,
   return errors;
 }
 
-double homography_error_px(const Window& window) {
-  std::vector<double> errors;
-  for (int i = 1; i < window.frame_count(); ++i)
-    errors.push_back(median(transfer_errors_px(window.H_i1[i], inlier_pairs(window, i))));
-  return median(std::move(errors));
-}
-
-double root_mean_square(std::span<const double> values) {
-  return values.empty() ? 0
-                        : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
+double noise_px(double summed_squares, double residuals, double unknowns) {
+  return std::sqrt(summed_squares / std::max(1.0, residuals - unknowns));
 }
 
 std::optional<std::string> reason_to_distrust(const Window& window,
@@ -173,6 +122,17 @@ std::optional<std::string> reason_to_distrust(const Window& window,
     }
   }
   return std::nullopt;
+}
+
+Initialization trusted(const Window& window, Initialization result) {
+  auto reason = reason_to_distrust(window, result.plane, result.cameras);
+  if (!reason) {
+    result.ok = true;
+    return result;
+  }
+  Initialization refused = failed(*reason, std::move(result.solver));
+  refused.candidates = std::move(result.candidates);
+  return refused;
 }
 
 }  // namespace gpo

@@ -5,6 +5,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/initializers/common/initialization.h"
+#include "engine/window/frame_errors.h"
 #include "engine/window/window.h"
 
 #include <optional>
@@ -28,15 +29,9 @@ std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras);
 
-/// How a homography and the best rotation explain one frame's inliers.
-struct FrameErrors {
-  int inliers = 0;
-  double homography_px = 0;       ///< median transfer error of the frame's homography
-  double rotation_px = 0;         ///< the same of the best rotation
-  double homography_squares = 0;  ///< summed over both coordinates [px^2]
-  double rotation_squares = 0;    ///< [px^2]
-};
-FrameErrors frame_errors(const Window& window, int frame);
+/// A method's plane and cameras as its result, `ok`; or a failure where they are to be distrusted,
+/// with the solver's report and the candidates.
+Initialization trusted(const Window& window, Initialization result);
 
 /// Reprojection errors of the inlier observations [px], the reference frame's left out; infinite
 /// where the point falls behind the camera.
@@ -50,11 +45,8 @@ std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
-/// What the homographies leave: the median over the frames of an inlier's median transfer error
-/// [px].
-double homography_error_px(const Window& window);
-
-/// Root mean square, 0 of nothing.
-double root_mean_square(std::span<const double> values);
+/// Noise of one coordinate [px], of what a fit leaves: sqrt(squares / (residuals - unknowns)); the
+/// root of the squares where there are no more residuals than unknowns.
+double noise_px(double summed_squares, double residuals, double unknowns);
 
 }  // namespace gpo

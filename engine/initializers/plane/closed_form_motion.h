@@ -18,7 +18,7 @@ Eigen::Matrix3d translation_times_normal(const Window& window, int frame);
 /// Normal and translations from all homographies at once, without a choice among decompositions:
 /// I - H'_i / lambda_i = tau_i n^T with H'_i = R_wci K^-1 H_i1 K and lambda_i its middle singular
 /// value; stacked over the frames, the matrix has rank one and n is its right singular vector
-/// (method.md, "Closed form"). Its sign is that of a visible plane. Nothing where a homography is
+/// (engine/method.md, eq. 8). Its sign is that of a visible plane. Nothing where a homography is
 /// missing.
 std::optional<PlaneMotion> closed_form_motion(const Window& window);
 

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/delivery.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/map_points.h"
 #include "engine/initializers/common/window_checks.h"
+
+#include <utility>
 
 namespace gpo {
 namespace {
@@ -17,6 +20,14 @@ void turn_normals(SolverReport& solver) {
 
 }  // namespace
 
+Initialization delivered(const Window& window, Initialization result) {
+  result = trusted(window, std::move(result));
+  if (!result.ok) return result;
+  result.points = lift_to_plane(window, result.plane, result.cameras);
+  result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
+  return result;
+}
+
 Initialization deliver(const Window& window,
                        const PlaneMotion& motion,
                        const SolverReport& solver) {
@@ -26,12 +37,7 @@ Initialization deliver(const Window& window,
   if (visible.normal.dot(motion.normal) < 0) turn_normals(result.solver);
   result.plane = {visible.normal, 1};
   result.cameras = cameras_of(visible);
-  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
-    return failed(*reason, result.solver);
-  result.points = lift_to_plane(window, result.plane, result.cameras);
-  result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
-  result.ok = true;
-  return result;
+  return delivered(window, std::move(result));
 }
 
 }  // namespace gpo

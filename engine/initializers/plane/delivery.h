@@ -8,6 +8,10 @@
 
 namespace gpo {
 
+/// The result of a method over a plane, with its map points and their RMS; a failure where it is
+/// not to be trusted.
+Initialization delivered(const Window& window, Initialization result);
+
 /// What a method over a plane hands out: the visible one of the two solutions with its cameras and
 /// map points, or a failure where the solution is not to be trusted.
 Initialization deliver(const Window& window, const PlaneMotion& motion, const SolverReport& solver);

@@ -59,8 +59,8 @@ Rotation rotation_at(const Window& window,
   return rotation;
 }
 
-/// Transfer errors of all inliers of one frame (paper, eq. 8): one block a frame, not one a point,
-/// is what makes the solve fast.
+/// Transfer errors of all inliers of one frame (engine/method.md, eq. 7): one block a frame, not
+/// one a point, is what makes the solve fast.
 class FrameCost : public ceres::CostFunction {
  public:
   FrameCost(const Window& window,
@@ -68,10 +68,12 @@ class FrameCost : public ceres::CostFunction {
             const Matrix3d& R_wc,
             const Eigen::Matrix3Xd& rays_1,
             int frame)
-      : window_(window), unknowns_(unknowns), R_wc_(R_wc), rays_1_(rays_1), frame_(frame) {
-    for (int j = 0; j < window.track_count(); ++j) {
-      if (window.inlier[frame][j]) inliers_.push_back(j);
-    }
+      : window_(window),
+        unknowns_(unknowns),
+        R_wc_(R_wc),
+        rays_1_(rays_1),
+        frame_(frame),
+        inliers_(window.inlier_tracks(frame)) {
     *mutable_parameter_block_sizes() = {4, 3};
     if (unknowns.rotations != RotationModel::known)
       mutable_parameter_block_sizes()->push_back(rotation_size(unknowns));

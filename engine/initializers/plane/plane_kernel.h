@@ -17,7 +17,7 @@ struct FrameState {
   double fx = 1, fy = 1;                 ///< [px]
 };
 
-/// Gauss-Newton's normal equations of one frame's transfer errors (paper, eq. 8) over
+/// Gauss-Newton's normal equations of one frame's transfer errors (engine/method.md, eq. 7) over
 /// (u, phi, t), of 2, 3 and 3 numbers: normal [+] tangents u, R_wc exp(phi), tau + R_wc t.
 struct FrameNormals {
   Eigen::Matrix<double, 8, 8> JtJ = Eigen::Matrix<double, 8, 8>::Zero();  ///< [px^2]

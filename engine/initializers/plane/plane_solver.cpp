@@ -251,15 +251,15 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
   PlaneSolution solution{start, {}};
   SolverReport& report = solution.solver;
   report.unknowns = problem.unknown_count();
-  report.termination = "no_convergence";
+  report.termination = Termination::no_convergence;
   Linearized at = problem.linearize(start);
   report.initial_cost = at.cost;
-  if (!at.in_front || !std::isfinite(at.cost)) report.termination = "failure";
+  if (!at.in_front || !std::isfinite(at.cost)) report.termination = Termination::failure;
   report.trace.reserve(kUsualIterations);
   report.trace.push_back({at.cost, problem.gradient(at, start), 0, start.normal});
   double damping = 0;
   int hidden_steps = 0;
-  while (report.termination == "no_convergence" && report.iterations < kMostIterations &&
+  while (report.termination == Termination::no_convergence && report.iterations < kMostIterations &&
          !watch.stop_requested()) {
     ++report.iterations;
     const auto step = problem.step(at, solution.motion, damping);
@@ -281,8 +281,8 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
       report.trace.back().step = 0;
     }
     watch.tell(report.iterations, at.cost);
-    if (settled) report.termination = "convergence";
-    if (!(damping < kMostDamping)) report.termination = "failure";
+    if (settled) report.termination = Termination::convergence;
+    if (!(damping < kMostDamping)) report.termination = Termination::failure;
   }
   report.final_cost = at.cost;
   return solution;

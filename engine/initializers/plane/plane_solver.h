@@ -28,10 +28,11 @@ struct PlaneSolution {
   SolverReport solver;
 };
 
-/// Least squared transfer error over the plane's normal, all scaled translations (paper, eq. 8) and
-/// what else is unknown. Levenberg-Marquardt; translations and free rotations are eliminated frame
-/// by frame (Schur complement), so that a step costs one pass over the observations. Priors on the
-/// bias and the time offset count in the cost. `start` with a point behind a camera makes it fail.
+/// Least squared transfer error over the plane's normal, all scaled translations (engine/method.md,
+/// eq. 7) and what else is unknown. Levenberg-Marquardt; translations and free rotations are
+/// eliminated frame by frame (Schur complement), so that a step costs one pass over the
+/// observations. Priors on the bias and the time offset count in the cost. `start` with a point
+/// behind a camera makes it fail.
 PlaneSolution solve_plane(const Window& window,
                           const PlaneObservations& observations,
                           const PlaneMotion& start,

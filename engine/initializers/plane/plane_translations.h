@@ -8,8 +8,8 @@
 
 namespace gpo {
 
-/// tau of a frame given the plane's normal and the window's rotation, by linear least squares over
-/// the frame's inliers, weighted to pixel errors in three rounds.
+/// tau of a frame given the plane's normal and the window's rotation, by linear least squares
+/// (engine/method.md, eq. 9) over the frame's inliers, weighted to pixel errors in three rounds.
 Eigen::Vector3d translation_given_normal(const Window& window,
                                          int frame,
                                          const Eigen::Vector3d& normal);

@@ -13,8 +13,8 @@ bool is_weighted(const InitializerOptions& options);
 
 /// Weights of iteratively reweighted least squares at a solution: of the Huber loss, with its knee
 /// at 1.345 standard deviations of a coordinate's noise `sigma_px`; of Sampson's error,
-/// r^T (I + J J^T)^-1 r with J the transfer's Jacobian over the reference pixel (Hartley &
-/// Zisserman 4.2.6), scaled so that a camera at rest keeps weight one.
+/// r^T (I + J J^T)^-1 r with J the transfer's Jacobian over the reference pixel (engine/method.md,
+/// eq. 10), scaled so that a camera at rest keeps weight one.
 void reweigh(const PlaneMotion& motion,
              const InitializerOptions& options,
              double sigma_px,

@@ -42,6 +42,7 @@ Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
                                double row_delay_s) {
   Window corrected = window;
+  corrected.errors.clear();
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const Plane plane{motion.normal, 1};
   for (int i = 0; i < window.frame_count(); ++i) {

@@ -45,9 +45,10 @@ SolverReport report_of(const ceres::Solver::Summary& summary, std::vector<Solver
   report.unknowns = summary.num_effective_parameters_reduced;
   report.residuals = summary.num_residuals;
   report.milliseconds = 1e3 * summary.total_time_in_seconds;
-  report.termination = summary.termination_type == ceres::CONVERGENCE      ? "convergence"
-                       : summary.termination_type == ceres::NO_CONVERGENCE ? "no_convergence"
-                                                                           : "failure";
+  report.termination = summary.termination_type == ceres::CONVERGENCE ? Termination::convergence
+                       : summary.termination_type == ceres::NO_CONVERGENCE
+                           ? Termination::no_convergence
+                           : Termination::failure;
   report.trace = std::move(trace);
   return report;
 }

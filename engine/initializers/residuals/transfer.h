@@ -8,7 +8,7 @@
 namespace gpo {
 
 /// Where a plane point of the reference frame is seen in frame i, and how that changes:
-/// y = R_ciw (I - tau n^T) x_1,  p = pi(K y)   (method.md, "Frames, signs, gauge"; R_wc1 = I).
+/// y = R_ciw (I - tau n^T) x_1,  p = pi(K y)   (engine/method.md, eq. 3; R_wc1 = I).
 struct Transfer {
   Eigen::Vector2d pixel;                   ///< undistorted [px]
   Eigen::Matrix<double, 2, 3> d_normal;    ///< dp/dn [px]

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_truth.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/recording/board/board_cache.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
@@ -59,12 +60,6 @@ BoardViews look_at(const Recording& recording,
   save();
   views.merge(found);
   return views;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The RMS above which a fit is taken for a mistake [px].

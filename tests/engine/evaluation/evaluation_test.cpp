@@ -4,7 +4,9 @@
 
 #include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/map_points.h"
+#include "engine/initializers/common/window_checks.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 
@@ -140,7 +142,7 @@ TEST(NoiseEstimate, IsTheNoiseOfOneCoordinate) {
       errors.push_back((y.hnormalized() - s.window.points_px[i].col(j)).norm());
     }
   }
-  EXPECT_NEAR(noise_from_residuals_px(errors, 30), 0.5, 0.02);
+  EXPECT_NEAR(noise_px(sum_of_squares(errors), 2.0 * errors.size(), 3 * 30 - 1), 0.5, 0.02);
 }
 
 }  // namespace

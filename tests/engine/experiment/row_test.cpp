@@ -3,6 +3,7 @@
 #include "engine/experiment/row.h"
 
 #include "engine/frontend/tracking.h"
+#include "engine/inspection/inspector.h"
 #include "engine/inspection/report.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/window.h"

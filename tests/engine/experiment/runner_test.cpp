@@ -4,6 +4,7 @@
 
 #include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/experiment/made_rows.h"
 #include "tests/engine/test_folder.h"

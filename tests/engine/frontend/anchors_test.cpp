@@ -4,11 +4,12 @@
 
 #include "engine/frontend/tracker.h"
 #include "engine/frontend/tracking.h"
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
 
 #include <functional>
+#include <limits>
 #include <map>
 
 #include <Eigen/Geometry>
@@ -165,6 +166,29 @@ TEST(Anchors, CarryPatchesToAFewThousandthsOfAPixel) {
     EXPECT_LT(worst_px, 0.005) << middle.transpose();
   }
   EXPECT_GT(patches, 400);
+}
+
+// A plane at rest, so that all agree with its homography, those outside of the picture, too.
+TEST(Anchors, WhatIsNotInThePictureIsNotFoundThere) {
+  const auto recording = desk();
+  const cv::Mat gray = recording->pictures->gray(0);
+  Camera camera = recording->camera;
+  camera.distortion = Distortion::none;
+  camera.coefficients = {};
+  Eigen::Matrix2Xd corners(2, 44);
+  for (int k = 0; k < 40; ++k) corners.col(k) << 60 + 60 * (k % 8), 60 + 70 * (k / 8);
+  corners.rightCols<4>() << -40, 300, gray.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
+      100, gray.rows + 60, 50, 20;
+  const Anchors anchors = make_anchors(gray, corners, camera);
+  const Held held = hold(anchors, gray, corners);
+  int found = 0;
+  for (int k = 0; k < 40; ++k) found += held.raw_px.col(k).allFinite() ? 1 : 0;
+  EXPECT_GT(found, 20);
+  for (int k = 40; k < 43; ++k) {
+    EXPECT_FALSE(held.raw_px.col(k).allFinite()) << k;
+    ASSERT_TRUE(held.ends[k]) << k;
+    EXPECT_EQ(held.ends[k]->reason, LossReason::look_not_found) << k;
+  }
 }
 
 TEST(Anchors, AreTheSameInEveryRun) {

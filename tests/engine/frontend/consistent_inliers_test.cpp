@@ -3,7 +3,7 @@
 #include "engine/frontend/consistent_inliers.h"
 
 #include "engine/frontend/make_window.h"
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/gpo.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

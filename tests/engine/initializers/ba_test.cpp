@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/ba.h"
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/initializers/perturbed_truth.h"
@@ -117,7 +117,7 @@ TEST(BundleAdjustment, CountsUnknownsAndWhatTheSolverDid) {
   const Initialization result = refine_bundle(truth.window, perturbed_truth(truth), {});
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_EQ(result.solver.unknowns, 6 * 30 + 3 * 150 - 7);
-  EXPECT_EQ(result.solver.termination, "convergence");
+  EXPECT_EQ(result.solver.termination, Termination::convergence);
   EXPECT_LT(result.solver.final_cost, result.solver.initial_cost);
   EXPECT_GT(result.solver.milliseconds, 0);
   EXPECT_NEAR(result.rms_px, 0.5 * std::sqrt(2), 0.07);  // of both coordinates

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo_joint.h"
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/ba.h"
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/gpo.h"

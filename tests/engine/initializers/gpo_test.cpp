@@ -3,7 +3,7 @@
 #include "engine/initializers/gpo.h"
 
 #include "engine/evaluation/bound.h"
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
@@ -69,7 +69,7 @@ TEST(Gpo, CountsUnknownsAndResidualsAsThePaperDoes) {
   const Initialization result = initialize_gpo(truth.window, {}, {});
   EXPECT_EQ(result.solver.unknowns, 3 * 30 - 1);
   EXPECT_EQ(result.solver.residuals, 2 * 150 * 29);
-  EXPECT_EQ(result.solver.termination, "convergence");
+  EXPECT_EQ(result.solver.termination, Termination::convergence);
   EXPECT_LE(result.solver.iterations, 300);
   EXPECT_LT(result.solver.final_cost, result.solver.initial_cost);
   EXPECT_NEAR(result.rms_px, 0.5 * std::sqrt(2), 0.05);  // of both coordinates

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/pnp.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
 #include "tests/engine/initializers/median_error.h"
 #include "tests/engine/simulated_window.h"
@@ -51,7 +52,7 @@ TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {
   EXPECT_EQ(errors.size(), 30U * 150U);
   EXPECT_EQ(result.rms_px, root_mean_square(errors));
   EXPECT_LT(result.rms_px, 0.5 * std::sqrt(2));  // free points take up some of the noise
-  EXPECT_EQ(result.solver.termination, "none");
+  EXPECT_EQ(result.solver.termination, Termination::none);
 }
 
 TEST(Pnp, OutliersAmongTheInliersDoNoHarm) {
@@ -89,8 +90,7 @@ TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
   EXPECT_FALSE(result.ok);
   EXPECT_THAT(result.reason, HasSubstr("no pair to start from: frame 129: rotation 11."));
   EXPECT_GE(result.candidates.size(), 16U * 28);
-  for (const HomographyCandidate& candidate : result.candidates)
-    EXPECT_FALSE(candidate.rejected.empty());
+  for (const HomographyCandidate& candidate : result.candidates) EXPECT_FALSE(candidate.taken());
 }
 
 TEST(Pnp, ReasonsAreForPeople) {

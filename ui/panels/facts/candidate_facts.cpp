@@ -13,7 +13,7 @@ namespace gpo {
 std::string candidates_sentence(std::span<const HomographyCandidate> candidates) {
   std::vector<const HomographyCandidate*> taken;
   for (const HomographyCandidate& candidate : candidates)
-    if (candidate.rejected.empty()) taken.push_back(&candidate);
+    if (candidate.taken()) taken.push_back(&candidate);
   const std::size_t of = candidates.size();
   if (taken.empty()) return fmt::format("none of {} readings is possible.", of);
   const double tilt = angle_deg(taken[0]->motion.normal, {0, 0, -1});

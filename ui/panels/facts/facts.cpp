@@ -115,7 +115,7 @@ ResultGroup result_group(const Inspection& inspection) {
   if (result.solver.iterations > 0) {
     group.rows.push_back({"Iterations",
                           std::to_string(result.solver.iterations),
-                          result.solver.termination == "convergence" ? "converged" : "",
+                          result.solver.termination == Termination::convergence ? "converged" : "",
                           fmt::format("{} unknowns, {} residuals, cost {:.4g} to {:.4g} px\u00b2",
                                       result.solver.unknowns,
                                       result.solver.residuals,

@@ -30,7 +30,7 @@ void header() {
 }
 
 void draw_verdict(const HomographyCandidate& candidate, float scale) {
-  const bool taken = candidate.rejected.empty();
+  const bool taken = candidate.taken();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float half = ImGui::GetTextLineHeight() / 2;
   draw_sign(*ImGui::GetWindowDrawList(),
@@ -43,7 +43,7 @@ void draw_verdict(const HomographyCandidate& candidate, float scale) {
 
 void draw_row(const HomographyCandidate& candidate, float scale) {
   ImGui::TableNextRow();
-  const bool taken = candidate.rejected.empty();
+  const bool taken = candidate.taken();
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? palette::kText : palette::kTextDim));
   const std::vector<std::string> cells = candidate_cells(candidate);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -31,9 +31,9 @@ constexpr ColumnText kFactColumns[] = {
     {"ended by", "What stopped it"},
     {"time [ms]", "Of the optimization alone"}};
 
-std::string ended_by(const std::string& termination) {
-  if (termination == "convergence") return "converged";
-  return termination == "no_convergence" ? "limit" : termination;
+const char* ended_by(Termination termination) {
+  if (termination == Termination::convergence) return "converged";
+  return termination == Termination::no_convergence ? "limit" : to_string(termination);
 }
 
 std::vector<std::string> cells(const ShownResult& result, bool timings) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/charts/residual_charts.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/residuals.h"

@@ -117,7 +117,7 @@ void draw_candidates(const Stage& stage) {
       if (disc.norm() > 1) continue;
       const ImVec2 at = stage.at(disc);
       const float r = (now ? 4.2F : 2.2F) * stage.s;
-      if (candidate.rejected.empty()) {
+      if (candidate.taken()) {
         stage.list.AddCircleFilled(at, r + stage.s, imgui_color(palette::kBackground, 0.6), 16);
         stage.list.AddCircleFilled(at, r, imgui_color(rgb), 16);
       } else {

@@ -193,7 +193,7 @@ TEST_P(BundleOnMotion, EndsAtAMinimumThatIsNoWorseThanTheTruth) {
     const Bundle start =
         free_bundle(truth.window.K, plane_bundle(truth, perturbed_truth(truth, {.seed = seed})));
     const AdjustedBundle result = adjust_bundle(truth.window.K, start, observations, {}, {});
-    ASSERT_EQ(result.solver.termination, "convergence");
+    ASSERT_EQ(result.solver.termination, Termination::convergence);
     const Bundle exact = true_bundle(truth, options(seed));
     EXPECT_LE(result.solver.final_cost, squared_cost(truth, exact, observations));
     EXPECT_NEAR(result.solver.final_cost, squared_cost(truth, result.bundle, observations), 1e-6);
@@ -230,7 +230,7 @@ TEST_P(BundleOnMotion, ResidualAndGradientAreZeroAtTheTruthOfANoiseFreeWindow) {
   for (const double error : reprojection_errors_px(truth.window.K, exact, observations))
     EXPECT_LT(error, 1e-9);
   const AdjustedBundle result = adjust_bundle(truth.window.K, exact, observations, {}, {});
-  EXPECT_EQ(result.solver.termination, "convergence");
+  EXPECT_EQ(result.solver.termination, Termination::convergence);
   EXPECT_LT(result.solver.final_cost, 1e-16);
 }
 
@@ -241,7 +241,7 @@ TEST_P(BundleOnMotion, PlaneAdjustmentEndsAtAMinimumThatIsNoWorseThanTheTruth) {
     const PlaneBundle start = plane_bundle(truth, perturbed_truth(truth, {.seed = seed}));
     const AdjustedPlaneBundle result =
         adjust_plane_bundle(truth.window.K, start, observations, PlaneNormal::free, {});
-    ASSERT_EQ(result.solver.termination, "convergence");
+    ASSERT_EQ(result.solver.termination, Termination::convergence);
     const Bundle exact = true_bundle(truth, options(seed));
     const Bundle adjusted = free_bundle(truth.window.K, result.bundle);
     EXPECT_LE(result.solver.final_cost, squared_cost(truth, exact, observations));

@@ -22,7 +22,7 @@ TEST(HomographyCandidates, CountTheInliersBehindTheCamera) {
   int rejected = 0;
   for (const HomographyCandidate& candidate : candidates) {
     EXPECT_EQ(candidate.of, 120);
-    if (candidate.rejected.empty()) {
+    if (candidate.taken()) {
       EXPECT_LE(candidate.behind, 2);
     }
     if (candidate.rejected.starts_with("points behind")) {

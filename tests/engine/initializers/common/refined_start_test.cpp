@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/common/refined_start.h"
 
+#include "engine/initializers/dbscan.h"
+#include "engine/initializers/pnp.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -48,6 +50,18 @@ TEST(RefinedStart, SaysWhichStartFailedAndWhyAndKeepsItsCandidates) {
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.reason, "start by None: the moon is full");
   EXPECT_EQ(result.candidates.size(), 3U);
+}
+
+TEST(RefinedStart, OfAStoppedStartIsStoppedAndNoFailureOfTheStart) {
+  const Window window = simulate({}).window;
+  std::stop_source source;
+  source.request_stop();
+  const Initialization result =
+      refined_start(window, {"DBSCAN", initialize_dbscan}, refine, source.get_token());
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(result.reason, "stopped");
+  EXPECT_TRUE(initialize_pnp(window, source.get_token()).stopped);
+  EXPECT_FALSE(refined_start(window, {"None", no_start}, refine, {}).stopped);
 }
 
 TEST(RefinedStart, SaysOfAWindowWithoutParallaxSoItself) {

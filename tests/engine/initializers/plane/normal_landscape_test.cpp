@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/normal_landscape.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/candidates/homography_candidates.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/gpo.h"
@@ -141,7 +142,7 @@ TEST(NormalLandscape, OfTheTwinsRotationHasItsMinimumAtTheTwin) {
   const Simulation truth = simulate({.motion = Motion::oblique, .frames = 2, .noise_px = 0});
   int readings = 0;
   for (const HomographyCandidate& candidate : read_homography(truth.window, 1)) {
-    if (!candidate.rejected.empty()) continue;
+    if (!candidate.taken()) continue;
     ++readings;
     Window window = truth.window;
     window.R_wc[1] = candidate.motion.R_21.transpose();

@@ -57,7 +57,7 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
         solve_plane(window, plane_observations(window), start, GetParam(), {});
     const PlaneSolution ceres = solve_plane_with_ceres(window, start, GetParam(), {}, 1e-16);
     EXPECT_EQ(ours.solver.unknowns, ceres.solver.unknowns);
-    EXPECT_EQ(ours.solver.termination, "convergence") << seed;
+    EXPECT_EQ(ours.solver.termination, Termination::convergence) << seed;
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
     const bool same_cost = std::abs(ours.solver.final_cost - ceres.solver.final_cost) <
                            1e-9 * ceres.solver.final_cost + 1e-12;
@@ -122,7 +122,7 @@ TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {
   start.R_wc[3] *= so3_exp({0, 3, 0});
   const PlaneSolution solution =
       solve_plane(truth.window, plane_observations(truth.window), start, {}, {});
-  EXPECT_EQ(solution.solver.termination, "failure");
+  EXPECT_EQ(solution.solver.termination, Termination::failure);
 }
 
 TEST(PlaneSolver, StopsWhenAsked) {

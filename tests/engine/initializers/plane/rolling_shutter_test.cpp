@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/rolling_shutter.h"
 
-#include "engine/geometry/median.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initializers/gpo_joint.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -20,6 +20,7 @@ HomographyCandidate reading(double tilt_deg, const std::string& rejected = "") {
           Decomposition::faugeras,
           {so3_exp({0, 0.1, 0}), {0.3, 0, 0.4}, normal},
           0.25,
+          rejected.empty() ? Rejection::none : Rejection::sight,
           rejected,
           2,
           80};

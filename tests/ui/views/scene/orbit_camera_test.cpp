@@ -50,27 +50,8 @@ std::vector<Vector3d> made_points(int count, double depth) {
   return points;
 }
 
-TEST(VtkCamera, ReproducesTheIntrinsicsExactly) {
-  const Camera camera{752, 480, 458.654, 427.296, 367.215, 248.375, Distortion::none, {}};
-  Pose pose;
-  pose.R_wc = Eigen::AngleAxisd(0.7, Vector3d(0.2, -0.5, 0.8).normalized()).toRotationMatrix();
-  pose.p_wc = Vector3d(0.4, -1.2, 2.5);
-  vtkNew<vtkCamera> vtk;
-  set_camera_from_intrinsics(*vtk, camera, pose);
-  double worst = 0;
-  for (const Vector3d& point_c : made_points(200, 4)) {
-    // A pixel's center is half a pixel from its corner.
-    const Vector2d expected = project_undistorted(camera, point_c) + Vector2d::Constant(0.5);
-    const Vector2d actual = vtk_pixel(*vtk, to_world(pose, point_c), camera.width, camera.height);
-    worst = std::max(worst, (actual - expected).norm());
-  }
-  EXPECT_LT(worst, 1e-6);
-}
-
 TEST(VtkCamera, SeesWhatTheOrbitCameraSees) {
   vtkNew<vtkCamera> vtk;
-  // What an earlier look through the recording's camera set is gone.
-  set_camera_from_intrinsics(*vtk, {640, 480, 400, 500, 300, 200, Distortion::none, {}}, Pose());
   set_camera_from_orbit(*vtk, made_camera());
   for (const Vector3d& point : made_points(50, 1)) {
     const auto pixel = view_pixel(made_camera(), point, {800, 600});

@@ -80,10 +80,10 @@ TEST(SceneGeometry, GridContainsTheCubeAndLiesOnThePlane) {
 TEST(SceneGeometry, FrustumsCornersAreThePicturesCorners) {
   const Camera camera{640, 480, 500, 505, 322, 236, Distortion::none, {}};
   const auto corners = frustum(camera, Pose(), 0.3);
-  EXPECT_LT((project_undistorted(camera, corners[1]) - Vector2d(-0.5, -0.5)).norm(), 1e-9);
-  EXPECT_LT((project_undistorted(camera, corners[3]) - Vector2d(639.5, 479.5)).norm(), 1e-9);
+  EXPECT_LT((project(camera, corners[1]) - Vector2d(-0.5, -0.5)).norm(), 1e-9);
+  EXPECT_LT((project(camera, corners[3]) - Vector2d(639.5, 479.5)).norm(), 1e-9);
   EXPECT_NEAR(corners[2].z(), 0.3, 1e-12);
-  EXPECT_LT(project_undistorted(camera, corners[5]).y(), -1);  // the mark is above the picture
+  EXPECT_LT(project(camera, corners[5]).y(), -1);  // the mark is above the picture
 }
 
 TEST(SceneGeometry, DefaultViewShowsEverythingFromAboveThePlane) {

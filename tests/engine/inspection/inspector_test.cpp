@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/inspection.h"
+#include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking.h"
@@ -221,6 +221,25 @@ TEST(Inspector, StopsInTheMiddleAndStartsAnewAfterwards) {
   EXPECT_EQ(stopped, nullptr);
   EXPECT_EQ(told, 4);
   EXPECT_NE(inspector.inspect(settings), nullptr);
+}
+
+// Stopped between the rotations and the method, so that what follows from the window is new.
+TEST(Inspector, AStoppedGrowthIsNotKept) {
+  Settings settings;
+  settings.frames = 12;
+  const auto alone = Inspector(desk()).inspect(settings);
+  Inspector inspector(desk());
+  std::stop_source source;
+  settings.method = "ba";
+  const auto stopped =
+      inspector.inspect(settings, source.get_token(), [&](const std::string& stage, int, int) {
+        if (stage == "initializing") source.request_stop();
+      });
+  EXPECT_EQ(stopped, nullptr);
+  settings.method = "gpo";
+  const auto next = inspector.inspect(settings);
+  ASSERT_EQ(next->growth.size(), 11U);
+  for (int k = 0; k < 11; ++k) EXPECT_EQ(next->growth[k].reason, alone->growth[k].reason);
 }
 
 TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {

@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gpo {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double quantile(std::span<const double> ascending, double share) {
+  const double place = share * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, ascending.size() - 1);
+  return std::lerp(ascending[below], ascending[above], place - std::floor(place));
+}
+
+double sum_of_squares(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return sum;
+}
+
+double root_mean_square(std::span<const double> values) {
+  return values.empty() ? 0
+                        : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
+}
+
+}  // namespace gpo

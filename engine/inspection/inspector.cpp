@@ -1,0 +1,73 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/inspector.h"
+
+#include "engine/base/error.h"
+#include "engine/initializers/methods.h"
+#include "engine/inspection/stages.h"
+#include "engine/inspection/window_rotations.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+void check_window(const Recording& recording, const Settings& settings) {
+  const int count = recording.frame_count();
+  if (settings.frames < 2) {
+    throw InputError(fmt::format("--frames: {}, expected at least 2", settings.frames));
+  }
+  if (settings.start < 0 || settings.start >= count) {
+    throw InputError(
+        fmt::format("--start: frame {} is not in the recording, which has frames 0 to {}",
+                    settings.start,
+                    count - 1));
+  }
+  if (settings.start + settings.frames > count) {
+    throw InputError(
+        fmt::format("--frames: {} frames from frame {} on do not fit, the recording has {} frames",
+                    settings.frames,
+                    settings.start,
+                    count));
+  }
+}
+
+}  // namespace
+
+Inspector::Inspector(std::shared_ptr<const Recording> recording)
+    : stages_(std::make_unique<Stages>()) {
+  stages_->recording = std::move(recording);
+}
+
+Inspector::~Inspector() = default;
+
+std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
+                                                     const std::stop_token& stop,
+                                                     const Progress& progress) {
+  Stages& stages = *stages_;
+  check_window(*stages.recording, settings);
+  find_method(settings.method);  // throws before any work is done
+  Inspection inspection;
+  inspection.recording = stages.recording;
+  inspection.settings = settings;
+  inspection.rotations_used = rotation_source_used(*stages.recording, settings.rotations);
+  const bool prepared = stages.update_tracks(settings, stop, progress) &&
+                        stages.update_truth(settings, stop, progress) &&
+                        stages.update_window(settings, inspection.rotations_used, stop);
+  if (!prepared) return nullptr;
+  if (progress) progress("initializing", 0, 0);
+  stages.initialize(settings, stop, progress, inspection);
+  if (stop.stop_requested()) return nullptr;
+  if (inspection.initialization->ok) {
+    if (inspection.truth) {
+      inspection.evaluation = evaluate(
+          *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
+    }
+    place_cubes(inspection, stages.board_corners.value);
+  }
+  return std::make_shared<const Inspection>(std::move(inspection));
+}
+
+}  // namespace gpo

@@ -1,0 +1,175 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/stages.h"
+
+#include "engine/base/error.h"
+#include "engine/frontend/make_window.h"
+#include "engine/initializers/certainty/growth.h"
+#include "engine/initializers/methods.h"
+#include "engine/inspection/window_rotations.h"
+#include "engine/inspection/window_truth.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// What is kept where it begins at the same frame and is long enough, else what is wanted.
+Span covering(const std::optional<Span>& kept, const Span& wanted) {
+  const auto [start, frames] = wanted;
+  const bool covers = kept && std::get<0>(*kept) == start && std::get<1>(*kept) >= frames;
+  return covers ? *kept : wanted;
+}
+
+/// A method that needs no plane gets its start from the tracks on it even where it then uses all.
+RansacOptions ransac_options(const Settings& settings) {
+  RansacOptions options;
+  options.enabled = uses_ransac(settings) || !find_method(settings.method).needs_plane;
+  options.threshold_px = settings.ransac_threshold_px;
+  options.seed = settings.seed;
+  return options;
+}
+
+void check_excluded(const Tracks& tracks, const Settings& settings) {
+  for (const std::int64_t id : settings.exclude) {
+    if (std::ranges::find(tracks.ids, id) != tracks.ids.end()) continue;
+    throw InputError(
+        tracks.ids.empty()
+            ? fmt::format("--exclude: track {} is not in the window, which has no tracks", id)
+            : fmt::format("--exclude: track {} is not in the window, which has tracks {} to {}",
+                          id,
+                          std::ranges::min(tracks.ids),
+                          std::ranges::max(tracks.ids)));
+  }
+}
+
+std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
+  std::vector<Verdict> verdicts;
+  verdicts.reserve(steps.size());
+  for (const GrowthStep& step : steps) verdicts.push_back(step.verdict);
+  return verdicts;
+}
+
+/// Tells people of an optimization, not more often than they can read it.
+Watch told_by(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
+  if (!progress) return {stop};
+  constexpr double kPause_ms = 40;
+  const std::string title = find_method(settings.method).title;
+  return {stop, [=, last = std::chrono::steady_clock::now()](int iteration, double cost) mutable {
+            if (milliseconds_since(last) < kPause_ms) return;
+            last = std::chrono::steady_clock::now();
+            progress(fmt::format("{}: iteration {}, cost {:.4g} px\u00b2", title, iteration, cost),
+                     0,
+                     0);
+          }};
+}
+
+}  // namespace
+
+bool Stages::update_tracks(const Settings& settings,
+                           const std::stop_token& stop,
+                           const Progress& progress) {
+  const Span span(settings.start, settings.frames);
+  Kept<Span, Tracked>& kept = longest_tracks[static_cast<std::size_t>(settings.tracking)];
+  const Span longest = covering(kept.key, span);
+  const int frames = std::get<1>(longest);
+  const bool done = kept.update(longest, [&]() {
+    return recording->tracks.empty()
+               ? followed_tracks(
+                     *recording, settings.start, frames, settings.tracking, stop, progress)
+               : std::optional(chosen_tracks(*recording, settings.start, frames));
+  });
+  return done && tracks.update({span, settings.tracking}, [&]() {
+    return std::optional(beginning(kept.value.tracks, settings.frames));
+  });
+}
+
+bool Stages::update_truth(const Settings& settings,
+                          const std::stop_token& stop,
+                          const Progress& progress) {
+  const Span span(settings.start, settings.frames);
+  const Span longest = covering(longest_truth.key, span);
+  const int frames = std::get<1>(longest);
+  const bool done = longest_truth.update(longest, [&]() {
+    auto computed = window_truth(*recording, settings.start, frames, stop, progress);
+    return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
+  });
+  if (!done) return false;
+  truth.update(span,
+               [&]() { return std::optional(beginning(longest_truth.value, settings.frames)); });
+  return board_corners.update(
+      settings.start, [&]() { return std::optional(corners_in(*recording, settings.start)); });
+}
+
+bool Stages::update_window(const Settings& settings,
+                           RotationSource source,
+                           const std::stop_token& stop) {
+  check_excluded(*tracks.value, settings);
+  const TrackedSpan span(Span(settings.start, settings.frames), settings.tracking);
+  const RansacOptions ransac = ransac_options(settings);
+  const Inliers inliers = inliers_used(settings);
+  const Rejected rejected(span, settings.exclude, ransac, inliers);
+  outliers.update(rejected, [&]() {
+    return std::optional(
+        std::make_shared<const Window>(make_window(without(*tracks.value, settings.exclude),
+                                                   recording->camera,
+                                                   recording->timestamps_ns,
+                                                   ransac,
+                                                   inliers)));
+  });
+  return rotations.update({rejected, source}, [&]() -> std::optional<Rotations> {
+    Rotations computed =
+        window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
+    return computed.stopped ? std::nullopt : std::optional(std::move(computed));
+  });
+}
+
+void Stages::initialize(const Settings& settings,
+                        const std::stop_token& stop,
+                        const Progress& progress,
+                        Inspection& inspection) {
+  Window window = *outliers.value;
+  window.all_tracks = !uses_ransac(settings);
+  window.rotations = rotations.value.model;
+  window.gyro = rotations.value.gyro;
+  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+  if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
+  const auto begin = std::chrono::steady_clock::now();
+  Initialization initialization =
+      rotations.value.R_wc.empty()
+          ? failed(rotations.value.reason)
+          : find_method(settings.method)
+                .initialize(window, settings.initializer, told_by(settings, stop, progress));
+  Timing& t = inspection.timing;
+  t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
+                .value.milliseconds[settings.frames - 1];
+  t.ransac = outliers.milliseconds;
+  t.rotations = rotations.milliseconds;
+  t.initialize = milliseconds_since(begin);
+  t.optimize = initialization.solver.milliseconds;
+  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  if (!rotations.value.R_wc.empty()) {
+    // What was stopped is short, and no result.
+    const bool grown = growth.update(*rotations.key, [&]() {
+      auto verdicts = verdicts_of(grow(window, stop));
+      return stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
+    });
+    if (!grown) return;
+    inspection.growth = growth.value;
+    inspection.motion = frame_motion(window);
+    initialization = assessed(find_method(settings.method), window, std::move(initialization));
+    if (!initialization.verdict && static_cast<int>(growth.value.size()) == settings.frames - 1)
+      initialization.verdict = growth.value.back();
+  }
+  inspection.tracks = tracks.value;
+  inspection.truth = truth.value;
+  inspection.window = std::make_shared<const Window>(std::move(window));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(initialization));
+}
+
+}  // namespace gpo

@@ -1,0 +1,54 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/rotations.h"
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/kept.h"
+#include "engine/inspection/progress.h"
+#include "engine/inspection/window_tracks.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+using Span = std::tuple<int, int>;  // start, frames
+using TrackedSpan = std::tuple<Span, Tracking>;
+using Excluded = std::vector<std::int64_t>;
+using Rejected = std::tuple<TrackedSpan, Excluded, RansacOptions, Inliers>;
+
+/// What an inspector keeps between two inspections, and how it is brought up to date; each `update`
+/// is false where it was stopped.
+struct Stages {
+  std::shared_ptr<const Recording> recording;
+  std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
+  Kept<Span, std::shared_ptr<const WindowTruth>> longest_truth;
+  Kept<TrackedSpan, std::shared_ptr<const Tracks>> tracks;
+  Kept<Span, std::shared_ptr<const WindowTruth>> truth;
+  Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
+  Kept<Rejected, std::shared_ptr<const Window>> outliers;
+  Kept<std::tuple<Rejected, RotationSource>, Rotations> rotations;
+  Kept<std::tuple<Rejected, RotationSource>, std::vector<Verdict>> growth;
+
+  bool update_tracks(const Settings& settings,
+                     const std::stop_token& stop,
+                     const Progress& progress);
+  bool update_truth(const Settings& settings,
+                    const std::stop_token& stop,
+                    const Progress& progress);
+  bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
+  /// The method's result on what the other stages made, with its growth; into `inspection`.
+  void initialize(const Settings& settings,
+                  const std::stop_token& stop,
+                  const Progress& progress,
+                  Inspection& inspection);
+};
+
+}  // namespace gpo

@@ -1,0 +1,69 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/window/frame_errors.h"
+
+#include "engine/frontend/make_window.h"
+#include "engine/initializers/plane/closed_form_motion.h"
+#include "engine/initializers/plane/rolling_shutter.h"
+#include "engine/window/tracks.h"
+#include "tests/engine/simulated_window.h"
+
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+void expect_same(const std::vector<FrameErrors>& a, const std::vector<FrameErrors>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].inliers, b[i].inliers) << i;
+    EXPECT_EQ(a[i].homography_px, b[i].homography_px) << i;
+    EXPECT_EQ(a[i].rotation_px, b[i].rotation_px) << i;
+    EXPECT_EQ(a[i].homography_squares, b[i].homography_squares) << i;
+    EXPECT_EQ(a[i].rotation_squares, b[i].rotation_squares) << i;
+  }
+}
+
+Tracks made_tracks(const Window& window) {
+  Tracks tracks;
+  tracks.raw_px = window.points_px;
+  for (int j = 0; j < window.track_count(); ++j) tracks.ids.push_back(j);
+  return tracks;
+}
+
+Window made_window(const Window& like, const Tracks& tracks) {
+  const Camera camera{
+      640, 480, like.K(0, 0), like.K(1, 1), like.K(0, 2), like.K(1, 2), Distortion::none, {}};
+  return make_window(tracks, camera, like.timestamps_ns, {}, Inliers::per_frame);
+}
+
+TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {
+  const Window simulated = simulate({.off_plane = 0.15, .seed = 3}).window;
+  const Tracks tracks = made_tracks(simulated);
+  const std::vector<std::int64_t> ids{0, 5, 17};
+  for (const Tracks& some : {tracks, without(tracks, ids)}) {
+    Window window = made_window(simulated, some);
+    ASSERT_EQ(static_cast<int>(window.errors.size()), window.frame_count());
+    const std::vector<FrameErrors> kept = window.errors;
+    window.errors.clear();
+    expect_same(kept, frame_errors(window));
+  }
+}
+
+TEST(FrameErrors, AreComputedAnewOfAWindowWhosePointsMoved) {
+  const Window simulated = simulate({.seed = 4}).window;
+  const Window window = made_window(simulated, made_tracks(simulated));
+  const PlaneMotion motion = *closed_form_motion(window);
+  const Window moved = without_rolling_shutter(window, motion, 3e-5);
+  EXPECT_NE(frame_errors(moved)[9].homography_px, frame_errors(window)[9].homography_px);
+}
+
+TEST(FrameErrors, AreZeroOfAFrameWithoutInliers) {
+  Window window = simulate({.seed = 5}).window;
+  window.inlier[7].assign(window.track_count(), false);
+  EXPECT_EQ(frame_errors(window)[7].homography_px, 0);
+  EXPECT_GT(frame_errors(window)[8].homography_px, 0);
+}
+
+}  // namespace
+}  // namespace gpo::test
