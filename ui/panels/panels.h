@@ -12,7 +12,7 @@
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <array>
 #include <map>
@@ -98,8 +98,7 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
 /// Names of the side panes, and of the drawers, to choose one by a click.
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
-/// The side pane, or the drawer, that is open.
-void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
-void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
+/// The side pane, or the drawer, that is open; nothing where it is shut.
+DrawPane side_pane, drawer;
 
 }  // namespace gpo

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/track_tooltip.h"
+#include "ui/panels/track_tooltip.h"
 
 #include "engine/inspection/track_life.h"
 #include "ui/look/numbers.h"

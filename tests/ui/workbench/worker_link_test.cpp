@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "tests/engine/test_folder.h"
+#include "ui/workbench/actions/apply.h"
 #include "ui/workbench/recent_files.h"
 
 #include <atomic>

@@ -6,7 +6,7 @@
 #include "ui/context/window_picture.h"
 #include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/tracks_in_view.h"

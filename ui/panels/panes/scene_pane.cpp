@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/panels/facts/track_tooltip.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/panes/view_options.h"
+#include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/track_highlight.h"

@@ -1,0 +1,131 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/normal_study.h"
+#include "engine/inspection/settings.h"
+#include "engine/inspection/survey.h"
+#include "engine/recording/recording.h"
+#include "ui/look/palette.h"
+#include "ui/views/normals/normals_disc.h"
+#include "ui/views/picture/image_geometry.h"
+#include "ui/views/scene/orbit_camera.h"
+#include "ui/workbench/panes.h"
+#include "ui/workbench/selection.h"
+#include "ui/workbench/time_span.h"
+#include "ui/workbench/view_toggles.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+namespace gpo {
+
+struct Row;
+
+enum class Severity { note, warning, error };
+
+struct LogLine {
+  Severity severity = Severity::note;
+  std::string text;  ///< one line
+};
+
+/// A picture of the window, or of one view alone, on its way to the disk.
+struct Screenshot {
+  std::filesystem::path file;         ///< .png; empty: a free name in the current folder
+  std::string view = "window";        ///< window | picture | compare | a pane's key
+  std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
+};
+
+/// A movie of the window's frames on its way to the disk.
+struct MovieWish {
+  std::filesystem::path file;  ///< .mp4
+  double rate_hz = 0;          ///< frames a second; 0: the recording's own
+};
+
+/// A frame that the user wants to find again.
+struct Bookmark {
+  int frame = 0;     ///< counts in the recording
+  std::string note;  ///< one line; may be empty
+
+  bool operator==(const Bookmark&) const = default;
+};
+
+struct WorkbenchState;
+
+/// A session from a file, see `read_session`.
+struct SavedSession {
+  std::filesystem::path recording;              ///< empty: none was open
+  std::shared_ptr<const WorkbenchState> state;  ///< without a recording and what comes of it
+};
+
+/// What an action asks of the world around the workbench: who runs it reads and clears it.
+struct Wishes {
+  bool quit = false;
+  bool cancel = false;   ///< what the worker does
+  bool compute = false;  ///< inspect again with the same settings
+  bool open_example = false;
+  std::optional<std::filesystem::path> open;  ///< a recording or a session
+  std::vector<Screenshot> screenshots;
+  std::optional<MovieWish> movie;
+};
+
+/// What the user has open, chosen and selected. A plain value; it changes in `apply`, `advance` and
+/// `adopt` alone. A field that sessions keep has its row in session_fields.cpp.
+struct WorkbenchState {
+  std::shared_ptr<const Recording> recording;    ///< null: nothing is open
+  std::shared_ptr<const Inspection> inspection;  ///< the last one of it; null: none yet
+  std::shared_ptr<const SurveyResults> surveyed = std::make_shared<const SurveyResults>();
+  std::shared_ptr<const NormalStudy> study;  ///< the last one, maybe of another window; null: none
+
+  Settings settings;
+  std::vector<Settings> undo, redo;  ///< earlier settings, and those that were undone; last first
+  bool dragging_settings = false;    ///< the last change was one of many small ones
+  int frame = 0;                     ///< shown, counts in the recording
+  bool playing = false;
+  double play_seconds = 0;          ///< since `frame` is shown, while playing
+  double speed = 1;                 ///< of playing, in the recording's own
+  bool loop = false;                ///< playing repeats the window
+  std::vector<Bookmark> bookmarks;  ///< by frame
+  TimeSpan time_span;               ///< of the time line
+
+  Theme theme = Theme::dark;
+  ViewToggles view;
+  Panes panes;
+  std::vector<std::string> compared = {"gpo", "pnp_ba", "ba", "pba"};  ///< keys of Configurations
+  std::optional<PictureZoom> compare_zoom;  ///< of all columns; nothing: around the cubes
+  bool flip = false;  ///< the picture shows the first compared other result; see `flipped`
+  std::vector<std::string> hidden_curves;  ///< keys of Configurations
+  /// Of a results.csv, whose curves take the place of the survey's; null: none is open.
+  std::shared_ptr<const std::vector<Row>> experiment;
+  std::string experiment_name;              ///< of that file, for people
+  double cube_side = 0;                     ///< in plane distances; 0: automatic
+  std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera: where the cube stands on
+                                            ///< the plane; nothing: where the inspection puts it
+  PictureZoom picture_zoom;                 ///< of the picture
+  NormalsZoom normals_zoom;                 ///< of the disc of normals
+  std::optional<OrbitCamera> orbit;         ///< of the scene; nothing: everything in view
+  Selection selection;
+  Hover hover;
+  bool show_help = false;
+  std::optional<std::string> palette;  ///< open, with this typed already; nothing: shut
+
+  std::vector<std::filesystem::path> recent;  ///< opened before, the last one first
+  bool has_last_session = false;              ///< `continue` has something to open
+
+  std::string message;  ///< the last one, one line
+  std::vector<LogLine> log;
+  Wishes wishes;
+  std::optional<SavedSession> waiting_session;  ///< goes on when its recording is open
+
+  int frame_count() const { return recording ? recording->frame_count() : 0; }
+};
+
+/// Says so in the message line and in the log.
+void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
+
+}  // namespace gpo
