@@ -90,12 +90,12 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
   const auto other = flipped_result(input.state);
   const Inspection* inspection = other ? other->inspection.get() : input.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
-  update_picture(input.state, views);
+  const int frame = update_picture(input, views);
   draw_image_view(*ImGui::GetBackgroundDrawList(),
                   {{0, 0}, {size.width, size.height}},
                   inspection ? *inspection : waiting,
-                  input.state.frame,
-                  input.state.recording->pictures ? &views.picture : nullptr,
+                  frame,
+                  shown_picture(views),
                   {},
                   image_options(input.state, inspection));
   if (other)
@@ -105,15 +105,15 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
 /// The columns alone, without what one clicks.
 void draw_compare(const PanelInput& input, cv::Size size, Views& views) {
   const WorkbenchState& state = input.state;
-  update_picture(state, views);
+  const int frame = update_picture(input, views);
   CompareOptions options = compare_options(state);
   options.top_line = true;
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
                     {{0, 0}, {size.width, size.height}},
                     compare_columns(compared_results(state)),
                     *state.recording,
-                    state.frame,
-                    state.recording->pictures ? &views.picture : nullptr,
+                    frame,
+                    shown_picture(views),
                     options);
 }
 

@@ -42,7 +42,10 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.published = published.inspection;
   link.cube_ray = state.cube_ray;
   state.surveyed = survey.results();
-  state.study = survey.latest_study();
+  const auto study = survey.latest_study();
+  if (study && study != state.study && !study->error.empty())
+    say(state, "the window's normals could not be studied: " + study->error, Severity::error);
+  state.study = study;
   if (link.worker.error != link.error) {
     link.error = link.worker.error;
     if (!link.error.empty()) say(state, link.error, Severity::error);

@@ -96,7 +96,7 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
                           state.frame - inspection.window->start,
                           camera,
                           highlight_of(state));
-  if (hover.track) track_tooltip(input, *hover.track);
+  if (hover.track) track_tooltip(input, views, *hover.track);
   if (hover.camera) camera_tooltip(input, *hover.camera);
 }
 
