@@ -97,6 +97,22 @@ TEST_F(WaitingPicture, TheLastOneStaysWithItsOwnFrameUntilTheNextHasCome) {
   EXPECT_FALSE(by_window_);
 }
 
+TEST_F(WaitingPicture, WhatComesTooLateIsShownRatherThanNone) {
+  const int first = state_.settings.start;
+  apply(state_, GoToFrame{first});
+  draw();
+  for (int i = 1; i <= 3; ++i) {  // plays on meanwhile
+    apply(state_, GoToFrame{first + i});
+    draw();
+  }
+  let_come(1);
+  draw();
+  EXPECT_EQ(views_.frame, first);
+  let_come(1);
+  draw();
+  EXPECT_EQ(views_.frame, first + 3);
+}
+
 TEST_F(WaitingPicture, PatchesOfATrackAndColumnsComeLaterToo) {
   for (const char* view : {"view track", "view compare"}) {
     apply(state_, RunAction{view});

@@ -65,6 +65,7 @@ struct Views {
   PictureTexture picture;
   std::shared_ptr<const Recording> recording;  ///< of the picture that is in `picture`
   int frame = -1;                              ///< -1: none of it is there, yet
+  int asked = -1;                              ///< frame that is being fetched; -1: none
   std::string picture_error;                   ///< why there is none
   SceneView scene;
   PaletteEntry palette;

@@ -2,9 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/panels.h"
 
-#include <algorithm>
-
 namespace gpo {
+namespace {
+
+/// Whether it is there: then it is in `views`, or why there is none.
+bool bring(const PanelInput& input, int frame, Views& views) {
+  const FetchedPicture picture = picture_of(input, frame);
+  if (picture.waiting) return false;
+  views.frame = frame;
+  views.picture_error = picture.error;
+  if (!picture.bgr.empty()) views.picture.upload(picture.bgr);
+  return true;
+}
+
+}  // namespace
 
 FetchedPicture picture_of(const PanelInput& input, int frame) {
   const auto& pictures = input.state.recording->pictures;
@@ -14,23 +25,22 @@ FetchedPicture picture_of(const PanelInput& input, int frame) {
 
 int update_picture(const PanelInput& input, Views& views) {
   const WorkbenchState& state = input.state;
-  const bool another = views.recording != state.recording;
-  if (!another && views.frame == state.frame) return state.frame;
-  if (!state.recording->pictures) {
+  if (views.recording != state.recording) {
     views.recording = state.recording;
-    views.frame = state.frame;
-    return state.frame;
+    views.frame = views.asked = -1;
+    views.picture_error.clear();
   }
-  // What will be played next is there by then.
-  if (state.playing && input.fetcher != nullptr)
-    picture_of(input, std::min(state.frame + 1, state.frame_count() - 1));
-  const FetchedPicture picture = picture_of(input, state.frame);
-  if (picture.waiting && !another) return views.frame >= 0 ? views.frame : state.frame;
-  views.recording = state.recording;
-  views.frame = picture.waiting ? -1 : state.frame;
-  views.picture_error = picture.error;
-  if (!picture.bgr.empty()) views.picture.upload(picture.bgr);
-  return state.frame;
+  if (!state.recording->pictures) return state.frame;
+  // What was asked for is shown first, though the frame has changed since: where pictures come more
+  // slowly than they are played, none would ever be in time.
+  if (views.asked >= 0 && bring(input, views.asked, views)) views.asked = -1;
+  if (views.asked < 0 && views.frame != state.frame) {
+    // What is played next is there by then.
+    if (state.playing && input.fetcher != nullptr && state.frame + 1 < state.frame_count())
+      picture_of(input, state.frame + 1);
+    if (!bring(input, state.frame, views)) views.asked = state.frame;
+  }
+  return views.frame >= 0 ? views.frame : state.frame;
 }
 
 PictureTexture* shown_picture(Views& views) {
