@@ -122,7 +122,9 @@ TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
   std::vector<std::string> keys_before, keys_after;
   for (const auto& [key, value] : before.items()) {
     keys_before.push_back(key);
-    if (key != "recording" && key != "settings") EXPECT_EQ(after.at(key), value) << key;
+    if (key != "recording" && key != "settings") {
+      EXPECT_EQ(after.at(key), value) << key;
+    }
   }
   for (const auto& [key, value] : after.items()) keys_after.push_back(key);
   EXPECT_EQ(keys_after, keys_before);
