@@ -4,7 +4,8 @@
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
 #include "ui/workbench/script.h"
 #include "ui/workbench_host.h"
 

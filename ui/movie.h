@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/recording/pictures/video_encoder.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <functional>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/window_input.h"
 
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <utility>
 

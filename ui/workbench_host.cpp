@@ -31,6 +31,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
                              std::function<void()> changed)
     : gui_(gui),
       example_(std::move(example)),
+      fetcher_(changed),
       survey_(changed),
       worker_(std::move(open), changed) {}
 
@@ -59,7 +60,9 @@ void WorkbenchHost::settle() {
 }
 
 Commands WorkbenchHost::draw(double delta_seconds) {
-  return draw_workbench(input(), size, gui_, views_, delta_seconds);
+  PanelInput shown = input();
+  shown.fetcher = &fetcher_;
+  return draw_workbench(shown, size, gui_, views_, delta_seconds);
 }
 
 cv::Mat WorkbenchHost::picture(const std::string& view, std::optional<cv::Size> wanted) {

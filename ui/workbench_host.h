@@ -40,10 +40,11 @@ class WorkbenchHost {
   bool writing() const { return movie_ || (state.wishes.movie && !link.busy()); }
   /// Until nothing is computed any more.
   void settle();
-  /// One frame of the window into the framebuffer that is bound. Returns what the user did.
+  /// One frame of the window into the framebuffer that is bound. Returns what the user did. Waits
+  /// for no picture: `changed` is called when it has come.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);
-  /// The window, or one view of it alone, at any size: CV_8UC3, BGR. Throws InputError for an
-  /// unknown view.
+  /// The window, or one view of it alone, at any size: CV_8UC3, BGR, with all of its pictures.
+  /// Throws InputError for an unknown view.
   cv::Mat picture(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:
@@ -56,6 +57,7 @@ class WorkbenchHost {
   std::optional<Movie> movie_;  ///< is being written
   WorkerStatus movie_status_;   ///< how far it is
   Views views_;
+  PictureFetcher fetcher_;
   Survey survey_;
   Worker worker_;
 };

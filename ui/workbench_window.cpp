@@ -8,10 +8,16 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/look/palette.h"
 #include "ui/panels/panes/view_options.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
 #include "ui/workbench/layout.h"
+
+#include <span>
+#include <vector>
 
 #include <GL/glew.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 namespace gpo {
@@ -62,7 +68,7 @@ void forget_hover(const PanelInput& input, const Rectangle& views, Commands& com
 
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
   const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
-  const bool drawer_open = input.state.panes.drawer.has_value();
+  const bool drawer_open = input.state.panes.drawer != nullptr;
   const WindowLayout layout = window_layout(window.width, window.height, input.scale, drawer_open);
   menu_bar(input, commands);
   settings_panel(input, layout.settings, commands);
@@ -84,12 +90,12 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
   const auto other = flipped_result(input.state);
   const Inspection* inspection = other ? other->inspection.get() : input.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
-  update_picture(input.state, views);
+  const int frame = update_picture(input, views);
   draw_image_view(*ImGui::GetBackgroundDrawList(),
                   {{0, 0}, {size.width, size.height}},
                   inspection ? *inspection : waiting,
-                  input.state.frame,
-                  input.state.recording->pictures ? &views.picture : nullptr,
+                  frame,
+                  shown_picture(views),
                   {},
                   image_options(input.state, inspection));
   if (other)
@@ -99,15 +105,15 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
 /// The columns alone, without what one clicks.
 void draw_compare(const PanelInput& input, cv::Size size, Views& views) {
   const WorkbenchState& state = input.state;
-  update_picture(state, views);
+  const int frame = update_picture(input, views);
   CompareOptions options = compare_options(state);
   options.top_line = true;
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
                     {{0, 0}, {size.width, size.height}},
                     compare_columns(compared_results(state)),
                     *state.recording,
-                    state.frame,
-                    state.recording->pictures ? &views.picture : nullptr,
+                    frame,
+                    shown_picture(views),
                     options);
 }
 
@@ -119,12 +125,19 @@ void draw_alone(const std::string& view, const PanelInput& input, cv::Size size,
   if (view == "compare") return draw_compare(input, size, views);
   WorkbenchState state = input.state;
   const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
-  if (is_choice<SidePane>(view)) {
-    state.panes.side = choice<SidePane>(view);
+  if (const Pane* pane = find_side_pane(view)) {
+    state.panes.side = pane;
     return side_pane(shown, place, views, ignored);
   }
-  state.panes.drawer = choice<Drawer>(view);
+  state.panes.drawer = find_drawer(view);
   drawer(shown, place, views, ignored);
+}
+
+/// The keys of all of them, with commas.
+std::string keys_of(std::span<const Pane> panes) {
+  std::vector<const char*> keys;
+  for (const Pane& pane : panes) keys.push_back(pane.key);
+  return fmt::format("{}", fmt::join(keys, ", "));
 }
 
 /// As large as the view is in a window of that size; the picture as it was recorded.
@@ -133,20 +146,22 @@ cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size win
   if (!input.state.recording) throw InputError("no recording is open");
   const Camera& camera = input.state.recording->camera;
   if (view == "picture") return {camera.width, camera.height};
+  const Pane* side = find_side_pane(view);
+  const Pane* below = find_drawer(view);
+  if (side == nullptr && below == nullptr && view != "compare")
+    throw InputError(
+        fmt::format("screenshot: no view is called '{}', expected window, picture, compare, {} or "
+                    "{}",
+                    view,
+                    keys_of(side_panes()),
+                    keys_of(drawers())));
   const WindowLayout layout = window_layout(static_cast<float>(window.width),
                                             static_cast<float>(window.height),
                                             input.scale,
-                                            is_choice<Drawer>(view));
-  const Rectangle& place = view == "compare"           ? layout.views
-                           : is_choice<SidePane>(view) ? layout.side
-                                                       : layout.drawer;
-  if (!is_choice<SidePane>(view) && !is_choice<Drawer>(view) && view != "compare")
-    throw InputError(
-        fmt::format("screenshot: no view is called '{}', expected window, picture, "
-                    "compare, {} or {}",
-                    view,
-                    fmt::join(ChoiceKeys<SidePane>::keys, ", "),
-                    fmt::join(ChoiceKeys<Drawer>::keys, ", ")));
+                                            below != nullptr);
+  const Rectangle& place = side != nullptr    ? layout.side
+                           : below != nullptr ? layout.drawer
+                                              : layout.views;
   return {static_cast<int>(place.width), static_cast<int>(place.height)};
 }
 

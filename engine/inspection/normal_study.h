@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 namespace gpo {
@@ -20,9 +21,10 @@ struct NormalStudy {
   NormalLandscape landscape;
   std::vector<std::vector<HomographyCandidate>> candidates;  ///< one a frame of the window
   std::vector<NormalCluster> clusters;                       ///< of the whole window's candidates
+  std::string error = {};  ///< why it could not be made, one line: then it has `window` alone
 };
 
-/// Null where it was stopped.
+/// Null where it was stopped. Throws what the engine throws.
 std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
                                                  const std::stop_token& stop = {});
 

@@ -26,13 +26,18 @@ Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop
   }
 }
 
-/// Null where it was stopped or could not be made.
-std::shared_ptr<const NormalStudy> study_of(const Inspection& inspection,
+/// Null where it was stopped; with its reason where it could not be made, so that nobody asks for
+/// it again.
+std::shared_ptr<const NormalStudy> study_of(const Survey::Study& study,
+                                            const Inspection& inspection,
                                             const std::stop_token& stop) {
   try {
-    return study_normals(inspection, stop);
-  } catch (const std::exception&) {
-    return nullptr;
+    return study(inspection, stop);
+  } catch (const std::exception& error) {
+    NormalStudy failed;
+    failed.window = inspection.window;
+    failed.error = message_of(error);
+    return std::make_shared<const NormalStudy>(std::move(failed));
   }
 }
 
@@ -44,8 +49,10 @@ const Surveyed* find_surveyed(const SurveyResults* results, const Settings& sett
   return found == results->end() ? nullptr : &*found;
 }
 
-Survey::Survey(std::function<void()> changed)
-    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+Survey::Survey(std::function<void()> changed, Study study)
+    : changed_(std::move(changed)),
+      make_study_(std::move(study)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Survey::~Survey() {
   want({});
@@ -169,7 +176,7 @@ void Survey::run(const std::stop_token& stop) {
       }
     }
     if (studied) {
-      finish_study(request, study_of(*studied, request));
+      finish_study(request, study_of(make_study_, *studied, request));
       if (changed_) changed_();
       continue;
     }

@@ -43,8 +43,12 @@ struct SurveyStatus {
 /// All functions may be called from any thread and return at once.
 class Survey {
  public:
+  /// Makes a study of a window, on the survey's thread; null where it was stopped. May throw.
+  using Study =
+      std::function<std::shared_ptr<const NormalStudy>(const Inspection&, const std::stop_token&)>;
+
   /// `changed` is called on the survey's thread after each result.
-  explicit Survey(std::function<void()> changed = {});
+  explicit Survey(std::function<void()> changed = {}, Study study = study_normals);
   ~Survey();
   Survey(const Survey&) = delete;
   Survey& operator=(const Survey&) = delete;
@@ -58,12 +62,12 @@ class Survey {
   void add(std::shared_ptr<const Inspection> inspection);
 
   /// The window whose normals are to be studied, before all that is wanted; null: none. One
-  /// that was studied last is not studied again.
+  /// that was studied last, or could not be, is not studied again.
   void study(std::shared_ptr<const Inspection> inspection);
 
   SurveyStatus status() const;
   std::shared_ptr<const SurveyResults> results() const;     ///< never null
-  std::shared_ptr<const NormalStudy> latest_study() const;  ///< null: none yet
+  std::shared_ptr<const NormalStudy> latest_study() const;  ///< null: none yet; see its `error`
 
  private:
   void run(const std::stop_token& stop);
@@ -72,6 +76,7 @@ class Survey {
   void finish_study(const std::stop_token& request, std::shared_ptr<const NormalStudy> study);
 
   std::function<void()> changed_;
+  Study make_study_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::shared_ptr<const Recording> recording_;

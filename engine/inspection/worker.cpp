@@ -75,6 +75,7 @@ void Worker::cancel() {
   next_path_.reset();
   next_settings_.reset();
   opening_ = false;
+  status_ = {false, "", 0, 0, status_.error};
 }
 
 WorkerStatus Worker::status() const {

@@ -21,7 +21,7 @@ namespace gpo {
 /// What the worker is doing, for people.
 struct WorkerStatus {
   bool busy = false;
-  std::string stage;  ///< "tracking", empty when idle
+  std::string stage;  ///< "tracking", empty when idle and where what ran was canceled
   int done = 0;
   int of = 0;         ///< 0: unknown
   std::string error;  ///< why the last request failed, one line; empty where it did not

@@ -15,6 +15,9 @@
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_geometry.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
+#include "ui/workbench/panes.h"
 #include "ui/workbench_window.h"
 
 #include <thread>
@@ -141,7 +144,7 @@ class BusyWindow : public WholeWindow {
  public:
   explicit BusyWindow(const Inspections& inspections) : WholeWindow(inspections) {
     state_.study = study_normals(*inspections.front(), {});
-    state_.panes = {SidePane::normals, Drawer::residuals, false};
+    state_.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
   }
 };
 

@@ -3,7 +3,9 @@
 #include "engine/recording/recording.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/held_keys.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/playing.h"
 #include "ui/workbench_host.h"
 
 #include <cstdlib>

@@ -9,7 +9,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench_host.h"
 
 #include <gmock/gmock.h>

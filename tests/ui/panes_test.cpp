@@ -1,8 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/panes.h"
+
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <cmath>
@@ -43,7 +47,7 @@ class PanesTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, state_.panes.drawer.has_value());
+    return window_layout(kWidth, kHeight, 1, state_.panes.drawer != nullptr);
   }
   cv::Mat drawer_picture() {
     draw();
@@ -70,10 +74,10 @@ TEST_F(PanesTest, DrawWhateverIsKnown) {
   for (const bool ok : {true, false}) {
     Inspection inspection = made_inspection({.ok = ok});
     open(inspection);
-    for (const auto pane : {SidePane::normals, SidePane::solver, SidePane::candidates})
-      for (const auto drawer : {Drawer::residuals, Drawer::timing}) {
-        state_.panes.side = pane;
-        state_.panes.drawer = drawer;
+    for (const Pane& pane : side_panes())
+      for (const Pane& drawer : drawers()) {
+        state_.panes.side = &pane;
+        state_.panes.drawer = &drawer;
         draw();
         EXPECT_TRUE(draw().empty());
       }
@@ -84,7 +88,7 @@ TEST_F(PanesTest, DrawWhateverIsKnown) {
 
 TEST_F(PanesTest, ClickInTheFramesOfTheResidualsGoesThere) {
   open(made_inspection({.estimate_error = 1}));
-  state_.panes.drawer = Drawer::residuals;
+  state_.panes.drawer = find_drawer("residuals");
   apply(state_, GoToFrame{34});
   draw();
   const Rectangle place = layout().drawer;
@@ -98,7 +102,7 @@ TEST_F(PanesTest, ClickInTheFramesOfTheResidualsGoesThere) {
 
 TEST_F(PanesTest, ComputesResidualsAndChartsOnceAnInspection) {
   open(made_inspection({.estimate_error = 1}));
-  state_.panes.drawer = Drawer::residuals;
+  state_.panes.drawer = find_drawer("residuals");
   draw();
   const std::size_t drawn = views_->charts.at("rms over frames").revision();
   apply(state_, GoToFrame{20});
@@ -136,7 +140,7 @@ std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
 TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = SidePane::normals;
+  state_.panes.side = find_side_pane("normals");
   state_.study = made_study(inspection);
   const Rectangle place = layout().side;
   const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
@@ -161,7 +165,7 @@ TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
 TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = SidePane::normals;
+  state_.panes.side = find_side_pane("normals");
   state_.study = made_study(inspection);
   apply(state_, GoToFrame{34});
   draw();
@@ -176,7 +180,7 @@ TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
   EXPECT_LT(views_->normals.rms_at({0, 0}), all);
   EXPECT_TRUE(std::isnan(views_->normals.rms_at({0.96, 0.05})));
   EXPECT_FALSE(views_->normals.contours().empty());
-  state_.panes.side = SidePane::candidates;
+  state_.panes.side = find_side_pane("candidates");
   for (const int frame : {0, 5, 20}) {
     apply(state_, GoToFrame{frame});
     EXPECT_TRUE(draw().empty());
@@ -186,7 +190,7 @@ TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
 TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = SidePane::normals;
+  state_.panes.side = find_side_pane("normals");
   NormalStudy other = *made_study(inspection);
   other.window = std::make_shared<const Window>(*inspection.window);
   state_.study = std::make_shared<const NormalStudy>(other);
@@ -196,7 +200,7 @@ TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
 
 TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
   Inspection inspection = made_inspection();
-  state_.panes.drawer = Drawer::timing;
+  state_.panes.drawer = find_drawer("timing");
   for (const bool timings : {false, true}) {
     timings_ = timings;
     inspection.timing = {100, 20, 3, 40, 30, 163};

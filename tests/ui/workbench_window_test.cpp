@@ -8,6 +8,8 @@
 #include "ui/context/window_context.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/views/picture_compare.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -6,13 +6,15 @@
 #include "engine/inspection/worker.h"
 #include "ui/context/window_picture.h"
 #include "ui/panels/facts/curve_facts.h"
+#include "ui/panels/facts/track_lives.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/picture_fetcher.h"
+#include "ui/workbench/state.h"
 
 #include <array>
 #include <map>
@@ -29,6 +31,7 @@ struct PanelInput {
   bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
   float scale = 1;      ///< of the text: sizes for 96 dpi times this
   const WorkerStatus* writing = nullptr;  ///< how far a movie is; null: none is written
+  PictureFetcher* fetcher = nullptr;      ///< null: drawing waits for pictures itself
 
   /// The last one that was finished; null: none.
   const Inspection* inspection() const { return state.inspection.get(); }
@@ -61,20 +64,30 @@ struct Residuals {
 struct Views {
   PictureTexture picture;
   std::shared_ptr<const Recording> recording;  ///< of the picture that is in `picture`
-  int frame = -1;
-  std::string picture_error;  ///< why there is none
+  int frame = -1;                              ///< -1: none of it is there, yet
+  int asked = -1;                              ///< frame that is being fetched; -1: none
+  std::string picture_error;                   ///< why there is none
   SceneView scene;
   PaletteEntry palette;
   std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   KeptCurveFacts curves;                    ///< of the drawer
   Residuals residuals;
+  TrackLives lives;
   NormalsMap normals;
   WindowPicture window;  ///< of which only the parts that change are drawn anew
 };
 
-/// Brings the picture of the current frame into `views`, where it is not there yet.
-void update_picture(const WorkbenchState& state, Views& views);
+/// A picture of the recording, which has some: as soon as it is fetched, or at once where nobody
+/// fetches.
+FetchedPicture picture_of(const PanelInput& input, int frame);
+
+/// Brings the picture of the current frame into `views`, where it is not there yet. Returns the
+/// frame to draw: the current one, but while its picture is fetched the one whose picture is there.
+int update_picture(const PanelInput& input, Views& views);
+
+/// What `update_picture` has brought; null where there is nothing.
+PictureTexture* shown_picture(Views& views);
 
 // Each draws one part of the window through Dear ImGui and changes nothing but `Views`.
 void menu_bar(const PanelInput& input, Commands& commands);
@@ -98,8 +111,7 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
 /// Names of the side panes, and of the drawers, to choose one by a click.
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
-/// The side pane, or the drawer, that is open.
-void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
-void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
+/// The side pane, or the drawer, that is open; nothing where it is shut.
+DrawPane side_pane, drawer;
 
 }  // namespace gpo

@@ -1,29 +1,24 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/panes.h"
-
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions.h"
 
 #include <cmath>
+#include <string>
 
 namespace gpo {
 namespace {
 
-using Pane = void (*)(const PanelInput&, const Rectangle&, Views&, Commands&);
-
-constexpr Pane kSidePanes[] = {scene_pane, normals_pane, solver_pane, candidates_pane};
-constexpr Pane kDrawers[] = {
-    curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, log_drawer};
+std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
 /// One name in a row of them; underlined where it is open. Whether it was clicked.
-bool tab(const Action& action, bool open, const Rectangle& place, float scale) {
+bool tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
   const float padding = 10 * scale;
-  const ImVec2 size(ImGui::CalcTextSize(action.title.c_str()).x + 2 * padding, place.height);
+  const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, place.height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const bool clicked = ImGui::InvisibleButton(action.name.c_str(), size);
+  const bool clicked = ImGui::InvisibleButton(action_of(pane).c_str(), size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();
   if (hovered)
@@ -35,50 +30,42 @@ bool tab(const Action& action, bool open, const Rectangle& place, float scale) {
   const float y = std::round(at.y + (place.height - ImGui::GetTextLineHeight()) / 2);
   list.AddText({std::round(at.x + padding), y},
                imgui_color(open || hovered ? palette::kText : palette::kTextDim),
-               action.title.c_str());
-  if (!open) tooltip(action.tooltip);
+               pane.title);
+  if (!open) tooltip(pane.tooltip);
   ImGui::SameLine(0, 0);
   return clicked;
-}
-
-template <Choice E>
-const Action& action_of(E pane) {
-  return *find_action(std::string("view ") + to_string(pane));
 }
 
 }  // namespace
 
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("side tabs", place, {0, 0});
-  for (std::size_t i = 0; i < std::size(kSidePanes); ++i) {
-    const auto pane = static_cast<SidePane>(i);
-    const Action& action = action_of(pane);
-    if (tab(action, input.state.panes.side == pane, place, input.scale))
-      push(commands, RunAction{action.name});
-  }
+  for (const Pane& pane : side_panes())
+    if (tab(pane, input.state.panes.side == &pane, place, input.scale))
+      push(commands, RunAction{action_of(pane)});
 }
 
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("drawer tabs", place, {0, 0});
-  for (std::size_t i = 0; i < std::size(kDrawers); ++i) {
-    const auto one = static_cast<Drawer>(i);
-    const Action& action = action_of(one);
-    const bool open = input.state.panes.drawer == one;
-    if (tab(action, open, place, input.scale))
-      push(commands, RunAction{open ? "view no-drawer" : action.name});
+  for (const Pane& pane : drawers()) {
+    const bool open = input.state.panes.drawer == &pane;
+    if (tab(pane, open, place, input.scale))
+      push(commands, RunAction{open ? "view no-drawer" : action_of(pane)});
   }
 }
 
 void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  if (input.state.panes.side == SidePane::scene)
-    ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
+  const Pane& open = *input.state.panes.side;
+  if (open.covers) ImGui::SetNextWindowBgAlpha(0);
   const PanelScope panel("side", place, {0, 0});
-  kSidePanes[static_cast<std::size_t>(input.state.panes.side)](input, place, views, commands);
+  open.draw(input, place, views, commands);
 }
 
 void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
+  const Pane* open = input.state.panes.drawer;
+  if (open == nullptr) return;
   const PanelScope panel("drawer", place, {0, 0});
-  kDrawers[static_cast<std::size_t>(*input.state.panes.drawer)](input, place, views, commands);
+  open->draw(input, place, views, commands);
 }
 
 }  // namespace gpo

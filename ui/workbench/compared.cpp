@@ -102,4 +102,26 @@ std::vector<int> curve_lengths(int frames) {
   return lengths;
 }
 
+std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
+  std::vector<Settings> wanted;
+  if (!state.recording) return wanted;
+  const PaneNeeds needs = needs_of(state.panes);
+  const std::optional<std::string> other = flipped(state);
+  if (!needs.compared && other)
+    wanted.push_back(apply(parse_configuration(*other), state.settings));
+  if (!needs.compared) return wanted;
+  const auto want_each = [&](int frames) {
+    for (const std::string& key : state.compared) {
+      Settings settings = apply(parse_configuration(key), state.settings);
+      settings.frames = frames;
+      wanted.push_back(std::move(settings));
+    }
+  };
+  want_each(state.settings.frames);
+  // The longest first: its tracks serve the others.
+  for (const int frames : curve_lengths(state.settings.frames))
+    if (needs.lengths && frames < state.settings.frames) want_each(frames);
+  return wanted;
+}
+
 }  // namespace gpo

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/experiment/configuration.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <memory>
 #include <optional>
@@ -38,5 +38,9 @@ std::optional<Compared> flipped_result(const WorkbenchState& state);
 /// The lengths of the windows whose results the curves show, the longest first: the window's own,
 /// then multiples of five frames.
 std::vector<int> curve_lengths(int frames);
+
+/// The inspections that the open views ask for beside the current one: every compared configuration
+/// in the current window, and with the curves open at shorter lengths, too.
+std::vector<Settings> wanted_inspections(const WorkbenchState& state);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <cstdint>
 #include <memory>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/window/tracks.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <cstdint>
 #include <vector>

@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
+#include "ui/workbench/adopt.h"
+#include "ui/workbench/compared.h"
 #include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"
 
@@ -40,7 +42,10 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.published = published.inspection;
   link.cube_ray = state.cube_ray;
   state.surveyed = survey.results();
-  state.study = survey.latest_study();
+  const auto study = survey.latest_study();
+  if (study && study != state.study && !study->error.empty())
+    say(state, "the window's normals could not be studied: " + study->error, Severity::error);
+  state.study = study;
   if (link.worker.error != link.error) {
     link.error = link.worker.error;
     if (!link.error.empty()) say(state, link.error, Severity::error);
@@ -50,9 +55,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
 
 /// Whose normals the open pane shows; null: none does.
 std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
-  const Panes& panes = state.panes;
-  const bool open = panes.side == SidePane::normals || panes.side == SidePane::candidates;
-  return open && !panes.compare ? state.inspection : nullptr;
+  return needs_of(state.panes).study ? state.inspection : nullptr;
 }
 
 /// Shows the figures of a results.csv.
@@ -63,7 +66,7 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
     return say(state, error.what(), Severity::error);
   }
   state.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.panes.drawer = Drawer::curves;
+  state.panes.drawer = find_drawer("curves");
   say(state, std::to_string(state.experiment->size()) + " results in " + file.string());
 }
 

@@ -4,7 +4,7 @@
 
 #include "engine/inspection/survey.h"
 #include "engine/inspection/worker.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <filesystem>
 #include <memory>

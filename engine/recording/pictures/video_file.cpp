@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <string>
 
 namespace gpo {
@@ -53,8 +55,13 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
   check_size(file, index.size, camera);
   camera.width = index.size.width;
   camera.height = index.size.height;
-  const auto decode = [decoder, file, camera](int frame) {
-    cv::Mat picture = decoder->decode(frame);
+  const auto one_at_a_time = std::make_shared<std::mutex>();
+  const auto decode = [decoder, one_at_a_time, file, camera](int frame) {
+    cv::Mat picture;
+    {
+      const std::scoped_lock lock(*one_at_a_time);
+      picture = decoder->decode(frame);
+    }
     check_size(file, picture.size(), camera);
     return picture;
   };

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/survey.h"
 
+#include "engine/base/error.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -59,6 +61,30 @@ TEST(SurveyStudy, StopsWhereNobodyWantsItAndGoesWithItsRecording) {
   EXPECT_EQ(survey.latest_study(), nullptr);
   survey.study(inspection);
   EXPECT_FALSE(survey.status().busy()) << "of another recording";
+}
+
+TEST(SurveyStudy, ThatFailsIsRememberedWithItsReasonAndNotTriedAgain) {
+  const auto recording = std::make_shared<const Recording>();
+  const auto first = inspection_of(recording, 8), second = inspection_of(recording, 6);
+  std::atomic<int> tried = 0;
+  Survey survey({}, [&](const Inspection&, const std::stop_token&) {
+    ++tried;
+    throw InputError("no frame has enough tracks");
+    return std::shared_ptr<const NormalStudy>();
+  });
+  survey.open(recording);
+  survey.study(first);
+  settle(survey);
+  ASSERT_NE(survey.latest_study(), nullptr);
+  EXPECT_EQ(survey.latest_study()->window, first->window);
+  EXPECT_EQ(survey.latest_study()->error, "no frame has enough tracks");
+  survey.study(first);
+  EXPECT_FALSE(survey.status().busy()) << "it would fail again";
+  EXPECT_EQ(tried, 1);
+  survey.study(second);
+  settle(survey);
+  EXPECT_EQ(survey.latest_study()->window, second->window);
+  EXPECT_EQ(tried, 2);
 }
 
 }  // namespace

@@ -131,6 +131,20 @@ TEST_F(WorkerTest, CancelEndsTheRunningRequestAndKeepsTheLastResult) {
   EXPECT_THAT(worker.status().error, IsEmpty());
 }
 
+TEST_F(WorkerTest, CancelForgetsTheStageOfWhatRan) {
+  Worker worker(opener());
+  open_and_wait(worker);
+  hold_ = true;
+  worker.request(start_at(41));
+  begun_.acquire();
+  ASSERT_EQ(worker.status().stage, "tracking");
+  worker.cancel();
+  wait_until_idle(worker);
+  EXPECT_THAT(worker.status().stage, IsEmpty());
+  EXPECT_EQ(worker.status().done, 0);
+  EXPECT_EQ(worker.status().of, 0);
+}
+
 TEST_F(WorkerTest, ReportsTheErrorOfARequestUntilTheNextOne) {
   Worker worker(opener());
   open_and_wait(worker);

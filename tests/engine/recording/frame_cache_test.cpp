@@ -5,7 +5,9 @@
 #include "engine/base/error.h"
 
 #include <atomic>
+#include <future>
 #include <memory>
+#include <semaphore>
 #include <thread>
 #include <vector>
 
@@ -97,6 +99,74 @@ TEST(FrameCache, GivesManyThreadsTheRightPictures) {
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_LE(counted.cache.bytes(), 5 * kPictureBytes);
+}
+
+/// Decodes picture 1 only when it is let go; all others at once.
+struct Held {
+  std::counting_semaphore<> begun{0}, let_go{0};
+  std::atomic<int> decoded = 0;
+  FrameCache cache{100, [this](int index) {
+                     if (index == 1) {
+                       begun.release();
+                       let_go.acquire();
+                     }
+                     ++decoded;
+                     return picture_of(index);
+                   }};
+};
+
+TEST(FrameCache, GivesOthersWhileOneIsDecoded) {
+  Held held;
+  held.cache.bgr(0);
+  std::jthread slow([&] { held.cache.bgr(1); });
+  held.begun.acquire();
+  auto others = std::async(std::launch::async, [&] {
+    return held.cache.bgr(0).at<cv::Vec3b>(0, 0)[0] == 0 &&  // kept
+           held.cache.bgr(2).at<cv::Vec3b>(0, 0)[0] == 2 &&  // decoded beside it
+           !held.cache.find(2).empty() && held.cache.find(1).empty() && held.cache.bytes() > 0;
+  });
+  // Were it held up by the slow one this would never be; the test's own time limit says so then.
+  EXPECT_TRUE(others.get());
+  held.let_go.release();
+}
+
+TEST(FrameCache, DecodesOnceWhatTwoThreadsAskFor) {
+  Held held;
+  {
+    std::jthread first([&] { held.cache.bgr(1); });
+    held.begun.acquire();
+    std::jthread second([&] { held.cache.bgr(1); });
+    held.let_go.release(2);
+  }
+  EXPECT_EQ(held.decoded, 1);
+  EXPECT_FALSE(held.begun.try_acquire());
+}
+
+TEST(FrameCache, FindsOnlyWhatIsKept) {
+  const Counted counted(3 * kPictureBytes);
+  EXPECT_TRUE(counted.cache.find(7).empty());
+  EXPECT_EQ(*counted.decoded, 0);
+  const cv::Mat picture = counted.cache.bgr(7);
+  EXPECT_EQ(counted.cache.find(7).data, picture.data);
+  EXPECT_EQ(*counted.decoded, 1);
+}
+
+TEST(FrameCache, LetsTheNextOneTryWhatFailed) {
+  std::counting_semaphore<> begun{0}, let_go{0};
+  std::atomic<int> calls = 0;
+  const FrameCache cache(3, [&](int index) {
+    begun.release();
+    let_go.acquire();
+    if (++calls == 1) throw InputError("cut");
+    return picture_of(index);
+  });
+  auto first = std::async(std::launch::async, [&] { return cache.bgr(1); });
+  begun.acquire();
+  auto second = std::async(std::launch::async, [&] { return cache.bgr(1); });
+  let_go.release(2);
+  EXPECT_THROW(first.get(), InputError);
+  EXPECT_EQ(second.get().at<cv::Vec3b>(0, 0)[0], 1);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST(FrameCache, ForgetsNothingWhenDecodingFails) {

@@ -7,7 +7,10 @@
 #include "ui/panels/facts/compare_facts.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
+#include "ui/workbench/panes.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -171,7 +174,7 @@ TEST_F(CompareWindow, FlipShowsTheOtherResultInThePictureAndSaysWhose) {
 }
 
 TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
-  state_.panes.drawer = Drawer::table;
+  state_.panes.drawer = find_drawer("table");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
   draw();
   draw();
@@ -200,7 +203,7 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
       state_.surveyed = std::make_shared<const SurveyResults>(results);
     }
   }
-  state_.panes.drawer = Drawer::curves;
+  state_.panes.drawer = find_drawer("curves");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
   draw();
   const float y = layout.drawer.y + layout.drawer.height / 2;
@@ -216,7 +219,7 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
 }
 
 TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
-  state_.panes.drawer = Drawer::curves;
+  state_.panes.drawer = find_drawer("curves");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
   draw();
   const Commands commands = click(layout.drawer.x + 40, layout.drawer.y + 14);
@@ -226,8 +229,8 @@ TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
 
 TEST_F(CompareWindow, IsDrawnAtAnySizeAndWhateverIsThere) {
   state_.panes.compare = true;
-  for (const Drawer drawer : {Drawer::table, Drawer::curves}) {
-    state_.panes.drawer = drawer;
+  for (const char* drawer : {"table", "curves"}) {
+    state_.panes.drawer = find_drawer(drawer);
     for (const char* compared : {"gpo", "gpo,ba,pba", "all"}) {
       run_line(state_, std::string("compare ") + compared);
       for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1920, 1080), cv::Size(64, 48)})

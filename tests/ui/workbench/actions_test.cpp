@@ -1,7 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 
+#include "ui/workbench/adopt.h"
 #include "ui/workbench/setting_text.h"
 
 #include <set>

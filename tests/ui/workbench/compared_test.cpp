@@ -5,7 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/adopt.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

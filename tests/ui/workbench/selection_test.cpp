@@ -4,7 +4,8 @@
 
 #include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/adopt.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <gmock/gmock.h>

@@ -4,7 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/adopt.h"
 #include "ui/workbench/recent_files.h"
 
 #include <cstdlib>
@@ -12,6 +13,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
@@ -83,6 +85,66 @@ TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
   EXPECT_EQ(other.settings, state_.settings);
   EXPECT_EQ(other.selection.focus, 2);
   EXPECT_THAT(other.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
+}
+
+/// As the program wrote it when it kept no table of a session's fields.
+constexpr const char* kOldSession = R"({
+  "kind": "gpo-inspector session",
+  "version": 1,
+  "recording": "/nowhere/desk",
+  "settings": {"start": "3", "frames": "20", "method": "pba", "ransac_threshold_px": "3.5"},
+  "frame": 12,
+  "speed": 2.0,
+  "loop": true,
+  "theme": "light",
+  "view": {"tracks": true, "tails": false, "residuals": true, "cube": false, "truth": true,
+           "uncertainty": 10},
+  "panes": {"side": "normals", "compare": true, "drawer": "timing"},
+  "compared": ["gpo", "ba+no-ransac"],
+  "hidden_curves": ["pba"],
+  "compare_zoom": {"factor": 2.0, "center": [0.25, 0.75]},
+  "cube_side": 0.5,
+  "cube_ray": [0.125, 0.25, 1.0],
+  "picture_zoom": {"factor": 4.0, "center": [0.5, 0.25]},
+  "normals_zoom": {"factor": 2.0, "center": [0.25, -0.125]},
+  "orbit": {"target": [0.0, 0.5, 1.0], "up": [0.0, -1.0, 0.0], "front": [0.0, 0.0, 1.0],
+            "yaw_deg": 33.0, "pitch_deg": 10.0, "distance": 2.5, "view_angle_deg": 30.0},
+  "selection": {"tracks": [2, 5], "focus": 2},
+  "bookmarks": [{"frame": 12, "note": "the cube leans"}]
+})";
+
+TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
+  WorkbenchState other;
+  other.waiting_session = read_session(write(kOldSession));
+  adopt(other, state_.recording);
+  const auto before = nlohmann::ordered_json::parse(kOldSession);
+  const auto after = nlohmann::ordered_json::parse(session_text(other));
+  std::vector<std::string> keys_before, keys_after;
+  for (const auto& [key, value] : before.items()) {
+    keys_before.push_back(key);
+    if (key != "recording" && key != "settings") {
+      EXPECT_EQ(after.at(key), value) << key;
+    }
+  }
+  for (const auto& [key, value] : after.items()) keys_after.push_back(key);
+  EXPECT_EQ(keys_after, keys_before);
+  for (const auto& [key, value] : before.at("settings").items())
+    EXPECT_EQ(after.at("settings").at(key), value) << key;
+  EXPECT_EQ(other.panes.drawer, find_drawer("timing"));
+  EXPECT_EQ(other.view.uncertainty, 10);
+}
+
+TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
+  const SavedSession session =
+      read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
+                             "orbit": null, "view": {"tails": false}, "panes": {}})"));
+  const WorkbenchState fresh;
+  EXPECT_EQ(session.state->speed, 2);
+  EXPECT_FALSE(session.state->view.tails);
+  EXPECT_EQ(session.state->view.cube, fresh.view.cube);
+  EXPECT_EQ(session.state->panes, fresh.panes);
+  EXPECT_EQ(session.state->settings, fresh.settings);
+  EXPECT_FALSE(session.state->orbit);
 }
 
 TEST_F(SessionFile, FindsARecordingThatMovedTogetherWithIt) {

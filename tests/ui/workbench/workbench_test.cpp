@@ -1,9 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/workbench.h"
-
 #include "engine/initializers/methods.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/adopt.h"
+#include "ui/workbench/playing.h"
+#include "ui/workbench/state.h"
+#include "ui/workbench/window_span.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

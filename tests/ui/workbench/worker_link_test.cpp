@@ -4,8 +4,10 @@
 
 #include "engine/base/error.h"
 #include "tests/engine/test_folder.h"
+#include "ui/workbench/actions/apply.h"
 #include "ui/workbench/recent_files.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
@@ -131,6 +133,31 @@ TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
   EXPECT_EQ(state_.recording->name, "desk");
   EXPECT_EQ(link_.worker.error, "bad: no such folder");
   ASSERT_NE(state_.inspection, nullptr);
+}
+
+TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
+  std::atomic<int> tried = 0;
+  Survey survey({}, [&](const Inspection&, const std::stop_token&) {
+    ++tried;
+    throw InputError("no frame has enough tracks");
+    return std::shared_ptr<const NormalStudy>();
+  });
+  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, "example"); };
+  apply(state_, OpenPath{"desk"});
+  do {
+    turn();
+  } while (link_.busy() || !state_.inspection);
+  apply(state_, RunAction{"view candidates"});
+  do {
+    turn();
+  } while (!state_.study);
+  for (int i = 0; i < 5; ++i) turn();
+  EXPECT_FALSE(link_.busy());
+  EXPECT_EQ(tried, 1);
+  const auto says_so = [](const LogLine& line) {
+    return line.severity == Severity::error && line.text.ends_with("no frame has enough tracks");
+  };
+  EXPECT_EQ(std::ranges::count_if(state_.log, says_so), 1);
 }
 
 TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {

@@ -6,6 +6,7 @@
 #include "ui/panels/widgets.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gpo {
 
@@ -31,6 +32,17 @@ ChartItem chart_item(const std::string& name,
   draw_chart_cursor(list, item.to, *item.hovered, palette::kTextDim);
   show_tooltip(values);
   return item;
+}
+
+void drag_frame(const ChartItem& item,
+                const WorkbenchState& state,
+                int zero,
+                std::uint32_t rgb,
+                Commands& commands) {
+  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, state.frame - zero, rgb);
+  if (!item.held || !item.hovered) return;
+  const int frame = zero + static_cast<int>(std::lround(*item.hovered));
+  if (frame != state.frame) push(commands, GoToFrame{frame});
 }
 
 }  // namespace gpo

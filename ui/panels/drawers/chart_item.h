@@ -5,6 +5,7 @@
 #include "ui/panels/panels.h"
 #include "ui/views/charts/chart_view.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -24,5 +25,13 @@ ChartItem chart_item(const std::string& name,
                      Views& views,
                      const Chart& chart,
                      bool legend = true);
+
+/// A line at the current frame that the mouse drags to another one. `zero`: the frame (counts in
+/// the recording) at 0 of the x axis, of which each frame takes 1.
+void drag_frame(const ChartItem& item,
+                const WorkbenchState& state,
+                int zero,
+                std::uint32_t rgb,
+                Commands& commands);
 
 }  // namespace gpo

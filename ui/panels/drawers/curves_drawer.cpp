@@ -3,7 +3,7 @@
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
 #include <algorithm>
@@ -84,9 +84,6 @@ float draw_names(const PanelInput& input,
   return y + height;
 }
 
-/// The window's length that ends at the current frame.
-int length_at(const WorkbenchState& state) { return state.frame - state.settings.start + 1; }
-
 void draw_chart(const PanelInput& input,
                 const Rectangle& place,
                 const Chart& chart,
@@ -95,11 +92,8 @@ void draw_chart(const PanelInput& input,
   const WorkbenchState& state = input.state;
   const ChartItem item = chart_item("curves " + chart.y_label, place, views, chart, false);
   if (!state.recording) return;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_chart_cursor(list, item.to, length_at(state), palette::kText);
-  if (!item.held || !item.hovered) return;
-  const int frame = state.settings.start + static_cast<int>(std::lround(*item.hovered)) - 1;
-  if (frame != state.frame) push(commands, GoToFrame{frame});
+  // Over the length of the window that ends at the frame.
+  drag_frame(item, state, state.settings.start - 1, palette::kText, commands);
 }
 
 std::string why_empty(const WorkbenchState& state, const CurveFacts& facts) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/tracks_in_view.h"
 
@@ -11,14 +11,13 @@
 namespace gpo {
 namespace {
 
-/// The one that the mouse rests on, wherever, else the one that was picked last.
-std::optional<TrackLife> focused_track(const PanelInput& input) {
+/// The one that the mouse rests on, wherever, else the one that was picked last; null: none.
+const TrackLife* focused_track(const PanelInput& input, Views& views) {
   const WorkbenchState& state = input.state;
   const auto& focus = state.hover.track ? state.hover.track : state.selection.focus;
-  if (!focus) return std::nullopt;
+  if (!focus) return nullptr;
   const auto column = column_of(*input.inspection()->tracks, *focus);
-  if (!column) return std::nullopt;
-  return track_life(*input.inspection(), *column);
+  return column ? &views.lives.of(*input.inspection(), *column) : nullptr;
 }
 
 /// Computes them once an inspection.
@@ -35,13 +34,9 @@ void draw_rms(const PanelInput& input,
               const WindowResiduals& residuals,
               Views& views,
               Commands& commands) {
-  const auto track = focused_track(input);
-  const Chart chart = rms_chart(residuals, *input.inspection(), track ? &*track : nullptr);
+  const Chart chart = rms_chart(residuals, *input.inspection(), focused_track(input, views));
   const ChartItem item = chart_item("rms over frames", place, views, chart);
-  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, input.state.frame, palette::kAccent);
-  if (!item.held || !item.hovered) return;
-  const int frame = static_cast<int>(std::lround(*item.hovered));
-  if (frame != input.state.frame) push(commands, GoToFrame{frame});
+  drag_frame(item, input.state, 0, palette::kAccent, commands);
 }
 
 }  // namespace

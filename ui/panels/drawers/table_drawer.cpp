@@ -4,7 +4,7 @@
 #include "ui/look/palette.h"
 #include "ui/look/verdict_look.h"
 #include "ui/panels/facts/compare_facts.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 

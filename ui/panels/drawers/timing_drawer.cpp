@@ -3,7 +3,7 @@
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/look/palette.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/shown_results.h"

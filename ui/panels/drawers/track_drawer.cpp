@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
-#include "engine/inspection/track_life.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_picture.h"
 #include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/tracks_in_view.h"
@@ -104,41 +102,35 @@ void draw_plot(const PanelInput& input,
                Views& views,
                Commands& commands) {
   const ChartItem item = chart_item("track life", place, views, life_chart(life));
-  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, input.state.frame, palette::kAccent);
-  if (!item.held || !item.hovered) return;
-  const int frame = static_cast<int>(std::lround(*item.hovered));
-  if (frame != input.state.frame) push(commands, GoToFrame{frame});
+  drag_frame(item, input.state, 0, palette::kAccent, commands);
 }
 
 /// The surroundings of a place of a picture, enlarged; its middle is the place, to a part of a
-/// pixel. Empty where there is no picture.
-cv::Mat patch_at(const Recording& recording, int frame, const Eigen::Vector2d& raw_px) {
+/// pixel.
+cv::Mat patch_at(const cv::Mat& picture, const Eigen::Vector2d& raw_px) {
   cv::Mat patch;
-  if (!recording.pictures) return patch;
-  try {
-    cv::getRectSubPix(recording.pictures->bgr(frame),
-                      {kPatch_px, kPatch_px},
-                      cv::Point2f(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y())),
-                      patch);
-  } catch (const InputError&) {
-    return {};  // the picture's own panel says why
-  }
+  cv::getRectSubPix(picture,
+                    {kPatch_px, kPatch_px},
+                    cv::Point2f(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y())),
+                    patch);
   cv::resize(patch, patch, {}, kMagnification, kMagnification, cv::INTER_NEAREST);
   return patch;
 }
 
-/// Brings the place into the texture, where it is not there yet.
-void update(Patch& patch,
-            const std::shared_ptr<const Recording>& recording,
-            const TrackFrame& frame) {
-  if (patch.recording == recording && patch.frame == frame.frame && patch.middle_px == frame.raw_px)
-    return;
-  patch.recording = recording;
+/// Brings the place into the texture, where it is not there yet. Until its picture is there the
+/// last one stays. Where there is none, the picture's own panel says why.
+void update(Patch& patch, const PanelInput& input, const TrackFrame& frame) {
+  const auto& recording = input.state.recording;
+  const bool another = patch.recording != recording;
+  if (!another && patch.frame == frame.frame && patch.middle_px == frame.raw_px) return;
+  const FetchedPicture picture =
+      recording->pictures ? picture_of(input, frame.frame) : FetchedPicture{};
+  if (picture.waiting && !another) return;
+  patch.recording = picture.waiting ? nullptr : recording;
   patch.frame = frame.frame;
   patch.middle_px = frame.raw_px;
-  const cv::Mat picture = patch_at(*recording, frame.frame, frame.raw_px);
-  patch.empty = picture.empty();
-  if (!patch.empty) patch.texture.upload(picture);
+  patch.empty = picture.bgr.empty();
+  if (!patch.empty) patch.texture.upload(patch_at(picture.bgr, frame.raw_px));
 }
 
 void draw_patch(const Patch& patch, const char* what, float scale) {
@@ -166,8 +158,8 @@ void draw_patches(const PanelInput& input, const TrackLife& life, Views& views) 
   const TrackFrame* now = &life.frames.front();
   for (const TrackFrame& frame : life.frames)
     if (frame.frame <= input.state.frame) now = &frame;
-  update(views.patches[0], input.state.recording, life.frames.front());
-  update(views.patches[1], input.state.recording, *now);
+  update(views.patches[0], input, life.frames.front());
+  update(views.patches[1], input, *now);
   draw_patch(views.patches[0], "First", input.scale);
   ImGui::SameLine();
   draw_patch(views.patches[1], "Now", input.scale);
@@ -186,7 +178,7 @@ void track_drawer(const PanelInput& input,
     return draw_empty(place,
                       "Click a track in the picture or a point in the scene: its whole life "
                       "appears here. Ctrl+click picks several, Shift+drag all in a rectangle");
-  const TrackLife life = track_life(*inspection, *column);
+  const TrackLife& life = views.lives.of(*inspection, *column);
   if (life.frames.empty()) return draw_empty(place, "The track is not seen in this window");
   const float s = input.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});

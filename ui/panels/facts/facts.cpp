@@ -6,6 +6,7 @@
 #include "engine/initializers/methods.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/window/timestamps.h"
+#include "ui/look/numbers.h"
 #include "ui/panels/facts/uncertainty_facts.h"
 
 #include <algorithm>
@@ -162,10 +163,6 @@ double rate_at_start_hz(std::span<const std::int64_t> timestamps_ns) {
 }
 
 }  // namespace
-
-ResultRow dash(std::string label, std::string why) {
-  return {std::move(label), "\u2013", "", std::move(why), Tone::dim};
-}
 
 std::vector<std::string> recording_facts(const Recording& recording) {
   std::vector<std::string> facts = {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/numbers.h"
+#include "ui/panels/facts/result_row.h"
 
 #include <string>
 #include <vector>
@@ -20,25 +20,6 @@ std::string why_no_rotations(const Recording& recording, RotationSource source);
 /// Why a setting (a key of `visit_settings`) changes nothing beside the others, in one line; empty
 /// where it does.
 std::string why_idle(const Settings& settings, const std::string& key);
-
-enum class Tone { plain, good, bad, dim };
-
-/// One row of the results: what, how much with its unit, and an explanation. A value that is not
-/// known is a dash, and the explanation says why.
-struct ResultRow {
-  std::string label;
-  std::string value;
-  std::string note;  ///< beside the value, dim: the bound
-  std::string tooltip;
-  Tone tone = Tone::plain;
-};
-/// The row of a value that is not known.
-ResultRow dash(std::string label, std::string why);
-
-struct ResultGroup {
-  std::string title;
-  std::vector<ResultRow> rows;
-};
 
 /// The results of an inspection, or of none (null). Without `timings` the milliseconds are dashes.
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings);

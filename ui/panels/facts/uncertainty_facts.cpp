@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/uncertainty_facts.h"
 
+#include "ui/look/numbers.h"
 #include "ui/look/verdict_look.h"
 
 #include <cmath>

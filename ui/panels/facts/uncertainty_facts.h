@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/panels/facts/facts.h"
+#include "engine/inspection/inspection.h"
+#include "ui/panels/facts/result_row.h"
 
 #include <string>
 

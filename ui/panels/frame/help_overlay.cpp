@@ -4,7 +4,7 @@
 #include "ui/look/palette.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <array>
 #include <cmath>

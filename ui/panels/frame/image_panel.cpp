@@ -3,9 +3,9 @@
 #include "engine/base/error.h"
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
-#include "ui/panels/facts/track_tooltip.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/panes/view_options.h"
+#include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_view.h"
@@ -23,6 +23,7 @@ using Eigen::Vector2d;
 /// The picture on the screen, and where the mouse is.
 struct Pointer {
   const WorkbenchState& state;
+  int frame;  ///< that is drawn
   ScreenRect rect;
   PictureMapping mapping;
   float scale;
@@ -34,7 +35,7 @@ struct Pointer {
     if (!state.inspection || !ImGui::IsItemHovered() || !state.view.tracks) return std::nullopt;
     const Inspection& inspection = *state.inspection;
     const auto column =
-        track_at(inspection, state.frame - inspection.window->start, mapping, at, 10 * scale);
+        track_at(inspection, frame - inspection.window->start, mapping, at, 10 * scale);
     return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
   }
 };
@@ -87,7 +88,7 @@ void move_cube(const Pointer& pointer, Commands& commands) {
   const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
   if (!clicked || !state.inspection || !state.inspection->initialization->ok) return;
   const auto ray =
-      reference_ray(*state.inspection, state.frame, to_picture(pointer.mapping, pointer.at));
+      reference_ray(*state.inspection, pointer.frame, to_picture(pointer.mapping, pointer.at));
   if (ray) push(commands, MoveCube{ray});
 }
 
@@ -95,29 +96,31 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("picture", place, {0, 0});
   const WorkbenchState& state = input.state;
-  update_picture(state, views);
+  const int frame = update_picture(input, views);
   ImGui::InvisibleButton("view",
                          {place.width, place.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                              ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Pointer pointer{
-      state, rect, map_picture(state.recording->camera, rect, state.picture_zoom), input.scale};
+  const Pointer pointer{state,
+                        frame,
+                        rect,
+                        map_picture(state.recording->camera, rect, state.picture_zoom),
+                        input.scale};
   zoom_and_pan(pointer, commands);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
   select(pointer, track, commands);
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const bool shown = state.recording->pictures && views.picture_error.empty();
   const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
   ImageViewOptions options = image_options(state, input.inspection());
   options.legend = options.legend && room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
                   input.inspection() ? *input.inspection() : waiting,
-                  state.frame,
-                  shown ? &views.picture : nullptr,
+                  frame,
+                  shown_picture(views),
                   state.picture_zoom,
                   options);
   if (input.inspection()) {
@@ -125,12 +128,12 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
     draw_highlight_in_picture(list,
                               rect,
                               inspection,
-                              state.frame - inspection.window->start,
+                              frame - inspection.window->start,
                               pointer.mapping,
                               highlight_of(state));
   }
   draw_rectangle(pointer, list);
-  if (track) track_tooltip(input, *track);
+  if (track) track_tooltip(input, views, *track);
   if (!views.picture_error.empty()) {
     draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
   }
@@ -138,24 +141,14 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
 
 }  // namespace
 
-void update_picture(const WorkbenchState& state, Views& views) {
-  if (views.recording == state.recording && views.frame == state.frame) return;
-  views.recording = state.recording;
-  views.frame = state.frame;
-  views.picture_error.clear();
-  if (!state.recording->pictures) return;
-  try {
-    views.picture.upload(state.recording->pictures->bgr(state.frame));
-  } catch (const InputError& error) {
-    views.picture_error = error.what();
-  }
-}
-
 void image_panel(const PanelInput& own, const Rectangle& place, Views& views, Commands& commands) {
   const auto other = flipped_result(own.state);
   if (!other) return draw_panel(own, place, views, commands);
   const WorkbenchState state = showing(own.state, *other);
-  draw_panel({state, own.worker, own.survey, own.timings, own.scale}, place, views, commands);
+  draw_panel({state, own.worker, own.survey, own.timings, own.scale, own.writing, own.fetcher},
+             place,
+             views,
+             commands);
   const PanelScope panel("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
 }

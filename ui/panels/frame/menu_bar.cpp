@@ -5,7 +5,7 @@
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 
 namespace gpo {
 namespace {

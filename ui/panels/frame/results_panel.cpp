@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
+#include "ui/look/numbers.h"
 #include "ui/look/palette.h"
 #include "ui/look/verdict_look.h"
 #include "ui/panels/facts/facts.h"

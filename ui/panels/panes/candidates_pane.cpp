@@ -3,7 +3,8 @@
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
 #include "ui/panels/facts/candidate_facts.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/facts/study_facts.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 
@@ -79,10 +80,10 @@ void candidates_pane(const PanelInput& input,
   if (!input.inspection())
     return draw_empty(place,
                       "The readings of the frame's homography appear when the window is computed");
-  if (!state.study || state.study->window != state.inspection->window)
-    return draw_empty(place, "Reading the homographies of all frames \u2026");
+  std::string why = why_no_study(state, "Reading the homographies of all frames \u2026");
+  if (!why.empty()) return draw_empty(place, why);
   const int frame = state.frame - state.study->window->start;
-  const std::string why = why_no_candidates(*state.study, frame);
+  why = why_no_candidates(*state.study, frame);
   if (!why.empty()) return draw_empty(place, why);
   const std::vector<HomographyCandidate>& candidates = state.study->candidates[frame];
   const float s = input.scale, inset = 12 * s;

@@ -96,8 +96,10 @@ ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawL
   return {{place.x, place.y + height}, {place.width, place.height - height}};
 }
 
-/// The columns, where they are less high than a person can use, within what can be scrolled.
+/// The columns of a frame, where they are less high than a person can use, within what can be
+/// scrolled.
 void draw_columns(const PanelInput& input,
+                  int frame,
                   const ScreenRect& visible,
                   Views& views,
                   Commands& commands) {
@@ -113,18 +115,11 @@ void draw_columns(const PanelInput& input,
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
   const CompareOptions options = compare_options(state);
-  const bool shown = state.recording->pictures && views.picture_error.empty();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_compare_view(list,
-                    rect,
-                    columns,
-                    *state.recording,
-                    state.frame,
-                    shown ? &views.picture : nullptr,
-                    options);
+  draw_compare_view(list, rect, columns, *state.recording, frame, shown_picture(views), options);
   const auto places = compare_places(rect, count, options.top_line);
   const PictureZoom zoom =
-      compare_zoom(columns, *state.recording, state.frame, places.front().picture.size, options);
+      compare_zoom(columns, *state.recording, frame, places.front().picture.size, options);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::string name = key_of(results[i].configuration);
     choose_by_heading(input, places[i], results[i], name, commands);
@@ -148,7 +143,7 @@ void compare_panel(const PanelInput& input,
   const PanelScope panel("compare", place, {0, 0});
   const WorkbenchState& state = input.state;
   if (!state.recording) return draw_empty(place, "Open a recording to compare methods on it");
-  update_picture(state, views);
+  const int frame = update_picture(input, views);
   const float chips = compare_chips(input, place, commands);
   const Rectangle below{place.x, place.y + chips, place.width, place.height - chips};
   const ScreenRect rest = draw_caption(input, below, *ImGui::GetWindowDrawList());
@@ -159,7 +154,7 @@ void compare_panel(const PanelInput& input,
                     {visible.width, std::max(1.0F, visible.height)},
                     false,
                     ImGuiWindowFlags_NoScrollWithMouse);
-  draw_columns(input, rest, views, commands);
+  draw_columns(input, frame, rest, views, commands);
   ImGui::EndChild();
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/panes.h"
+#include "ui/panels/facts/study_facts.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/shown_results.h"
@@ -42,8 +43,8 @@ void normals_pane(const PanelInput& input,
   const WorkbenchState& state = input.state;
   if (!input.inspection())
     return draw_empty(place, "The sphere of normals appears when the window is computed");
-  if (!state.study || state.study->window != state.inspection->window)
-    return draw_empty(place, "Computing what a plane of each normal costs \u2026");
+  const std::string why = why_no_study(state, "Computing what a plane of each normal costs \u2026");
+  if (!why.empty()) return draw_empty(place, why);
   ImGui::InvisibleButton("normals", {place.width, place.height});
   const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
   const ScreenRect inner = disc_rect(rect);

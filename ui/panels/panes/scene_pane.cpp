@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/panels/facts/track_tooltip.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/panes/view_options.h"
+#include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/track_highlight.h"
@@ -96,7 +96,7 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
                           state.frame - inspection.window->start,
                           camera,
                           highlight_of(state));
-  if (hover.track) track_tooltip(input, *hover.track);
+  if (hover.track) track_tooltip(input, views, *hover.track);
   if (hover.camera) camera_tooltip(input, *hover.camera);
 }
 

@@ -4,7 +4,7 @@
 #include "ui/look/numbers.h"
 #include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
-#include "ui/panels/panes.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/charts/solver_charts.h"
 #include "ui/views/overlay/overlay.h"

@@ -9,7 +9,7 @@
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <vector>
 

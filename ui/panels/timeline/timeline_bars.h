@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/panels/timeline/time_axis.h"
-#include "ui/workbench/workbench.h"
+#include "ui/workbench/state.h"
 
 #include <span>
 

@@ -7,7 +7,8 @@
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/window_span.h"
 
 #include <algorithm>
 #include <array>
@@ -61,7 +62,7 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
 }
 
 void icon_button(Icon icon, const char* name, float side, const PanelInput& input, Commands& out) {
-  const Action& action = *find_action(name);
+  const Action& action = action_named(name);
   ImGui::PushID(name);
   ImGui::BeginDisabled(!enabled(action, input.state));
   if (ImGui::Button("##icon", {side, side})) push(out, RunAction{name});

@@ -3,9 +3,9 @@
 #include "engine/base/error.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/undo.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -15,28 +15,20 @@ namespace {
 
 using State = WorkbenchState;
 
-/// `from` becomes the settings, and these become the last of `to`.
-void step_back(State& state, std::vector<Settings>& from, std::vector<Settings>& to) {
-  if (from.empty()) return;
-  to.push_back(std::exchange(state.settings, from.back()));
-  from.pop_back();
-  state.dragging_settings = false;
-}
-
 void add_undo(std::vector<Action>& table) {
   Action undo = plain("undo",
                       "Undo",
                       "Edit",
                       {control('Z')},
                       "Takes back the last change of the settings or of the excluded tracks",
-                      [](State& s) { step_back(s, s.undo, s.redo); });
+                      gpo::undo);
   undo.value = [](const State& s) { return std::to_string(s.undo.size()); };
   Action redo = plain("redo",
                       "Redo",
                       "Edit",
                       {control('Y')},
                       "Makes the change again that was taken back",
-                      [](State& s) { step_back(s, s.redo, s.undo); });
+                      gpo::redo);
   redo.value = [](const State& s) { return std::to_string(s.redo.size()); };
   table.push_back(undo);
   table.push_back(redo);

@@ -177,13 +177,13 @@ void add_file_actions(std::vector<Action>& table) {
             [](State& s) {
               s.wishes.screenshots.push_back({"", "picture"});
             }));
-  Action screenshot{
-      "screenshot",
-      "Save a view as a picture",
-      "File",
-      {},
-      "Writes the window, or one view alone, as a PNG of any size: picture, scene, normals, "
-      "solver, candidates, compare, curves"};
+  Action screenshot{"screenshot",
+                    "Save a view as a picture",
+                    "File",
+                    {},
+                    "Writes the window, or one view alone, as a PNG of any size: picture, compare"};
+  for (const auto& panes : {side_panes(), drawers()})
+    for (const Pane& pane : panes) screenshot.tooltip += std::string(", ") + pane.key;
   screenshot.arguments = "FILE [VIEW] [WxH]";
   screenshot.needs_recording = false;
   screenshot.run = take_screenshot;

@@ -4,6 +4,7 @@
 #include "engine/initializers/methods.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/setting_text.h"
+#include "ui/workbench/undo.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/action.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/actions/tables.h"
+#include "ui/workbench/playing.h"
+#include "ui/workbench/undo.h"
+#include "ui/workbench/window_span.h"
 
 #include <algorithm>
 #include <tuple>
@@ -21,7 +24,7 @@ auto frame_text(int (*frame)(const State&)) {
 
 void step(State& state, int frames) {
   state.playing = false;
-  apply(state, GoToFrame{state.frame + frames});
+  go_to_frame(state, state.frame + frames);
 }
 
 void play(State& state) {
@@ -108,7 +111,7 @@ void add_bookmarks(std::vector<Action>& table) {
                         "Goes to the next marked frame",
                         [](State& s) {
                           const auto next = bookmark_from(s, s.frame + 1);
-                          if (next != s.bookmarks.end()) apply(s, GoToFrame{next->frame});
+                          if (next != s.bookmarks.end()) go_to_frame(s, next->frame);
                         }));
   table.push_back(plain("previous-bookmark",
                         "Previous bookmark",
@@ -117,8 +120,7 @@ void add_bookmarks(std::vector<Action>& table) {
                         "Goes to the marked frame before",
                         [](State& s) {
                           const auto next = bookmark_from(s, s.frame);
-                          if (next != s.bookmarks.begin())
-                            apply(s, GoToFrame{std::prev(next)->frame});
+                          if (next != s.bookmarks.begin()) go_to_frame(s, std::prev(next)->frame);
                         }));
 }
 
@@ -152,7 +154,7 @@ void add_steps(std::vector<Action>& table) {
   frame.run = [](State& s, const Arguments& arguments) {
     expect_count("frame", arguments, 1, 1);
     s.playing = false;
-    apply(s, GoToFrame{whole_number_in("frame", arguments)});
+    go_to_frame(s, whole_number_in("frame", arguments));
   };
   table.push_back(frame);
 }

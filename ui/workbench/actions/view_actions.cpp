@@ -26,41 +26,16 @@ std::string uncertainty_text(const ViewToggles& view) {
   return view.uncertainty == 1 ? "on" : "off";
 }
 
-Action view_toggle(std::string name,
-                   std::string title,
-                   std::vector<Shortcut> shortcuts,
-                   std::string tooltip,
-                   bool ViewToggles::*member) {
-  return toggle(std::move(name),
-                std::move(title),
-                std::move(shortcuts),
-                std::move(tooltip),
-                [member](State& s) -> bool& { return s.view.*member; });
-}
-
 void add_toggles(std::vector<Action>& table) {
-  table.push_back(view_toggle(
-      "tracks", "Tracks", {}, "Inliers as circles, outliers as crosses", &ViewToggles::tracks));
-  table.push_back(view_toggle("tails",
-                              "Tails",
-                              {letter('T')},
-                              "Where each track came from in the last frames",
-                              &ViewToggles::tails));
-  table.push_back(view_toggle("residuals",
-                              "Residual vectors",
-                              {letter('E')},
-                              "From where a track is seen to where the result puts it, enlarged",
-                              &ViewToggles::residuals));
-  table.push_back(view_toggle("cube",
-                              "Cube",
-                              {letter('B')},
-                              "A cube that stands on the estimated plane",
-                              &ViewToggles::cube));
-  table.push_back(view_toggle("truth",
-                              "Ground truth",
-                              {letter('G')},
-                              "True cameras, plane and cube in gray, where they are known",
-                              &ViewToggles::truth));
+  for (const ViewToggle& one : kViewToggles) {
+    std::vector<Shortcut> shortcuts;
+    if (one.letter != 0) shortcuts.push_back(letter(one.letter));
+    table.push_back(toggle(one.key,
+                           one.title,
+                           std::move(shortcuts),
+                           one.tooltip,
+                           [shown = one.shown](State& s) -> bool& { return s.view.*shown; }));
+  }
   Action uncertainty = plain("uncertainty",
                              "Uncertainty",
                              "View",
@@ -74,57 +49,36 @@ void add_toggles(std::vector<Action>& table) {
   table.push_back(uncertainty);
 }
 
-struct PaneRow {
-  const char* title;
-  const char* tooltip;
-};
-
-constexpr PaneRow kSidePanes[] = {
-    {"Scene", "Cameras, plane, points and cube in 3-D"},
-    {"Normals", "The hemisphere of plane normals: cost, candidates, answers"},
-    {"Solver", "Cost, gradient and step over the iterations"},
-    {"Candidates", "Every reading of the frame's homography, and why it was rejected"}};
-constexpr PaneRow kDrawers[] = {{"Curves", "Errors over the length of the window"},
-                                {"Table", "The compared results in numbers, and their differences"},
-                                {"Residuals", "Histogram, and root mean square frame by frame"},
-                                {"Timing", "Where the time went, stage by stage"},
-                                {"Track", "The whole life of the selected track"},
-                                {"Log", "Every message"}};
+Action open_pane(const Pane& pane,
+                 std::function<void(State&)> open,
+                 std::function<bool(const State&)> is_open) {
+  Action action =
+      plain(std::string("view ") + pane.key, pane.title, "View", {}, pane.tooltip, std::move(open));
+  action.checked = std::move(is_open);
+  action.needs_recording = false;
+  return action;
+}
 
 void add_panes(std::vector<Action>& table) {
-  for (std::size_t i = 0; i < std::size(kSidePanes); ++i) {
-    const auto pane = static_cast<SidePane>(i);
-    Action action = plain(std::string("view ") + to_string(pane),
-                          kSidePanes[i].title,
-                          "View",
-                          {},
-                          kSidePanes[i].tooltip,
-                          [pane](State& s) {
-                            s.panes.side = pane;
-                            s.panes.compare = false;
-                          });
-    action.checked = [pane](const State& s) { return s.panes.side == pane && !s.panes.compare; };
-    action.needs_recording = false;
-    table.push_back(action);
-  }
-  for (std::size_t i = 0; i < std::size(kDrawers); ++i) {
-    const auto drawer = static_cast<Drawer>(i);
-    Action action = plain(std::string("view ") + to_string(drawer),
-                          kDrawers[i].title,
-                          "View",
-                          {},
-                          kDrawers[i].tooltip,
-                          [drawer](State& s) { s.panes.drawer = drawer; });
-    action.checked = [drawer](const State& s) { return s.panes.drawer == drawer; };
-    action.needs_recording = false;
-    table.push_back(action);
-  }
+  for (const Pane& pane : side_panes())
+    table.push_back(open_pane(
+        pane,
+        [&pane](State& s) {
+          s.panes.side = &pane;
+          s.panes.compare = false;
+        },
+        [&pane](const State& s) { return s.panes.side == &pane && !s.panes.compare; }));
+  for (const Pane& pane : drawers())
+    table.push_back(open_pane(
+        pane,
+        [&pane](State& s) { s.panes.drawer = &pane; },
+        [&pane](const State& s) { return s.panes.drawer == &pane; }));
   Action shut = plain("view no-drawer",
                       "Shut the drawer",
                       "View",
                       {},
                       "Picture and side pane take all of the height",
-                      [](State& s) { s.panes.drawer.reset(); });
+                      [](State& s) { s.panes.drawer = nullptr; });
   shut.needs_recording = false;
   table.push_back(shut);
 }

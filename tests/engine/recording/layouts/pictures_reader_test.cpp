@@ -5,6 +5,10 @@
 #include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/test_folder.h"
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -78,6 +82,25 @@ TEST_F(PicturesReader, GivesEveryFrameOfAVideoInWhateverOrder) {
       EXPECT_LE(recording->pictures->bytes(), options.cache_bytes);
     }
   }
+}
+
+TEST_F(PicturesReader, GivesEveryFrameOfAVideoToSeveralThreads) {
+  write_video(folder.path() / "clip.avi");
+  OpenOptions options;
+  options.cache_bytes = 3 * 64 * 48 * 3;
+  const auto recording = open_recording(folder.path(), options);
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (const int step : {1, 7, 37})
+      threads.emplace_back([&, step] {
+        for (int i = 0; i < kVideoFrames; ++i) {
+          const int frame = i * step % kVideoFrames;
+          if (number_of(recording->pictures->bgr(frame)) != frame) ++wrong;
+        }
+      });
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(PicturesReader, RefusesACutVideoWithoutNoise) {

@@ -4,7 +4,10 @@
 
 #include "engine/experiment/row.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/adopt.h"
+#include "ui/workbench/compared.h"
+#include "ui/workbench/panes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,7 +61,7 @@ TEST(CurveFacts, ErrorsOverTheLengthsThatAreComputed) {
 
 TEST(CurveFacts, AllThatIsWantedIsCounted) {
   WorkbenchState state = state_with({});
-  state.panes.drawer = Drawer::curves;
+  state.panes.drawer = find_drawer("curves");
   EXPECT_EQ(static_cast<std::size_t>(curve_facts(state).of), wanted_inspections(state).size());
 }
 

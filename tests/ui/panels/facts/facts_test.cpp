@@ -4,6 +4,7 @@
 
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
+#include "ui/look/numbers.h"
 
 #include <map>
 

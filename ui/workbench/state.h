@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inspection/normal_study.h"
 #include "engine/inspection/settings.h"
 #include "engine/inspection/survey.h"
 #include "engine/recording/recording.h"
@@ -12,12 +13,12 @@
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 #include "ui/workbench/time_span.h"
+#include "ui/workbench/view_toggles.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <opencv2/core/types.hpp>
@@ -25,27 +26,6 @@
 namespace gpo {
 
 struct Row;
-
-/// What is drawn into picture and scene.
-struct ViewToggles {
-  bool tracks = true;
-  bool tails = true;
-  bool residuals = false;
-  bool cube = true;
-  bool truth = true;
-  int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
-
-  bool operator==(const ViewToggles&) const = default;
-};
-
-/// Which views are open.
-struct Panes {
-  SidePane side = SidePane::scene;
-  std::optional<Drawer> drawer = std::nullopt;  ///< nothing: shut
-  bool compare = false;  ///< one column a compared configuration, in place of picture and side pane
-
-  bool operator==(const Panes&) const = default;
-};
 
 enum class Severity { note, warning, error };
 
@@ -57,7 +37,7 @@ struct LogLine {
 /// A picture of the window, or of one view alone, on its way to the disk.
 struct Screenshot {
   std::filesystem::path file;         ///< .png; empty: a free name in the current folder
-  std::string view = "window";        ///< window | picture | a key of SidePane | compare | curves
+  std::string view = "window";        ///< window | picture | compare | a pane's key
   std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
 };
 
@@ -95,7 +75,7 @@ struct Wishes {
 };
 
 /// What the user has open, chosen and selected. A plain value; it changes in `apply`, `advance` and
-/// `adopt` alone.
+/// `adopt` alone. A field that sessions keep has its row in session_fields.cpp.
 struct WorkbenchState {
   std::shared_ptr<const Recording> recording;    ///< null: nothing is open
   std::shared_ptr<const Inspection> inspection;  ///< the last one of it; null: none yet
@@ -147,95 +127,5 @@ struct WorkbenchState {
 
 /// Says so in the message line and in the log.
 void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
-
-struct RunAction {
-  std::string line;  ///< a line of a script: an action's name and what it needs, see `run_line`
-};
-struct ChangeSettings {
-  Settings settings;
-  bool dragging = false;  ///< one of many small changes: they are undone together
-};
-struct GoToFrame {
-  int frame;
-};
-struct SetCubeSide {
-  double side;
-};
-/// Puts the cube where the ray of the reference camera meets the plane; nothing: back to its place.
-struct MoveCube {
-  std::optional<Eigen::Vector3d> ray;
-};
-struct ZoomPicture {
-  PictureZoom zoom;
-};
-/// All columns of the comparison; nothing: around the cubes.
-struct ZoomCompare {
-  std::optional<PictureZoom> zoom;
-};
-struct ZoomNormals {
-  NormalsZoom zoom;
-};
-struct OrbitScene {
-  OrbitCamera camera;
-};
-struct FitScene {};
-struct OpenPath {
-  std::filesystem::path path;
-};
-struct HoverOver {
-  Hover hover;
-};
-struct SelectTracks {
-  Selection selection;
-};
-
-/// Everything that a user can do. Panels push commands and change nothing themselves; so keys,
-/// menus, panels and tests take one path.
-using Command = std::variant<RunAction,
-                             ChangeSettings,
-                             GoToFrame,
-                             SetCubeSide,
-                             MoveCube,
-                             ZoomPicture,
-                             ZoomCompare,
-                             ZoomNormals,
-                             OrbitScene,
-                             FitScene,
-                             OpenPath,
-                             HoverOver,
-                             SelectTracks>;
-
-/// What the user did while a frame was drawn, to be applied after it.
-using Commands = std::vector<Command>;
-/// Not `push_back`: inlined, it makes GCC 12 warn of members that are not there.
-void push(Commands& commands, const Command& command);
-
-void apply(WorkbenchState& state, const Command& command);
-
-/// Lets `seconds` pass: plays at the recording's own rate, and stops at its last frame.
-void advance(WorkbenchState& state, double seconds);
-
-/// Until `advance` shows another frame [s]; nothing where it will not.
-std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
-
-/// Takes other settings; the old ones can be had back by `undo`. Those that follow each other while
-/// `dragging` are undone together.
-void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
-
-/// The inspections that the open views ask for beside the current one: every compared configuration
-/// in the current window, and with the curves open at shorter lengths, too.
-std::vector<Settings> wanted_inspections(const WorkbenchState& state);
-
-/// Takes a recording that was opened: fits the window into it and shows the window's last frame.
-void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording);
-
-/// The nearest settings whose window fits into so many frames (at least two).
-Settings fit_window(Settings settings, int frame_count);
-
-/// The window from `frame` on to its old end, or of its old length where it would end before.
-Settings start_window_at(Settings settings, int frame, int frame_count);
-
-/// The window from its old start up to `frame`, or of its old length where it would start after.
-Settings end_window_at(Settings settings, int frame, int frame_count);
 
 }  // namespace gpo

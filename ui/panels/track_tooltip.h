@@ -9,7 +9,7 @@
 namespace gpo {
 
 /// What is known of a track in the current frame, beside the mouse.
-void track_tooltip(const PanelInput& input, std::int64_t track);
+void track_tooltip(const PanelInput& input, Views& views, std::int64_t track);
 
 /// The camera of a frame (counts in the recording).
 void camera_tooltip(const PanelInput& input, int frame);

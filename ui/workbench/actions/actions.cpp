@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions.h"
+#include "ui/workbench/actions/actions.h"
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -58,6 +59,11 @@ const Action* find_action(const std::string& name) {
   const auto table = actions();
   const auto found = std::ranges::find(table, name, &Action::name);
   return found == table.end() ? nullptr : &*found;
+}
+
+const Action& action_named(const std::string& name) {
+  if (const Action* action = find_action(name)) return *action;
+  throw std::logic_error("no action is called " + name);
 }
 
 const Action* action_of_key(int glfw_key, bool shift, bool control) {

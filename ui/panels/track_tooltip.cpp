@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/track_tooltip.h"
+#include "ui/panels/track_tooltip.h"
 
 #include "engine/inspection/track_life.h"
 #include "ui/look/numbers.h"
@@ -28,11 +28,11 @@ std::string frame_text(const TrackLife& life, int frame) {
 
 }  // namespace
 
-void track_tooltip(const PanelInput& input, std::int64_t track) {
+void track_tooltip(const PanelInput& input, Views& views, std::int64_t track) {
   const Inspection* inspection = input.inspection();
   const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
   if (!column) return;
-  const TrackLife life = track_life(*inspection, *column);
+  const TrackLife& life = views.lives.of(*inspection, *column);
   std::string text = fmt::format("track {}\n", track) + frame_text(life, input.state.frame);
   if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
   if (life.inlier_since && life.inlier_until)

@@ -1,0 +1,14 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/state.h"
+
+#include <memory>
+
+namespace gpo {
+
+/// Takes a recording that was opened: fits the window into it and shows the window's last frame.
+void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording);
+
+}  // namespace gpo

@@ -1,0 +1,83 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/settings.h"
+#include "ui/views/normals/normals_disc.h"
+#include "ui/views/picture/image_geometry.h"
+#include "ui/views/scene/orbit_camera.h"
+#include "ui/workbench/selection.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+struct RunAction {
+  std::string line;  ///< a line of a script: an action's name and what it needs, see `run_line`
+};
+struct ChangeSettings {
+  Settings settings;
+  bool dragging = false;  ///< one of many small changes: they are undone together
+};
+struct GoToFrame {
+  int frame;
+};
+struct SetCubeSide {
+  double side;
+};
+/// Puts the cube where the ray of the reference camera meets the plane; nothing: back to its place.
+struct MoveCube {
+  std::optional<Eigen::Vector3d> ray;
+};
+struct ZoomPicture {
+  PictureZoom zoom;
+};
+/// All columns of the comparison; nothing: around the cubes.
+struct ZoomCompare {
+  std::optional<PictureZoom> zoom;
+};
+struct ZoomNormals {
+  NormalsZoom zoom;
+};
+struct OrbitScene {
+  OrbitCamera camera;
+};
+struct FitScene {};
+struct OpenPath {
+  std::filesystem::path path;
+};
+struct HoverOver {
+  Hover hover;
+};
+struct SelectTracks {
+  Selection selection;
+};
+
+/// Everything that a user can do. Panels push commands and change nothing themselves; so keys,
+/// menus, panels and tests take one path: `apply`.
+using Command = std::variant<RunAction,
+                             ChangeSettings,
+                             GoToFrame,
+                             SetCubeSide,
+                             MoveCube,
+                             ZoomPicture,
+                             ZoomCompare,
+                             ZoomNormals,
+                             OrbitScene,
+                             FitScene,
+                             OpenPath,
+                             HoverOver,
+                             SelectTracks>;
+
+/// What the user did while a frame was drawn, to be applied after it.
+using Commands = std::vector<Command>;
+/// Not `push_back`: inlined, it makes GCC 12 warn of members that are not there.
+void push(Commands& commands, const Command& command);
+
+}  // namespace gpo

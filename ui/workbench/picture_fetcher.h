@@ -1,0 +1,58 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/frame_cache.h"
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// A picture of a recording on its way to the screen.
+struct FetchedPicture {
+  cv::Mat bgr;           ///< CV_8UC3, not to be written to; empty: see the others
+  std::string error;     ///< why there is none, one line
+  bool waiting = false;  ///< it is being fetched
+};
+
+/// Here and now: decodes it where it must.
+FetchedPicture fetch_picture(const FrameCache& pictures, int frame);
+
+/// Fetches pictures on a thread of its own, so that drawing waits for no decoder. All functions may
+/// be called from any thread and return at once.
+class PictureFetcher {
+ public:
+  /// `changed` is called on the fetcher's thread when a picture has come.
+  explicit PictureFetcher(std::function<void()> changed = {});
+
+  /// The picture where it is there; else it is asked for, before all that were asked for earlier,
+  /// and of those the earliest are forgotten. Another recording's pictures take the place of all.
+  FetchedPicture get(const std::shared_ptr<const FrameCache>& pictures, int frame);
+
+ private:
+  struct Answer {
+    int frame;
+    FetchedPicture picture;
+  };
+  void run(const std::stop_token& stop);
+
+  std::function<void()> changed_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::shared_ptr<const FrameCache> pictures_;  ///< to which frames count
+  std::deque<int> wanted_;                      ///< the newest first
+  std::optional<int> running_;
+  std::deque<Answer> answers_;  ///< the newest first: the cache may have let go of them
+  std::jthread thread_;         ///< last: it starts when all the others exist
+};
+
+}  // namespace gpo

@@ -1,0 +1,51 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+namespace gpo {
+
+/// What is drawn into picture and scene.
+struct ViewToggles {
+  bool tracks = true;
+  bool tails = true;
+  bool residuals = false;
+  bool cube = true;
+  bool truth = true;
+  int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
+
+  bool operator==(const ViewToggles&) const = default;
+};
+
+/// A switch of `ViewToggles`: the actions and sessions read the table.
+struct ViewToggle {
+  const char* key;    ///< in scripts and sessions
+  const char* title;  ///< for people
+  char letter;        ///< of the keyboard; 0: none
+  bool ViewToggles::*shown;
+  const char* tooltip;  ///< one sentence
+};
+
+inline constexpr std::array kViewToggles = {
+    ViewToggle{
+        "tracks", "Tracks", 0, &ViewToggles::tracks, "Inliers as circles, outliers as crosses"},
+    ViewToggle{"tails",
+               "Tails",
+               'T',
+               &ViewToggles::tails,
+               "Where each track came from in the last frames"},
+    ViewToggle{"residuals",
+               "Residual vectors",
+               'E',
+               &ViewToggles::residuals,
+               "From where a track is seen to where the result puts it, enlarged"},
+    ViewToggle{
+        "cube", "Cube", 'B', &ViewToggles::cube, "A cube that stands on the estimated plane"},
+    ViewToggle{"truth",
+               "Ground truth",
+               'G',
+               &ViewToggles::truth,
+               "True cameras, plane and cube in gray, where they are known"}};
+
+}  // namespace gpo
