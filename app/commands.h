@@ -31,6 +31,7 @@ struct InspectArguments {
   std::optional<std::filesystem::path> tracks;
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
+  std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
 
 /// Opens, says once what is missing (on standard error). Throws InputError.
@@ -76,6 +77,7 @@ struct ViewArguments {
   std::optional<std::filesystem::path> recording;
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
+  std::vector<std::string> given;  ///< keys of the settings that the command line names
   std::optional<std::filesystem::path> session;
   std::optional<std::filesystem::path> script;
 };

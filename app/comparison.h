@@ -16,7 +16,7 @@ namespace gpo {
 struct ComparisonRequest {
   std::optional<std::string> methods;  ///< as `evaluate` reads them; default: the methods' table
   std::optional<std::string> lengths;  ///< of the windows; default: 5 to the window's, by 5
-  Settings window;                     ///< what no configuration chooses
+  Settings window;                     ///< what no configuration names is as here
 };
 
 /// One inspection a configuration, in their order. Throws InputError.

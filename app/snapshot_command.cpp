@@ -69,9 +69,7 @@ Drawn draw_compare(const SnapshotArguments& arguments, const std::optional<cv::S
   for (const auto& inspection : inspections) {
     const Initialization& result = *inspection->initialization;
     drawn.ok |= result.ok;
-    const Settings& settings = inspection->settings;
-    if (!result.ok)
-      tell_failure(key_of({settings.method, settings.ransac, settings.rotations}), result.reason);
+    if (!result.ok) tell_failure(key_of(configuration_of(inspection->settings)), result.reason);
   }
   return drawn;
 }

@@ -56,7 +56,8 @@ void check_names(const std::vector<ExperimentRecording>& recordings) {
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request) {
   Experiment experiment;
-  experiment.configurations = request.configurations;
+  for (const Configuration& one : request.configurations)
+    experiment.configurations.push_back(configuration_of(apply(one, {})));
   experiment.seed = request.seed;
   int most_frames = 0;
   for (const auto& recording : recordings) {

@@ -36,17 +36,13 @@ constexpr std::array kPaperFigures{
                 [](const Configuration& c) { return is_of(c, MethodFamily::optimization); }},
     PaperFigure{"gpo_ransac",
                 "GPO with and without RANSAC",
-                [](const Configuration& c) {
-                  return c.method == "gpo" && c.rotations == RotationSource::automatic;
-                }},
+                [](const Configuration& c) { return c.method == "gpo" && !c.names("rotations"); }},
     PaperFigure{"rotation_sources",
                 "GPO by the source of its rotations",
-                [](const Configuration& c) { return c.method == "gpo" && !c.ransac; }},
+                [](const Configuration& c) { return c.method == "gpo" && !c.names("ransac"); }},
     PaperFigure{"ba_ransac",
                 "BA with and without RANSAC",
-                [](const Configuration& c) {
-                  return c.method == "ba" && c.rotations == RotationSource::automatic;
-                }},
+                [](const Configuration& c) { return c.method == "ba" && !c.names("rotations"); }},
 };
 
 /// A column of results.csv as an axis.

@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
     Usage,
     RunOnBadInput,
     ::testing::Values(
-        BadInput{"--method gpoo", "unknown method 'gpoo', expected one of gpo"},
+        BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
         BadInput{"--start 60",
                  "--start: frame 60 is not in the recording, which has frames 0 to 59"},
         BadInput{"--start 40",
@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"--frames 1", "--frames"},
         BadInput{"--start -1", "--start"},
         BadInput{"--start abc", "--start"},
-        BadInput{"--rotations gyr", "unknown source 'gyr'"},
+        BadInput{"--rotations gyr", "--rotations: unknown value 'gyr'"},
         BadInput{"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
         BadInput{"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
         BadInput{"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},

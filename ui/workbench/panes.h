@@ -11,7 +11,7 @@ enum class SidePane { scene, normals, solver, candidates };
 
 template <>
 struct ChoiceKeys<SidePane> {
-  static constexpr const char* option = "view";
+  static constexpr const char* name = "view";
   static constexpr std::array keys{"scene", "normals", "solver", "candidates"};
 };
 
@@ -20,7 +20,7 @@ enum class Drawer { curves, table, residuals, timing, track, log };
 
 template <>
 struct ChoiceKeys<Drawer> {
-  static constexpr const char* option = "view";
+  static constexpr const char* name = "view";
   static constexpr std::array keys{"curves", "table", "residuals", "timing", "track", "log"};
 };
 

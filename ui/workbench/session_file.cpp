@@ -6,7 +6,7 @@
 #include "engine/experiment/configuration.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
-#include "ui/workbench/setting_text.h"
+#include "engine/inspection/setting_values.h"
 
 #include <algorithm>
 

@@ -8,6 +8,7 @@
 #include "ui/workbench/session_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace gpo {
@@ -62,14 +63,12 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
                    state.panes.side == SidePane::solver;
   if (!state.recording) return wanted;
   const std::optional<std::string> other = flipped(state);
-  if (!now && other) wanted.push_back(apply(parse_configuration(*other), state.settings));
+  if (!now && other) wanted.push_back(apply(parse_configuration(*other), compared_base(state)));
   if (!now) return wanted;
   const auto want_each = [&](int frames) {
-    for (const std::string& key : state.compared) {
-      Settings settings = apply(parse_configuration(key), state.settings);
-      settings.frames = frames;
-      wanted.push_back(std::move(settings));
-    }
+    Settings window = state.settings;
+    window.frames = frames;
+    std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
   };
   want_each(state.settings.frames);
   // The longest first: its tracks serve the others.
