@@ -44,7 +44,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> true_trajectory;
-  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;  ///< of both
+  std::optional<TrajectoryFormat> trajectory_format;  ///< of both; default: tum
   std::optional<std::filesystem::path> points;
 };
 

@@ -15,13 +15,6 @@
 namespace gpo {
 namespace {
 
-std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
-  if (request.methods) return parse_configurations(*request.methods);
-  std::vector<Configuration> all;
-  for (const Method& method : methods()) all.push_back({.method = method.key});
-  return all;
-}
-
 /// Descending.
 std::vector<int> lengths_of(const ComparisonRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
@@ -36,6 +29,13 @@ std::vector<int> lengths_of(const ComparisonRequest& request) {
 }
 
 }  // namespace
+
+std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
+  if (request.methods) return parse_configurations(*request.methods);
+  std::vector<Configuration> all;
+  for (const Method& method : methods()) all.push_back({.method = method.key});
+  return all;
+}
 
 std::vector<std::shared_ptr<const Inspection>> inspect_each(
     const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request) {
@@ -56,6 +56,7 @@ LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recordin
   for (const Configuration& configuration : configurations)
     plan.configurations.push_back(configuration_of(apply(configuration, window)));
   std::vector<Row> rows;
+  std::vector<std::shared_ptr<const Inspection>> longest;
   Inspector inspector(recording);
   // The longest window first: the Inspector keeps its tracks for the others.
   for (const int length : lengths_of(request)) {
@@ -67,10 +68,11 @@ LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recordin
             "--view curves: {} has no ground truth to measure errors against", recording->name));
       }
       rows.push_back(make_row(*inspection));
+      if (longest.size() < configurations.size()) longest.push_back(inspection);
     }
   }
   std::ranges::reverse(rows);
-  LengthCurves curves{figure_over_length(rows, plan), {}, false};
+  LengthCurves curves{figure_over_length(rows, plan), longest, {}, false};
   curves.figure.title =
       fmt::format("{}: windows from frame {}, by their length", recording->name, window.start);
   for (const Configuration& configuration : plan.configurations) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/experiment/chart.h"
+#include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
 
 #include <memory>
@@ -19,6 +20,9 @@ struct ComparisonRequest {
   Settings window;                     ///< what no configuration names is as here
 };
 
+/// What is compared, in its order. Throws InputError.
+std::vector<Configuration> configurations_of(const ComparisonRequest& request);
+
 /// One inspection a configuration, in their order. Throws InputError.
 std::vector<std::shared_ptr<const Inspection>> inspect_each(
     const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request);
@@ -26,6 +30,7 @@ std::vector<std::shared_ptr<const Inspection>> inspect_each(
 /// The errors over the length of windows from one start.
 struct LengthCurves {
   Figure figure;
+  std::vector<std::shared_ptr<const Inspection>> longest;  ///< of the longest window
   std::vector<std::string> failures;  ///< a line for each configuration that solved no window
   bool any_ok = false;
 };

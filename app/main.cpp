@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/setting_options.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/setting_values.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -21,61 +21,12 @@
 namespace gpo {
 namespace {
 
-/// A setting's key as an option: "--ransac-threshold-px".
-std::string option_name(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return c == '_' || c == ' '; }, '-');
-  return "--" + name;
-}
-
 template <Choice E>
-void add_choice(CLI::App& command, const std::string& name, const std::string& help, E& value) {
+void add_choice(CLI::App& command, const std::string& name, const std::string& help, auto& value) {
   command.add_option_function<std::string>(
       name,
       [&value](const std::string& key) { value = choice<E>(key); },
       help + fmt::format(": {}", fmt::join(ChoiceKeys<E>::keys, ", ")));
-}
-
-std::string help_of(const Setting& setting) {
-  std::vector<std::string> keys;
-  for (const SettingChoice& one : setting.choices) keys.push_back(one.key);
-  return setting.help + (setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit)) +
-         (keys.empty() ? "" : fmt::format(": {}", fmt::join(keys, ", ")));
-}
-
-/// One option a setting. `given` receives the keys of those that are given.
-void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
-  for (const Setting& setting : settings_table()) {
-    const std::string name = option_name(setting.key);
-    const std::string help = help_of(setting);
-    const auto take = [&settings, &given, key = setting.key](const std::string& text) {
-      settings = with_setting(std::move(settings), key, text);
-      given.push_back(key);
-    };
-    if (setting.kind == SettingKind::on_off) {
-      CLI::Option* on = command.add_flag_callback(
-          name, [take] { take("on"); }, help);
-      command
-          .add_flag_callback(
-              "--no-" + name.substr(2), [take] { take("off"); }, "Off: " + help)
-          ->excludes(on);
-    } else if (setting.kind == SettingKind::ids) {
-      command
-          .add_option_function<std::vector<std::string>>(
-              name,
-              [take](const std::vector<std::string>& ids) {
-                take(fmt::format("{}", fmt::join(ids, ",")));
-              },
-              help)
-          ->delimiter(',');
-    } else {
-      const std::string normal = setting_text(settings, setting.key);
-      const bool number = setting.choices.empty();
-      command.add_option_function<std::string>(name, take, help)
-          ->default_str(setting.optional ? "" : normal)
-          ->type_name(number ? fmt::format("{:g}..{:g}", setting.least, setting.most) : "KEY");
-    }
-  }
 }
 
 void add_cache(CLI::App& command, std::size_t& mib) {

@@ -183,6 +183,22 @@ TEST(Run, LeavesOutTracksByTheirIds) {
 
 class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
+TEST(Run, SaysWhatIsNotUsed) {
+  const fs::path file = fresh_folder() / "result.json";
+  const Outcome outcome =
+      program("run " + desk().string() +
+              " --frames 12 --method ba --loss huber --seed 2 --trajectory-format euroc --json " +
+              file.string());
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "--loss is not used. Only gpo_joint lets one choose this\n"
+            "--trajectory-format is not used. No trajectory is written\n");
+  const json j = json::parse(read_file(file));
+  EXPECT_EQ(j["unused_settings"],
+            json::parse(R"(["solver", "error", "loss", "shutter", "time_offset"])"));
+  EXPECT_EQ(run_json(desk().string() + " --method gpo_joint")["unused_settings"], json::array());
+}
+
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
   const Outcome outcome = program("run " + desk().string() + " " + GetParam().arguments +

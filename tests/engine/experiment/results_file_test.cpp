@@ -3,6 +3,7 @@
 #include "engine/experiment/results_file.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
