@@ -235,7 +235,7 @@ std::vector<std::string> setting_keys() {
   return keys;
 }
 
-const Setting& find_setting(const std::string& key) {
+const Setting& find_setting(std::string_view key) {
   const auto found = std::ranges::find(settings_table(), key, &Setting::key);
   if (found != settings_table().end()) return *found;
   throw InputError(fmt::format(

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -69,6 +70,6 @@ struct Setting {
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
 /// Throws InputError that names the known ones.
-const Setting& find_setting(const std::string& key);
+const Setting& find_setting(std::string_view key);
 
 }  // namespace gpo
