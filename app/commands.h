@@ -31,6 +31,7 @@ struct InspectArguments {
   std::optional<std::filesystem::path> tracks;
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
+  std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
 
 /// Opens, says once what is missing (on standard error). Throws InputError.
@@ -43,7 +44,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> true_trajectory;
-  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;  ///< of both
+  std::optional<TrajectoryFormat> trajectory_format;  ///< of both; default: tum
   std::optional<std::filesystem::path> points;
 };
 
@@ -79,6 +80,7 @@ struct ViewArguments {
   std::optional<std::filesystem::path> recording;
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
+  std::vector<std::string> given;  ///< keys of the settings that the command line names
   std::optional<std::filesystem::path> session;
   std::optional<std::filesystem::path> script;
 };

@@ -6,7 +6,6 @@
 #include "engine/experiment/figures.h"
 #include "engine/experiment/ranges.h"
 #include "engine/experiment/summary.h"
-#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 
@@ -16,26 +15,6 @@
 
 namespace gpo {
 namespace {
-
-std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
-  if (request.methods) return parse_configurations(*request.methods);
-  std::vector<Configuration> all;
-  for (const Method& method : methods()) all.push_back({.method = method.key});
-  return all;
-}
-
-/// What a configuration leaves open is as in `window`.
-Settings settings_of(const Configuration& configuration, const Settings& window) {
-  Settings settings = window;
-  settings.method = configuration.method;
-  if (configuration.ransac) settings.ransac = configuration.ransac;
-  if (configuration.rotations != RotationSource::automatic)
-    settings.rotations = configuration.rotations;
-  if (configuration.tracking != Tracking::frame_to_frame)
-    settings.tracking = configuration.tracking;
-  if (configuration.inliers) settings.inliers = configuration.inliers;
-  return settings;
-}
 
 /// Descending.
 std::vector<int> lengths_of(const ComparisonRequest& request) {
@@ -52,35 +31,49 @@ std::vector<int> lengths_of(const ComparisonRequest& request) {
 
 }  // namespace
 
+std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
+  if (request.methods) return parse_configurations(*request.methods);
+  std::vector<Configuration> all;
+  for (const Method& method : methods()) all.push_back({.method = method.key});
+  return all;
+}
+
 std::vector<std::shared_ptr<const Inspection>> inspect_each(
     const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request) {
   Inspector inspector(recording);
+  const std::vector<Configuration> configurations = configurations_of(request);
+  const Settings base = base_of(configurations, request.window);
   std::vector<std::shared_ptr<const Inspection>> inspections;
-  for (const Configuration& configuration : configurations_of(request))
-    inspections.push_back(inspector.inspect(settings_of(configuration, request.window)));
+  for (const Configuration& configuration : configurations)
+    inspections.push_back(inspector.inspect(apply(configuration, base)));
   return inspections;
 }
 
 LengthCurves curves_over_length(const std::shared_ptr<const Recording>& recording,
                                 const ComparisonRequest& request) {
-  const FigurePlan plan{"curves", "", configurations_of(request)};
+  const std::vector<Configuration> configurations = configurations_of(request);
+  Settings window = base_of(configurations, request.window);
+  FigurePlan plan{"curves", "", {}};
+  for (const Configuration& configuration : configurations)
+    plan.configurations.push_back(configuration_of(apply(configuration, window)));
   std::vector<Row> rows;
+  std::vector<std::shared_ptr<const Inspection>> longest;
   Inspector inspector(recording);
-  Settings window = request.window;
   // The longest window first: the Inspector keeps its tracks for the others.
   for (const int length : lengths_of(request)) {
     window.frames = length;
-    for (const Configuration& configuration : plan.configurations) {
-      const auto inspection = inspector.inspect(settings_of(configuration, window));
+    for (const Configuration& configuration : configurations) {
+      const auto inspection = inspector.inspect(apply(configuration, window));
       if (!inspection->truth) {
         throw InputError(fmt::format(
             "--view curves: {} has no ground truth to measure errors against", recording->name));
       }
-      rows.push_back(make_row(configuration, *inspection));
+      rows.push_back(make_row(*inspection));
+      if (longest.size() < configurations.size()) longest.push_back(inspection);
     }
   }
   std::ranges::reverse(rows);
-  LengthCurves curves{figure_over_length(rows, plan), {}, false};
+  LengthCurves curves{figure_over_length(rows, plan), longest, {}, false};
   // One window a length is what was asked for here, not few of many.
   for (Chart& chart : curves.figure.charts)
     for (Curve& curve : chart.curves) curve.counts.clear();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/experiment/configuration.h"
 #include "engine/experiment/figure.h"
 #include "engine/inspection/inspection.h"
 
@@ -16,8 +17,11 @@ namespace gpo {
 struct ComparisonRequest {
   std::optional<std::string> methods;  ///< as `evaluate` reads them; default: the methods' table
   std::optional<std::string> lengths;  ///< of the windows; default: 5 to the window's, by 5
-  Settings window;                     ///< what no configuration chooses
+  Settings window;                     ///< what no configuration names is as here
 };
+
+/// What is compared, in its order. Throws InputError.
+std::vector<Configuration> configurations_of(const ComparisonRequest& request);
 
 /// One inspection a configuration, in their order. Throws InputError.
 std::vector<std::shared_ptr<const Inspection>> inspect_each(
@@ -26,6 +30,7 @@ std::vector<std::shared_ptr<const Inspection>> inspect_each(
 /// The errors over the length of windows from one start.
 struct LengthCurves {
   Figure figure;
+  std::vector<std::shared_ptr<const Inspection>> longest;  ///< of the longest window
   std::vector<std::string> failures;  ///< a line for each configuration that solved no window
   bool any_ok = false;
 };

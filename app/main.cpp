@@ -1,18 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/setting_options.h"
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
+#include "engine/experiment/configuration.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <functional>
 #include <iostream>
-#include <set>
 #include <system_error>
 #include <thread>
-#include <type_traits>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,67 +21,12 @@
 namespace gpo {
 namespace {
 
-std::string option_name(const SettingInfo& info) {
-  std::string name = info.key;
-  std::ranges::replace(name, '_', '-');
-  return "--" + name;
-}
-
-/// `value` is one, or an optional one.
 template <Choice E>
 void add_choice(CLI::App& command, const std::string& name, const std::string& help, auto& value) {
   command.add_option_function<std::string>(
       name,
       [&value](const std::string& key) { value = choice<E>(key); },
       help + fmt::format(": {}", fmt::join(ChoiceKeys<E>::keys, ", ")));
-}
-
-/// One option a setting: `visit_settings` is the only place that declares them.
-void add_settings(CLI::App& command, Settings& settings) {
-  visit_settings(settings, [&](const SettingInfo& info, auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    std::string help = info.help;
-    if (*info.unit != '\0') help += fmt::format(" [{}]", info.unit);
-    if constexpr (std::is_same_v<Value, std::optional<bool>>) {
-      const std::string name = option_name(info);
-      CLI::Option* on = command.add_flag_callback(
-          name, [&value] { value = true; }, help);
-      command
-          .add_flag_callback(
-              "--no-" + name.substr(2), [&value] { value = false; }, "Off: " + help)
-          ->excludes(on);
-    } else if constexpr (std::is_same_v<Value, RotationSource>) {
-      help += fmt::format(": {}", fmt::join(rotation_source_keys(), ", "));
-      command.add_option_function<std::string>(
-          option_name(info),
-          [&value](const std::string& key) { value = rotation_source(key); },
-          help);
-    } else if constexpr (Choice<Value>) {
-      add_choice<Value>(command, option_name(info), help, value);
-    } else if constexpr (std::is_same_v<Value, std::optional<Inliers>>) {
-      add_choice<Inliers>(command, option_name(info), help, value);
-    } else if constexpr (std::is_same_v<Value, std::vector<std::int64_t>>) {
-      command
-          .add_option_function<std::vector<std::int64_t>>(
-              option_name(info),
-              [&value](const std::vector<std::int64_t>& ids) {
-                const std::set<std::int64_t> ascending(ids.begin(), ids.end());
-                value.assign(ascending.begin(), ascending.end());
-              },
-              help)
-          ->delimiter(',');
-    } else if constexpr (std::is_same_v<Value, bool>) {
-      command.add_flag(option_name(info), value, help);
-    } else if constexpr (std::is_same_v<Value, std::string>) {
-      std::string known;
-      for (const Method& method : methods()) known += " " + method.key;
-      command.add_option(option_name(info), value, help + ":" + known)->capture_default_str();
-    } else {
-      command.add_option(option_name(info), value, help)
-          ->capture_default_str()
-          ->check(CLI::Range(static_cast<Value>(info.least), static_cast<Value>(info.most)));
-    }
-  });
 }
 
 void add_cache(CLI::App& command, std::size_t& mib) {
@@ -98,7 +42,7 @@ void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_cache(command, arguments.cache_mib);
-  add_settings(command, arguments.settings);
+  add_settings(command, arguments.settings, arguments.given);
 }
 
 void add_run(CLI::App& app, RunArguments& arguments) {
@@ -129,9 +73,8 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   command->add_option(
       "--methods",
       arguments.methods,
-      "Of the views compare and curves: methods with commas, each with settings "
-      "that differ, METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]; "
-      "default: every method");
+      "Of the views compare and curves: methods with commas, each with settings that differ, " +
+          configuration_syntax() + "; default: every method");
   command->add_option("--lengths",
                       arguments.lengths,
                       "Of the view curves: lengths of the windows [frames], FROM:TO:STEP; default: "
@@ -150,12 +93,10 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
 
 void add_experiment(CLI::App& command, EvaluateArguments& arguments) {
   command
-      .add_option(
-          "--methods",
-          arguments.methods,
-          "Methods with commas, each with settings that differ from its defaults: "
-          "METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]; all: every "
-          "method and the paper's ablations")
+      .add_option("--methods",
+                  arguments.methods,
+                  "Methods with commas, each with settings that differ from its defaults: " +
+                      configuration_syntax() + "; all: every method and the paper's ablations")
       ->capture_default_str();
   command
       .add_option("--lengths", arguments.lengths, "Lengths of the windows [frames], FROM:TO:STEP")
@@ -255,7 +196,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   view->add_option(
       "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
   add_cache(*view, arguments.view.cache_mib);
-  add_settings(*view, arguments.view.settings);
+  add_settings(*view, arguments.view.settings, arguments.view.given);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");
   CLI::App* info = app.add_subcommand("info", "What is found in a recording");
@@ -324,6 +265,8 @@ int main_with_errors(int argc, char** argv) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
     return complain(one_line(error.what()));
+  } catch (const SettingError& error) {
+    return complain(option_name(error.name) + std::string(error.what()).substr(error.name.size()));
   } catch (const std::exception& error) {
     return complain(message_of(error));
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/recordings.h"
+#include "app/setting_options.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
@@ -30,10 +31,13 @@ int run_command(const RunArguments& arguments) {
   }
   const auto inspection = inspect(arguments.inspect);
   const bool ok = inspection->initialization->ok;
+  tell_unused(arguments.inspect.given, *inspection);
+  if (arguments.trajectory_format && !arguments.trajectory && !arguments.true_trajectory)
+    fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   fmt::print("{}", to_text(*inspection));
   if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
   const auto write_trajectory = [&](const auto& file, const CameraPath& path) {
-    write_file(file, to_text(path, arguments.trajectory_format));
+    write_file(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
   };
   if (ok && arguments.trajectory)
     write_trajectory(*arguments.trajectory, estimated_path(*inspection));

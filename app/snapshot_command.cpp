@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/comparison.h"
+#include "app/setting_options.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/files/output_file.h"
@@ -60,25 +61,40 @@ int frame_to_draw(const SnapshotArguments& arguments, const Recording& recording
   return frame;
 }
 
+ComparisonRequest request_of(const SnapshotArguments& arguments) {
+  return {arguments.methods, arguments.lengths, arguments.inspect.settings};
+}
+
+/// Of what only some views heed.
+void tell_unused_by_view(const SnapshotArguments& arguments) {
+  const bool curves = arguments.view == "curves";
+  if (arguments.methods && !curves && arguments.view != "compare")
+    fmt::print(stderr, "--methods is not used. Only the views compare and curves read it\n");
+  if (arguments.lengths && !curves)
+    fmt::print(stderr, "--lengths is not used. Only the view curves reads it\n");
+  if (arguments.frame && curves)
+    fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
+}
+
 Drawn draw_compare(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
   const auto recording = open(arguments.inspect);
-  const auto inspections =
-      inspect_each(recording, {arguments.methods, arguments.lengths, arguments.inspect.settings});
+  const ComparisonRequest request = request_of(arguments);
+  const auto inspections = inspect_each(recording, request);
+  tell_unused(arguments.inspect.given, configurations_of(request), inspections);
   const int frame = frame_to_draw(arguments, *recording);
   Drawn drawn{snapshot_compare(inspections, frame, size)};
   for (const auto& inspection : inspections) {
     const Initialization& result = *inspection->initialization;
     drawn.ok |= result.ok;
-    const Settings& settings = inspection->settings;
-    if (!result.ok)
-      tell_failure(key_of({settings.method, settings.ransac, settings.rotations}), result.reason);
+    if (!result.ok) tell_failure(key_of(configuration_of(inspection->settings)), result.reason);
   }
   return drawn;
 }
 
 Drawn draw_curves(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
-  const LengthCurves curves = curves_over_length(
-      open(arguments.inspect), {arguments.methods, arguments.lengths, arguments.inspect.settings});
+  const ComparisonRequest request = request_of(arguments);
+  const LengthCurves curves = curves_over_length(open(arguments.inspect), request);
+  tell_unused(arguments.inspect.given, configurations_of(request), curves.longest);
   for (const std::string& failure : curves.failures) fmt::print(stderr, "{}\n", failure);
   const cv::Size pixels = size.value_or(default_figure_size(curves.figure));
   return {draw_figure(curves.figure, pixels), curves.any_ok};
@@ -86,6 +102,7 @@ Drawn draw_curves(const SnapshotArguments& arguments, const std::optional<cv::Si
 
 Drawn draw_one(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
   const auto inspection = inspect(arguments.inspect);
+  tell_unused(arguments.inspect.given, *inspection);
   const int frame = frame_to_draw(arguments, *inspection->recording);
   const Initialization& result = *inspection->initialization;
   if (!result.ok) tell_failure(inspection->settings.method, result.reason);
@@ -149,6 +166,7 @@ int snapshot_command(const SnapshotArguments& arguments) {
   }
   check_writable(arguments.output);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
+  tell_unused_by_view(arguments);
   const auto [picture, ok] = draw(arguments, size);
   write_picture(arguments.output, picture);
   if (!ok) return kFailed;

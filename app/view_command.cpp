@@ -3,7 +3,6 @@
 #include "app/commands.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
@@ -120,8 +119,7 @@ std::filesystem::path example_recording() {
 }
 
 int view_command(const ViewArguments& arguments) {
-  const auto& [recording, cache_mib, settings, session_file, script] = arguments;
-  find_method(settings.method);
+  const auto& [recording, cache_mib, settings, given, session_file, script] = arguments;
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }

@@ -13,8 +13,8 @@
 
 namespace gpo {
 
-/// Specialized by an enumeration that a user chooses from: `option` is its name on the command
-/// line, `keys` are its values' in the order of the enumeration, on the command line and in files.
+/// Specialized by an enumeration that a user chooses from: `name` is what it is called, `keys` are
+/// its values' in the order of the enumeration; on the command line, in scripts and in files.
 template <class E>
 struct ChoiceKeys;
 
@@ -35,17 +35,16 @@ bool is_choice(const std::string& key) {
   return false;
 }
 
-/// The value called `key`. Throws InputError that names the known ones.
+/// The value called `key`. Throws SettingError that names the known ones.
 template <Choice E>
 E choice(const std::string& key) {
   const auto& keys = ChoiceKeys<E>::keys;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (key == keys[i]) return static_cast<E>(i);
   }
-  throw InputError(fmt::format("{}: unknown value '{}', expected one of {}",
-                               ChoiceKeys<E>::option,
-                               key,
-                               fmt::join(keys, ", ")));
+  throw SettingError(
+      ChoiceKeys<E>::name,
+      fmt::format("unknown value '{}', expected one of {}", key, fmt::join(keys, ", ")));
 }
 
 }  // namespace gpo

@@ -63,6 +63,9 @@ std::string legible(std::string_view text, std::size_t most) {
 InputError::InputError(std::string_view message)
     : std::runtime_error(shortened(legible(message, message.size() * kLongestEscape))) {}
 
+SettingError::SettingError(const std::string& named, std::string_view message)
+    : InputError(fmt::format("{}: {}", named, message)), name(named) {}
+
 std::string message_of(const std::exception& error) {
   using std::filesystem::filesystem_error;
   if (dynamic_cast<const InputError*>(&error) != nullptr) return error.what();

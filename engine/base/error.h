@@ -20,6 +20,14 @@ struct InputError : std::runtime_error {
   explicit InputError(std::string_view message);
 };
 
+/// Bad input in a value that has a name: a setting, or an argument. The message is
+/// "NAME: what was found, what was expected"; the command line, where the value is an option,
+/// writes the name as one.
+struct SettingError : InputError {
+  SettingError(const std::string& name, std::string_view message);
+  std::string name;  ///< "ransac_threshold_px"
+};
+
 /// What to say of an exception: its message where it is bad input or something that the system
 /// refuses (a file, a thread), else that it is an internal error.
 std::string message_of(const std::exception& error);

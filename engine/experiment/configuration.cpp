@@ -3,9 +3,8 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
-#include "engine/window/window.h"
+#include "engine/inspection/setting_values.h"
 
 #include <algorithm>
 #include <array>
@@ -17,28 +16,11 @@
 namespace gpo {
 namespace {
 
-/// A setting that differs from the default: how it is written, told and drawn.
-struct Variation {
-  const char* key;
-  const char* title;  ///< after the method's
-  std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
-};
-
-constexpr std::array kVariations{
-    Variation{"ransac", "with RANSAC", 0x882255},
-    Variation{"no-ransac", "without RANSAC", 0xBB3355},
-    Variation{"gyro", "with gyroscope", 0x117733},
-    Variation{"gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
-    Variation{"averaging", "with averaged rotations", 0xAA7711},
-    Variation{"truth", "with true rotations", 0x666666},
-    Variation{"anchored", "with anchored tracks", 0x44AA99},
-    Variation{"per-frame", "with inliers frame by frame", 0x661100},
-    Variation{"consistent", "with consistent inliers", 0x999933},
-};
-
 /// The paper's; beside them each method as it is.
 constexpr std::array kAblations{
     "gpo+no-ransac", "gpo+gyro-calibrated", "gpo+averaging", "gpo+truth", "ba+ransac"};
+
+using Change = Configuration::Change;
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -47,17 +29,25 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-bool is_method(const std::string& key) {
-  return std::ranges::any_of(methods(), [&](const Method& m) { return m.key == key; });
+/// The settings that configurations name, in the order of their words in a key.
+std::vector<const Setting*> comparable_settings() {
+  std::vector<const Setting*> comparable;
+  for (const Setting& setting : settings_table())
+    if (!setting.words.empty()) comparable.push_back(&setting);
+  std::ranges::stable_partition(comparable, &Setting::leads);
+  return comparable;
 }
 
-bool is_source(const std::string& key) {
-  return std::ranges::any_of(rotation_source_keys(), [&](const char* k) { return k == key; });
+std::vector<std::string> words_of(const Setting& setting) {
+  std::vector<std::string> words;
+  for (const SettingWord& word : setting.words) words.emplace_back(word.word);
+  return words;
 }
 
-template <Choice E>
-bool is_key_of(const std::string& key) {
-  return std::ranges::any_of(ChoiceKeys<E>::keys, [&](const char* k) { return k == key; });
+const SettingWord& word_of(const Change& change) {
+  return *std::ranges::find(find_setting(change.setting).words,
+                            change.value,
+                            [](const SettingWord& word) { return std::string(word.value); });
 }
 
 std::string known_methods() {
@@ -66,29 +56,36 @@ std::string known_methods() {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-void set(Configuration& configuration, const std::string& setting, const std::string& text) {
-  const auto once = [&](auto& value, auto untouched, auto chosen) {
-    if (value != untouched)
-      throw InputError(fmt::format("--methods: '{}' sets one thing twice", text));
-    value = chosen;
-  };
-  if (setting == "ransac" || setting == "no-ransac") {
-    once(configuration.ransac, std::nullopt, setting == "ransac");
-  } else if (is_source(setting)) {
-    once(configuration.rotations, RotationSource::automatic, rotation_source(setting));
-  } else if (is_key_of<Tracking>(setting)) {
-    once(configuration.tracking, Tracking::frame_to_frame, choice<Tracking>(setting));
-  } else if (is_key_of<Inliers>(setting)) {
-    once(configuration.inliers, std::nullopt, choice<Inliers>(setting));
-  } else {
-    throw InputError(fmt::format(
-        "--methods: '{}': unknown setting '{}', expected one of ransac, no-ransac, {}, {}, {}",
-        text,
-        setting,
-        fmt::join(rotation_source_keys(), ", "),
-        fmt::join(ChoiceKeys<Tracking>::keys, ", "),
-        fmt::join(ChoiceKeys<Inliers>::keys, ", ")));
+[[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
+
+/// What a word changes of which setting.
+Change change_of(const std::string& word, const std::string& text) {
+  std::vector<std::string> known;
+  for (const Setting* setting : comparable_settings()) {
+    for (const SettingWord& one : setting->words) {
+      if (one.word == word) return {setting->key, one.value};
+      known.emplace_back(one.word);
+    }
   }
+  refuse(fmt::format(
+      "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
+}
+
+void check_read(const Configuration& configuration, const std::string& text) {
+  for (const Change& change : configuration.changes)
+    if (!is_read(find_setting(change.setting), configuration.method))
+      refuse(
+          fmt::format("'{}': {} does not read '{}'", text, configuration.method, change.setting));
+}
+
+/// The changes in the order of the settings' words.
+std::vector<Change> in_order(const std::vector<Change>& changes) {
+  std::vector<Change> ordered;
+  for (const Setting* setting : comparable_settings()) {
+    const auto found = std::ranges::find(changes, setting->key, &Change::setting);
+    if (found != changes.end()) ordered.push_back(*found);
+  }
+  return ordered;
 }
 
 std::vector<std::string> all_keys() {
@@ -96,24 +93,6 @@ std::vector<std::string> all_keys() {
   for (const Method& method : methods()) keys.push_back(method.key);
   keys.insert(keys.end(), kAblations.begin(), kAblations.end());
   return keys;
-}
-
-std::vector<Variation> variations(const Configuration& configuration) {
-  std::vector<std::string> keys;
-  if (configuration.ransac) keys.emplace_back(*configuration.ransac ? "ransac" : "no-ransac");
-  if (configuration.rotations != RotationSource::automatic) {
-    keys.emplace_back(to_string(configuration.rotations));
-  }
-  if (configuration.tracking != Tracking::frame_to_frame) {
-    keys.emplace_back(to_string(configuration.tracking));
-  }
-  if (configuration.inliers) keys.emplace_back(to_string(*configuration.inliers));
-  std::vector<Variation> found;
-  found.reserve(keys.size());
-  for (const std::string& key : keys) {
-    found.push_back(*std::ranges::find(kVariations, key, &Variation::key));
-  }
-  return found;
 }
 
 /// `b` with a touch of `a`, so that the same setting of two methods is told apart.
@@ -125,34 +104,38 @@ std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   return sum;
 }
 
-/// Without what only says what is so by default.
-Configuration without_repeated_defaults(Configuration configuration) {
-  const Settings by_default{.method = configuration.method};
-  if (configuration.ransac == uses_ransac(by_default)) configuration.ransac.reset();
-  if (configuration.inliers == inliers_used(by_default)) configuration.inliers.reset();
-  return configuration;
-}
-
 }  // namespace
+
+bool Configuration::names(const std::string& setting) const {
+  return std::ranges::find(changes, setting, &Change::setting) != changes.end();
+}
 
 Configuration parse_configuration(const std::string& text) {
   const std::vector<std::string> parts = split(text, '+');
-  if (parts.empty() || !is_method(parts.front())) {
-    throw InputError(fmt::format("--methods: unknown method '{}', expected all, or some of {}",
-                                 parts.empty() ? "" : parts.front(),
-                                 known_methods()));
+  const std::string method = parts.empty() ? "" : parts.front();
+  if (std::ranges::find(methods(), method, &Method::key) == methods().end())
+    refuse(
+        fmt::format("unknown method '{}', expected all, or some of {}", method, known_methods()));
+  Configuration configuration{.method = method};
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    Change change = change_of(parts[i], text);
+    if (configuration.names(change.setting)) refuse(fmt::format("'{}' sets one thing twice", text));
+    configuration.changes.push_back(std::move(change));
   }
-  Configuration configuration{.method = parts.front()};
-  for (std::size_t i = 1; i < parts.size(); ++i) set(configuration, parts[i], text);
-  return without_repeated_defaults(configuration);
+  check_read(configuration, text);
+  configuration.changes = in_order(configuration.changes);
+  return configuration;
 }
 
 std::vector<Configuration> parse_configurations(const std::string& text) {
   std::vector<Configuration> configurations;
+  std::vector<Configuration> shortest;
   const auto add = [&](const std::string& key) {
     const Configuration configuration = parse_configuration(key);
-    const bool had = std::ranges::find(configurations, configuration) != configurations.end();
-    if (!had) configurations.push_back(configuration);
+    const Configuration comes_to = configuration_of(apply(configuration, {}));
+    if (std::ranges::find(shortest, comes_to) != shortest.end()) return;
+    shortest.push_back(comes_to);
+    configurations.push_back(configuration);
   };
   for (const std::string& key : split(text, ',')) {
     if (key == "all") {
@@ -165,37 +148,57 @@ std::vector<Configuration> parse_configurations(const std::string& text) {
   return configurations;
 }
 
+std::string configuration_syntax() {
+  std::string syntax = "METHOD";
+  for (const Setting* setting : comparable_settings())
+    syntax += fmt::format("[+{}]", fmt::join(words_of(*setting), "|"));
+  return syntax;
+}
+
 std::string key_of(const Configuration& configuration) {
   std::string key = configuration.method;
-  for (const Variation& variation : variations(configuration))
-    key += fmt::format("+{}", variation.key);
+  for (const Change& change : configuration.changes)
+    key += fmt::format("+{}", word_of(change).word);
   return key;
 }
 
 std::string title_of(const Configuration& configuration) {
   std::string title = find_method(configuration.method).title;
-  for (const Variation& variation : variations(configuration))
-    title += fmt::format(" {}", variation.title);
+  for (const Change& change : configuration.changes)
+    title += fmt::format(" {}", word_of(change).title);
   return title;
 }
 
 std::uint32_t color_of(const Configuration& configuration) {
   std::uint32_t rgb = find_method(configuration.method).rgb;
-  for (const Variation& variation : variations(configuration)) rgb = mixed(rgb, variation.rgb);
+  for (const Change& change : configuration.changes) rgb = mixed(rgb, word_of(change).rgb);
   return rgb;
-}
-
-Configuration configuration_of(const Settings& settings) {
-  return without_repeated_defaults(
-      {settings.method, settings.ransac, settings.rotations, settings.tracking, settings.inliers});
 }
 
 Settings apply(const Configuration& configuration, Settings settings) {
   settings.method = configuration.method;
-  settings.ransac = configuration.ransac;
-  settings.rotations = configuration.rotations;
-  settings.tracking = configuration.tracking;
-  settings.inliers = configuration.inliers;
+  for (const Change& change : configuration.changes)
+    settings = with_setting(std::move(settings), change.setting, change.value);
+  return settings;
+}
+
+Configuration configuration_of(const Settings& settings, Settings from) {
+  from.method = settings.method;
+  const Settings used = as_used(settings);
+  const Settings normal = as_used(std::move(from));
+  Configuration configuration{.method = settings.method};
+  for (const Setting* setting : comparable_settings()) {
+    const std::string value = value_text(setting->get(used));
+    if (value != value_text(setting->get(normal)))
+      configuration.changes.push_back({setting->key, value});
+  }
+  return configuration;
+}
+
+Settings base_of(std::span<const Configuration> list, Settings settings) {
+  for (const Configuration& configuration : list)
+    for (const Change& change : configuration.changes)
+      settings = with_default(std::move(settings), change.setting);
   return settings;
 }
 

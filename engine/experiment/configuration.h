@@ -2,37 +2,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking.h"
 #include "engine/inspection/settings.h"
-#include "engine/window/window.h"
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace gpo {
 
-/// A method, and the settings in which it differs from its own defaults: what an experiment
-/// compares. Written `METHOD[+ransac|+no-ransac][+ROTATIONS][+anchored][+consistent|+per-frame]`,
-/// e.g. `gpo`, `gpo+no-ransac`, `gpo+averaging`.
+/// A difference between two settings: a method, and the values that it names by their words in
+/// `settings_table`. Written METHOD[+WORD...]: `gpo`, `gpo+no-ransac`, `gpo_joint+huber`. What it
+/// does not name is as in the settings that it is applied to.
 struct Configuration {
-  std::string method;                         ///< key in `methods()`
-  std::optional<bool> ransac = std::nullopt;  ///< nothing: as the method does by default
-  RotationSource rotations = RotationSource::automatic;
-  Tracking tracking = Tracking::frame_to_frame;
-  std::optional<Inliers> inliers = std::nullopt;  ///< nothing: as the method does by default
+  struct Change {
+    std::string setting;  ///< key
+    std::string value;    ///< as `setting_text` writes it
+    bool operator==(const Change&) const = default;
+  };
+  std::string method;                ///< key in `methods()`
+  std::vector<Change> changes = {};  ///< each setting once, in the order of their words
 
+  bool names(const std::string& setting) const;
   bool operator==(const Configuration&) const = default;
 };
 
-/// Reads one; what only repeats a default is dropped, so that equal configurations have equal keys.
-/// Throws InputError that names `--methods`, what was found and what is known.
+/// Reads one. Throws SettingError "methods: ..." that names what was found and what is known, also
+/// for an option that the method does not read.
 Configuration parse_configuration(const std::string& text);
 
-/// Reads a list with commas, each configuration once. `all` stands for every method and the paper's
-/// ablations. Throws InputError.
+/// Reads a list with commas; of those that come to the same by default, the first. `all` stands for
+/// every method and the paper's ablations. Throws SettingError.
 std::vector<Configuration> parse_configurations(const std::string& text);
+
+/// METHOD[+WORD1|WORD2][+WORD3...], for help: all words, those of one setting together.
+std::string configuration_syntax();
 
 /// As it is written on the command line and in files.
 std::string key_of(const Configuration& configuration);
@@ -41,10 +45,17 @@ std::string title_of(const Configuration& configuration);
 /// The method's color, or for an ablation one of its own; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
-/// What of the settings a configuration says; as `parse_configuration` reads it back.
-Configuration configuration_of(const Settings& settings);
-
-/// The settings with method, RANSAC, rotations, tracking and inliers as configured.
+/// The settings with the method and all that the configuration names.
 Settings apply(const Configuration& configuration, Settings settings);
+
+/// How these settings, as they are used, differ from others in what configurations name: the
+/// shortest configuration that comes to them from there. From the defaults: what a result is
+/// called.
+Configuration configuration_of(const Settings& settings, Settings from = {});
+
+/// What all of a list are applied to: the settings, but what any of them names is by default, since
+/// it is what they are compared by. So `gpo,gpo+no-ransac` is one with and one without RANSAC,
+/// whatever the settings say of it, and both are tracked as the settings say.
+Settings base_of(std::span<const Configuration> list, Settings settings);
 
 }  // namespace gpo

@@ -99,7 +99,8 @@ std::string differ_text(const std::vector<std::string>& names) {
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request) {
   Experiment experiment;
-  experiment.configurations = request.configurations;
+  for (const Configuration& one : request.configurations)
+    experiment.configurations.push_back(configuration_of(apply(one, {})));
   experiment.seed = request.seed;
   experiment.program = GPO_VERSION;
   int most_frames = 0;

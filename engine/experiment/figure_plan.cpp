@@ -18,9 +18,10 @@ bool is_of(const Configuration& c, MethodFamily family) {
   return is_gpo(c) || (is_plain(c) && find_method(c.method).family == family);
 }
 
-/// The method with or without RANSAC, and otherwise as it is.
-bool varies_ransac(const Configuration& c, const char* method) {
-  return c == Configuration{.method = method, .ransac = c.ransac};
+/// The method as it is, or with nothing but that setting changed.
+bool varies(const Configuration& c, const char* method, const char* setting) {
+  const bool only = c.changes.size() == 1 && c.names(setting);
+  return c.method == method && (c.changes.empty() || only);
 }
 
 /// A figure of the paper, and which configurations are in it. Of two of them its title is true, if
@@ -43,17 +44,15 @@ constexpr std::array kPaperFigures{
                 true},
     PaperFigure{"gpo_ransac",
                 "GPO with and without RANSAC",
-                [](const Configuration& c) { return varies_ransac(c, "gpo"); },
+                [](const Configuration& c) { return varies(c, "gpo", "ransac"); },
                 false},
     PaperFigure{"rotation_sources",
                 "GPO by the source of its rotations",
-                [](const Configuration& c) {
-                  return c == Configuration{.method = "gpo", .rotations = c.rotations};
-                },
+                [](const Configuration& c) { return varies(c, "gpo", "rotations"); },
                 false},
     PaperFigure{"ba_ransac",
                 "BA with and without RANSAC",
-                [](const Configuration& c) { return varies_ransac(c, "ba"); },
+                [](const Configuration& c) { return varies(c, "ba", "ransac"); },
                 false},
 };
 

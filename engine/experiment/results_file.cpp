@@ -3,6 +3,7 @@
 #include "engine/experiment/results_file.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
@@ -94,19 +95,13 @@ Number number_of(const std::string& text, const char* expected) {
 
 template <class Value>
 void read_value(const std::string& text, Value& value) {
-  if constexpr (is_optional<Value>) {
+  if constexpr (OfASetting<Value>) {
+    read_setting_cell(value.settings, value.setting, text);
+  } else if constexpr (is_optional<Value>) {
     value.reset();
     if (!text.empty()) read_value(text, value.emplace());
   } else if constexpr (std::is_same_v<Value, std::string>) {
     value = text;
-  } else if constexpr (std::is_same_v<Value, RotationSource>) {
-    value = rotation_source(text);
-  } else if constexpr (Choice<Value>) {
-    value = choice<Value>(text);
-  } else if constexpr (std::is_same_v<Value, bool>) {
-    if (text != "true" && text != "false")
-      throw InputError(fmt::format("found '{}', expected true or false", text));
-    value = text == "true";
   } else {
     value = number_of<Value>(
         text, std::is_floating_point_v<Value> ? "a number" : "a whole number in its range");
@@ -128,6 +123,8 @@ Row row_of(const Line& line, const std::vector<std::string>& names) {
     if (column == names.end()) return;
     try {
       read_value(line.cells[column - names.begin()], value);
+    } catch (const SettingError&) {
+      throw;  // names itself
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", name, error.what()));
     }

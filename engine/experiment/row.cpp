@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
+#include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
+#include "engine/inspection/report.h"
+#include "engine/inspection/setting_values.h"
+
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,11 +18,12 @@ namespace {
 using nlohmann::ordered_json;
 
 template <class Value>
-ordered_json value_json(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return to_string(value);
+ordered_json json_of(const Value& value) {
+  if constexpr (OfASetting<Value>) {
+    const bool read = is_read(value.setting, value.settings.method);
+    return read ? value_json(value.setting.get(value.settings)) : ordered_json(nullptr);
   } else if constexpr (is_optional<Value>) {
-    return value ? value_json(*value) : ordered_json(nullptr);
+    return value ? json_of(*value) : ordered_json(nullptr);
   } else {
     return value;
   }
@@ -25,10 +31,11 @@ ordered_json value_json(const Value& value) {
 
 template <class Value>
 void read_value(const ordered_json& json, Value& value) {
-  if constexpr (std::is_same_v<Value, RotationSource>) {
-    value = rotation_source(json.get<std::string>());
-  } else if constexpr (Choice<Value>) {
-    value = choice<Value>(json.get<std::string>());
+  if constexpr (OfASetting<Value>) {
+    const std::string cell = json.is_null()     ? ""
+                             : json.is_string() ? json.get<std::string>()
+                                                : json.dump();
+    read_setting_cell(value.settings, value.setting, cell);
   } else if constexpr (is_optional<Value>) {
     value.reset();
     if (!json.is_null()) read_value(json, value.emplace());
@@ -47,8 +54,8 @@ std::string cell(const std::string& text) {
 
 template <class Value>
 std::string value_cell(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return to_string(value);
+  if constexpr (OfASetting<Value>) {
+    return setting_cell(value.settings, value.setting);
   } else if constexpr (is_optional<Value>) {
     return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -79,27 +86,42 @@ void add_timing(Row& row, const Timing& timing) {
 
 }  // namespace
 
-Row refused_row(const std::string& recording,
-                const Configuration& configuration,
-                const Settings& settings,
-                const std::string& reason) {
+std::string setting_cell(const Settings& settings, const Setting& setting) {
+  const SettingValue value = setting.get(settings);
+  if (!is_read(setting, settings.method) || std::holds_alternative<std::monostate>(value))
+    return "";
+  if (setting.kind != SettingKind::on_off) return value_text(value);
+  return std::get<bool>(value) ? "true" : "false";
+}
+
+void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell) {
+  if (cell.empty()) {
+    setting.set(settings, setting.get(Settings{}));
+  } else if (setting.kind != SettingKind::on_off) {
+    setting.set(settings, value_from(setting, cell));
+  } else if (cell == "true" || cell == "false") {
+    setting.set(settings, cell == "true");
+  } else {
+    throw SettingError(setting.key, fmt::format("found '{}', expected true or false", cell));
+  }
+}
+
+Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason) {
   Row row;
   row.recording = recording;
-  row.configuration = key_of(configuration);
-  row.settings = apply(configuration, settings);
-  row.settings.ransac = uses_ransac(row.settings);
-  row.settings.inliers = inliers_used(row.settings);
+  row.configuration = key_of(configuration_of(settings));
+  row.settings = settings;
+  row.settings.ransac = uses_ransac(settings);
+  row.settings.inliers = inliers_used(settings);
   row.status = "failed";
   row.reason = reason;
   return row;
 }
 
-Row make_row(const Configuration& configuration, const Inspection& inspection) {
+Row make_row(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
-  Row row =
-      refused_row(inspection.recording->name, configuration, inspection.settings, result.reason);
-  row.settings.rotations = inspection.rotations_used;
-  row.settings.inliers = inspection.window->inliers;
+  Row row = refused_row(inspection.recording->name, inspection.settings, result.reason);
+  row.settings = settings_used(inspection);
   row.status = result.ok ? "ok" : "failed";
   row.tracks = inspection.window->track_count();
   row.inliers = inspection.window->inlier_count(0);
@@ -130,7 +152,7 @@ std::string to_csv(std::span<const Row> rows) {
 
 ordered_json to_json(const Row& row) {
   ordered_json json;
-  visit_row(row, [&](const char* name, const auto& value) { json[name] = value_json(value); });
+  visit_row(row, [&](const char* name, const auto& value) { json[name] = json_of(value); });
   return json;
 }
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings.h"
+#include "engine/inspection/settings_table.h"
 
 #include <optional>
 #include <span>
@@ -41,18 +40,35 @@ struct Row {
   bool ok() const { return status == "ok"; }
 };
 
+/// A setting of a row as a column of its own; empty where the row's method does not read it.
+template <class S>
+struct SettingColumn {
+  S& settings;
+  const Setting& setting;
+};
+
+template <class T>
+concept OfASetting = requires(T column) {
+  column.setting;
+};
+
+/// Its cell in results.csv: as scripts write the value, but true and false for on and off.
+std::string setting_cell(const Settings& settings, const Setting& setting);
+/// Reads it; empty is the default. Throws SettingError.
+void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell);
+
 /// The one declaration of the columns, in their order: `visit(name, value&)`. Times, and on what
 /// they were measured, are the last, because all others are the same in every run.
 template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
   visit("configuration", row.configuration);
-  visit_settings(row.settings, [&](const SettingInfo& info, auto& value) {
+  for (const Setting& setting : settings_table()) {
     // Tracks are excluded by hand, in one window: experiments do not.
-    constexpr bool kExclude =
-        std::is_same_v<std::decay_t<decltype(value)>, std::vector<std::int64_t>>;
-    if constexpr (!kExclude) visit(info.key, value);
-  });
+    if (setting.kind == SettingKind::ids) continue;
+    SettingColumn column{row.settings, setting};
+    visit(setting.key.c_str(), column);
+  }
   visit("status", row.status);
   visit("reason", row.reason);
   visit("tracks", row.tracks);
@@ -81,13 +97,10 @@ void visit_row(R& row, Visitor&& visit) {
   visit("processor", row.processor);
 }
 
-/// What an inspection came to.
-Row make_row(const Configuration& configuration, const Inspection& inspection);
-/// A window that the configuration cannot be tried on, e.g. without a gyroscope.
-Row refused_row(const std::string& recording,
-                const Configuration& configuration,
-                const Settings& settings,
-                const std::string& reason);
+/// What an inspection came to, under the configuration that its settings come to.
+Row make_row(const Inspection& inspection);
+/// A window that the settings cannot be tried on, e.g. without a gyroscope.
+Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
 /// Header and lines of results.csv. Numbers have all the digits they need to be read back.
 std::string to_csv(std::span<const Row> rows);

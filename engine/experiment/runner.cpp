@@ -50,12 +50,13 @@ std::vector<Row> compute_window(const Experiment& experiment,
                                 const std::stop_token& stop) {
   std::vector<Row> rows;
   for (const Configuration& configuration : experiment.configurations) {
+    const Settings settings = apply(configuration, window);
     try {
-      const auto inspection = inspector.inspect(apply(configuration, window), stop);
+      const auto inspection = inspector.inspect(settings, stop);
       if (!inspection) break;
-      rows.push_back(make_row(configuration, *inspection));
+      rows.push_back(make_row(*inspection));
     } catch (const InputError& error) {
-      rows.push_back(refused_row(recording.name, configuration, window, error.what()));
+      rows.push_back(refused_row(recording.name, settings, error.what()));
     }
   }
   return rows;

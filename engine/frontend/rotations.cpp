@@ -14,8 +14,6 @@
 namespace gpo {
 namespace {
 
-constexpr std::array<const char*, 5> kKeys{
-    "automatic", "gyro", "gyro-calibrated", "averaging", "truth"};
 constexpr double kGapPeriods = 5;
 constexpr double kMarginPeriods = 1.5;  // beyond the first and the last sample the rate is held
 
@@ -112,19 +110,8 @@ void advance(Turn& turn, const Gyroscope& gyroscope, std::int64_t from_ns, std::
 
 }  // namespace
 
-const char* to_string(RotationSource source) { return kKeys[static_cast<std::size_t>(source)]; }
-
 bool needs_gyroscope(RotationSource source) {
   return source == RotationSource::gyro || source == RotationSource::gyro_calibrated;
-}
-
-std::span<const char* const> rotation_source_keys() { return kKeys; }
-
-RotationSource rotation_source(const std::string& key) {
-  const auto it = std::ranges::find(kKeys, key);
-  if (it != kKeys.end()) return static_cast<RotationSource>(it - kKeys.begin());
-  throw InputError(fmt::format(
-      "--rotations: unknown source '{}', expected one of {}", key, fmt::join(kKeys, ", ")));
 }
 
 Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -27,14 +28,14 @@ struct Rotations {
 
 enum class RotationSource { automatic, gyro, gyro_calibrated, averaging, truth };
 
+template <>
+struct ChoiceKeys<RotationSource> {
+  static constexpr const char* name = "rotations";
+  static constexpr std::array keys{"automatic", "gyro", "gyro-calibrated", "averaging", "truth"};
+};
+
 /// Whether the source integrates a gyroscope.
 bool needs_gyroscope(RotationSource source);
-
-/// Keys of the sources on the command line and in files, in the order of the enumeration.
-std::span<const char* const> rotation_source_keys();
-const char* to_string(RotationSource source);
-/// Throws InputError that names the known ones.
-RotationSource rotation_source(const std::string& key);
 
 /// R_wc at each of the times, world = camera at the first: mid-point integration of (w - bias) on
 /// SO(3), interpolated at the frame times (engine/method.md, eq. 5). Throws InputError where

@@ -12,7 +12,7 @@ enum class Tracking { frame_to_frame, anchored };
 
 template <>
 struct ChoiceKeys<Tracking> {
-  static constexpr const char* option = "--tracking";
+  static constexpr const char* name = "tracking";
   static constexpr std::array keys{"frame-to-frame", "anchored"};
 };
 

@@ -40,15 +40,16 @@ std::span<const Method> methods() {
   using enum RotationModel;
   // clang-format off
   static const std::array table{
-      Method{"gpo",        "GPO",        0x009E73, optimization, true,  per_frame,  known,        initialize_gpo},
-      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  per_frame,  free,         plain<initialize_pnp>},
-      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  per_frame,  known,        plain<initialize_dbscan>},
-      Method{"ba",         "BA",         0xD55E00, optimization, false, per_frame,  free,         plain<initialize_ba>},
-      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, per_frame,  free,         plain<initialize_pnp_ba>},
-      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  per_frame,  free,         plain<initialize_pba>},
-      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  per_frame,  free,         plain<initialize_fpba>},
-      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  consistent, known,        plain<initialize_closed_form>},
-      Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  consistent, std::nullopt, initialize_gpo_joint},
+      Method{"gpo",        "GPO",        0x009E73, optimization, true,  per_frame,  known,        {"solver"}, initialize_gpo},
+      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  per_frame,  free,         {}, plain<initialize_pnp>},
+      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  per_frame,  known,        {}, plain<initialize_dbscan>},
+      Method{"ba",         "BA",         0xD55E00, optimization, false, per_frame,  free,         {}, plain<initialize_ba>},
+      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, per_frame,  free,         {}, plain<initialize_pnp_ba>},
+      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  per_frame,  free,         {}, plain<initialize_pba>},
+      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  per_frame,  free,         {}, plain<initialize_fpba>},
+      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  consistent, known,        {}, plain<initialize_closed_form>},
+      Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  consistent, std::nullopt,
+             {"solver", "error", "loss", "shutter", "time_offset"}, initialize_gpo_joint},
   };
   // clang-format on
   return table;
@@ -71,13 +72,21 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   return refused;
 }
 
+std::vector<std::string> readers_of(const std::string& option) {
+  std::vector<std::string> readers;
+  for (const Method& method : methods())
+    if (std::ranges::find(method.reads, option) != method.reads.end())
+      readers.push_back(method.key);
+  return readers;
+}
+
 const Method& find_method(std::string_view key) {
   std::string known;
   for (const Method& method : methods()) {
     if (method.key == key) return method;
     known += (known.empty() ? "" : ", ") + method.key;
   }
-  throw InputError(fmt::format("--method: unknown method '{}', expected one of {}", key, known));
+  throw SettingError("method", fmt::format("unknown method '{}', expected one of {}", key, known));
 }
 
 }  // namespace gpo

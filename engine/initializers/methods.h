@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gpo {
 
@@ -30,6 +31,8 @@ struct Method {
   /// Whether it takes the rotations as given or moves them all (free), by which its uncertainty is
   /// computed; nothing: it says so itself.
   std::optional<RotationModel> rotations;
+  /// The options that it heeds (fields of `InitializerOptions`), by the keys of their settings.
+  std::vector<std::string> reads;
   Initialization (*initialize)(const Window& window,
                                const InitializerOptions& options,
                                const Watch& watch);
@@ -40,6 +43,9 @@ std::span<const Method> methods();
 /// What a method made of the window, with its uncertainty and the verdict on the window. A
 /// degenerate window's result becomes a failure.
 Initialization assessed(const Method& method, const Window& window, Initialization result);
+
+/// Keys of the methods that heed an option, by the key of its setting.
+std::vector<std::string> readers_of(const std::string& option);
 
 /// The row named `key`. Throws InputError that names the known ones.
 const Method& find_method(std::string_view key);

@@ -24,7 +24,7 @@ enum class TrajectoryFormat { tum, euroc, kitti };
 
 template <>
 struct ChoiceKeys<TrajectoryFormat> {
-  static constexpr const char* option = "trajectory format";
+  static constexpr const char* name = "trajectory format";
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 

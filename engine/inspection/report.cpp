@@ -4,11 +4,13 @@
 
 #include "engine/files/json_text.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/setting_values.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
 #include <algorithm>
+#include <array>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -28,25 +30,25 @@ Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
 }
 
 ordered_json settings_json(const Inspection& inspection) {
+  const Settings used = settings_used(inspection);
   ordered_json json;
-  visit_settings(inspection.settings, [&](const SettingInfo& info, const auto& value) {
-    const std::string key = info.key;
-    if (key == "start" || key == "frames" || key == "method") return;  // told elsewhere
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, RotationSource>) {
-      json[key] = to_string(inspection.rotations_used);
-    } else if constexpr (Choice<std::decay_t<decltype(value)>>) {
-      json[key] = to_string(value);
-    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<Inliers>>) {
-      json[key] = to_string(inspection.window->inliers);
-    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<bool>>) {
-      json[key] = uses_ransac(inspection.settings);
-    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::vector<std::int64_t>>) {
-      if (!value.empty()) json[key] = value;
-    } else {
-      json[key] = value;
-    }
-  });
+  for (const Setting& setting : settings_table()) {
+    constexpr std::array kToldElsewhere{"start", "frames", "method"};
+    if (std::ranges::find(kToldElsewhere, setting.key) != kToldElsewhere.end()) continue;
+    const ordered_json value = value_json(setting.get(used));
+    const bool no_ids = setting.kind == SettingKind::ids && value.empty();
+    if (!no_ids) json[setting.key] = value;
+  }
   return json;
+}
+
+/// Keys of the settings that changed nothing.
+ordered_json unused_json(const Inspection& inspection) {
+  ordered_json unused = ordered_json::array();
+  for (const Setting& setting : settings_table())
+    if (!why_idle(setting, inspection.settings, inspection.recording.get()).empty())
+      unused.push_back(setting.key);
+  return unused;
 }
 
 ordered_json frames_json(const Inspection& inspection) {
@@ -244,6 +246,26 @@ std::string truth_text(const WindowTruth& truth) {
 
 }  // namespace
 
+Settings settings_used(const Inspection& inspection) {
+  Settings used = inspection.settings;
+  used.rotations = inspection.rotations_used;
+  used.ransac = uses_ransac(used);
+  used.inliers = inspection.window->inliers;
+  return used;
+}
+
+ordered_json value_json(const SettingValue& value) {
+  return std::visit(
+      [](const auto& plain) {
+        using Plain = std::decay_t<decltype(plain)>;
+        if constexpr (std::is_same_v<Plain, std::monostate>)
+          return ordered_json(nullptr);
+        else
+          return ordered_json(plain);
+      },
+      value);
+}
+
 ordered_json to_json(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
@@ -259,6 +281,7 @@ ordered_json to_json(const Inspection& inspection) {
                     {"tracks", window.track_count()},
                     {"inliers", window.inlier_count(0)}};
   json["settings"] = settings_json(inspection);
+  json["unused_settings"] = unused_json(inspection);
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["plane"] = nullptr;

@@ -17,29 +17,33 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
     const auto& reference = truth->cameras.front();
     if (!reference || !truth->cameras[i]) {
-      throw InputError(fmt::format("--rotations truth: frame {} has no ground truth ({})",
-                                   start + static_cast<int>(reference ? i : 0),
-                                   truth->source));
+      throw SettingError("rotations",
+                         fmt::format("truth: frame {} has no ground truth ({})",
+                                     start + static_cast<int>(reference ? i : 0),
+                                     truth->source));
     }
     R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
   }
-  if (R_wc.empty()) throw InputError("--rotations truth: the window has no ground truth");
+  if (R_wc.empty()) throw SettingError("rotations", "truth: the window has no ground truth");
   return R_wc;
 }
 
 }  // namespace
 
+std::string why_no_rotations(const Recording& recording, RotationSource source) {
+  if (needs_gyroscope(source) && !recording.gyroscope) return recording.name + " has no gyroscope";
+  const bool truth = recording.truth || (recording.board && recording.pictures);
+  if (source == RotationSource::truth && !truth)
+    return recording.name + " has no ground truth, and no pictures of a board to compute it from";
+  return "";
+}
+
 RotationSource rotation_source_used(const Recording& recording, RotationSource asked) {
   if (asked == RotationSource::automatic) {
     return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
   }
-  if (needs_gyroscope(asked) && !recording.gyroscope) {
-    throw InputError(
-        fmt::format("--rotations {}: {} has no gyroscope", to_string(asked), recording.name));
-  }
-  if (asked == RotationSource::truth && !recording.truth && !recording.board) {
-    throw InputError(fmt::format("--rotations truth: {} has no ground truth", recording.name));
-  }
+  if (const std::string why_not = why_no_rotations(recording, asked); !why_not.empty())
+    throw SettingError("rotations", fmt::format("{}: {}", to_string(asked), why_not));
   return asked;
 }
 

@@ -8,8 +8,12 @@
 #include "engine/window/window.h"
 
 #include <stop_token>
+#include <string>
 
 namespace gpo {
+
+/// What a recording lacks for this source of rotations, one line; empty: nothing.
+std::string why_no_rotations(const Recording& recording, RotationSource source);
 
 /// What `automatic` comes to: the gyroscope, else averaging. Throws InputError where the recording
 /// lacks what is asked for.

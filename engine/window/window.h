@@ -18,7 +18,7 @@ enum class Inliers { per_frame, consistent };
 
 template <>
 struct ChoiceKeys<Inliers> {
-  static constexpr const char* option = "--inliers";
+  static constexpr const char* name = "inliers";
   static constexpr std::array keys{"per-frame", "consistent"};
 };
 
@@ -36,7 +36,7 @@ enum class RotationModel { known, bias, free };
 
 template <>
 struct ChoiceKeys<RotationModel> {
-  static constexpr const char* option = "rotation model";
+  static constexpr const char* name = "rotation model";
   static constexpr std::array keys{"known", "bias", "free"};
 };
 

@@ -183,6 +183,22 @@ TEST(Run, LeavesOutTracksByTheirIds) {
 
 class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
+TEST(Run, SaysWhatIsNotUsed) {
+  const fs::path file = fresh_folder() / "result.json";
+  const Outcome outcome =
+      program("run " + desk().string() +
+              " --frames 12 --method ba --loss huber --seed 2 --trajectory-format euroc --json " +
+              file.string());
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "--loss is not used. Only gpo_joint lets one choose this\n"
+            "--trajectory-format is not used. No trajectory is written\n");
+  const json j = json::parse(read_file(file));
+  EXPECT_EQ(j["unused_settings"],
+            json::parse(R"(["solver", "error", "loss", "shutter", "time_offset"])"));
+  EXPECT_EQ(run_json(desk().string() + " --method gpo_joint")["unused_settings"], json::array());
+}
+
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
   const Outcome outcome = program("run " + desk().string() + " " + GetParam().arguments +
@@ -194,7 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
     Usage,
     RunOnBadInput,
     ::testing::Values(
-        BadInput{"--method gpoo", "unknown method 'gpoo', expected one of gpo"},
+        BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
         BadInput{"--start 60",
                  "--start: frame 60 is not in the recording, which has frames 0 to 59"},
         BadInput{"--start 40",
@@ -202,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"--frames 1", "--frames"},
         BadInput{"--start -1", "--start"},
         BadInput{"--start abc", "--start"},
-        BadInput{"--rotations gyr", "unknown source 'gyr'"},
+        BadInput{"--rotations gyr", "--rotations: unknown value 'gyr'"},
         BadInput{"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
         BadInput{"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
         BadInput{"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},

@@ -73,6 +73,19 @@ TEST(Snapshot, CompareDrawsEveryMethodOfTheTable) {
   EXPECT_FALSE(cv::imread(file.string()).empty());
 }
 
+TEST(Snapshot, SaysWhatIsNotUsed) {
+  const fs::path file = fresh_folder() / "a.png";
+  EXPECT_EQ(snapshot("image", file, "--frames 12 --methods gpo --lengths 5 --loss huber").err,
+            "--methods is not used. Only the views compare and curves read it\n"
+            "--lengths is not used. Only the view curves reads it\n"
+            "--loss is not used. Only gpo_joint lets one choose this\n");
+  const std::string three = "--frames 12 --methods gpo,gpo+no-ransac,gpo_joint ";
+  EXPECT_EQ(snapshot("compare", file, three + "--loss huber --tracking anchored").err, "");
+  EXPECT_EQ(snapshot("compare", file, three + "--ransac --method ba").err,
+            "--method is not used. The compared methods say it themselves\n"
+            "--ransac is not used. The compared methods say it themselves\n");
+}
+
 TEST(Snapshot, CurvesNeedGroundTruth) {
   const fs::path folder = fresh_folder();
   fs::copy(desk(), folder / "in", fs::copy_options::recursive);

@@ -2,22 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
+#include "engine/inspection/setting_values.h"
+
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace gpo {
 namespace {
 
-Compared compared(const WorkbenchState& state, const Configuration& configuration) {
-  Compared one{configuration, apply(configuration, state.settings), nullptr, ""};
+Compared compared(const WorkbenchState& state, const Settings& settings) {
+  Compared one{configuration_of(settings), settings, nullptr, ""};
   if (const Surveyed* found = find_surveyed(state.surveyed.get(), one.settings)) {
     one.inspection = found->inspection;
     one.error = found->error;
   }
   // The same settings, said in other words: "as by default" and what the default comes to.
   if (!one.inspection && state.inspection &&
-      configuration_of(state.inspection->settings) == configuration &&
-      apply(configuration, state.inspection->settings) == one.settings)
+      as_used(state.inspection->settings) == as_used(settings))
     one.inspection = state.inspection;
   return one;
 }
@@ -55,12 +57,40 @@ void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) 
 
 std::vector<Compared> unmoved_results(const WorkbenchState& state) {
   std::vector<Compared> all;
-  for (const std::string& key : state.compared)
-    all.push_back(compared(state, parse_configuration(key)));
+  for (const Settings& settings : compared_settings(state, state.settings))
+    all.push_back(compared(state, settings));
   return all;
 }
 
+std::vector<Configuration> compared_list(const WorkbenchState& state) {
+  std::vector<Configuration> list;
+  for (const std::string& key : state.compared) list.push_back(parse_configuration(key));
+  return list;
+}
+
+/// Of the first compared configuration that comes to other settings than the current ones.
+std::optional<std::size_t> first_other(const WorkbenchState& state) {
+  const Configuration current = configuration_of(state.settings);
+  const std::vector<Settings> all = compared_settings(state, state.settings);
+  const auto other = std::ranges::find_if(
+      all, [&](const Settings& one) { return configuration_of(one) != current; });
+  if (other == all.end()) return std::nullopt;
+  return other - all.begin();
+}
+
 }  // namespace
+
+Settings compared_base(const WorkbenchState& state) {
+  return base_of(compared_list(state), state.settings);
+}
+
+std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {
+  const std::vector<Configuration> list = compared_list(state);
+  const Settings base = base_of(list, window);
+  std::vector<Settings> all;
+  for (const Configuration& one : list) all.push_back(apply(one, base));
+  return all;
+}
 
 std::vector<Compared> compared_results(const WorkbenchState& state) {
   std::vector<Compared> all = unmoved_results(state);
@@ -79,17 +109,16 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state) {
 
 std::optional<std::string> flipped(const WorkbenchState& state) {
   if (!state.flip) return std::nullopt;
-  const std::string current = key_of(configuration_of(state.settings));
-  const auto other =
-      std::ranges::find_if(state.compared, [&](const auto& key) { return key != current; });
-  return other == state.compared.end() ? std::nullopt : std::optional(*other);
+  const auto other = first_other(state);
+  return other ? std::optional(state.compared[*other]) : std::nullopt;
 }
 
 std::optional<Compared> flipped_result(const WorkbenchState& state) {
-  const auto key = flipped(state);
-  if (!key) return std::nullopt;
+  const auto other = state.flip ? first_other(state) : std::nullopt;
+  if (!other) return std::nullopt;
   // Where the current one's cube is, if it has any.
-  std::vector<Compared> both = {current_result(state), compared(state, parse_configuration(*key))};
+  std::vector<Compared> both = {current_result(state),
+                                compared(state, compared_settings(state, state.settings)[*other])};
   place_cubes_alike(state, both);
   return both.back();
 }
@@ -108,14 +137,12 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   const PaneNeeds needs = needs_of(state.panes);
   const std::optional<std::string> other = flipped(state);
   if (!needs.compared && other)
-    wanted.push_back(apply(parse_configuration(*other), state.settings));
+    wanted.push_back(apply(parse_configuration(*other), compared_base(state)));
   if (!needs.compared) return wanted;
   const auto want_each = [&](int frames) {
-    for (const std::string& key : state.compared) {
-      Settings settings = apply(parse_configuration(key), state.settings);
-      settings.frames = frames;
-      wanted.push_back(std::move(settings));
-    }
+    Settings window = state.settings;
+    window.frames = frames;
+    std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
   };
   want_each(state.settings.frames);
   // The longest first: its tracks serve the others.

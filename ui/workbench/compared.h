@@ -14,11 +14,20 @@ namespace gpo {
 
 /// One of the compared configurations in the current window, and what is known of it.
 struct Compared {
-  Configuration configuration;
+  Configuration
+      configuration;  ///< of `settings`: what is named, and what the window's settings add
   Settings settings;
   std::shared_ptr<const Inspection> inspection;  ///< null: not there, yet
   std::string error;  ///< why there will be none, one line; empty: it is being computed
 };
+
+/// What the compared configurations differ from: the current settings, but what any of them names
+/// is by default.
+Settings compared_base(const WorkbenchState& state);
+
+/// The settings of every configuration of `state.compared`, in that order, in a window: what none
+/// of them names is as the window has it.
+std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
 
 /// Every configuration of `state.compared`, in that order; with `flip` the first two change places.
 /// The cubes of all stand where one ray of the reference camera meets their planes: where the user

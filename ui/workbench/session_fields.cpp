@@ -3,7 +3,7 @@
 #include "ui/workbench/session_fields.h"
 
 #include "engine/experiment/configuration.h"
-#include "ui/workbench/setting_text.h"
+#include "engine/inspection/setting_values.h"
 
 #include <algorithm>
 #include <concepts>

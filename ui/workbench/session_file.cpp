@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
+#include "engine/inspection/setting_values.h"
 #include "ui/workbench/session_fields.h"
 #include "ui/workbench/window_span.h"
 

@@ -3,6 +3,8 @@
 #include "ui/workbench/shown_results.h"
 
 #include "engine/experiment/configuration.h"
+#include "engine/inspection/setting_values.h"
+#include "ui/workbench/compared.h"
 
 namespace gpo {
 
@@ -10,21 +12,18 @@ std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   std::vector<ShownResult> shown;
   if (!state.inspection) return shown;
   const Settings& s = state.inspection->settings;
-  const Configuration own{s.method, s.ransac, s.rotations, s.tracking, s.inliers};
-  shown.push_back({title_of(own), color_of(own), state.inspection, true});
-  for (const std::string& key : state.compared) {
-    const Configuration configuration = parse_configuration(key);
-    const Settings settings = apply(configuration, s);
-    const std::string title = title_of(configuration);
-    const std::uint32_t rgb = color_of(configuration);
-    if (settings == s) {
-      shown.front().name = title;
-      shown.front().rgb = rgb;
-      continue;
-    }
+  const auto named = [&](const Settings& settings, bool current) {
+    const Configuration one = configuration_of(settings);
+    return ShownResult{title_of(one), color_of(one), nullptr, current};
+  };
+  shown.push_back(named(s, true));
+  shown.back().inspection = state.inspection;
+  for (const Settings& settings : compared_settings(state, s)) {
+    if (as_used(settings) == as_used(s)) continue;
     const Surveyed* surveyed = find_surveyed(state.surveyed.get(), settings);
-    if (surveyed != nullptr && surveyed->inspection)
-      shown.push_back({title, rgb, surveyed->inspection, false});
+    if (surveyed == nullptr || !surveyed->inspection) continue;
+    shown.push_back(named(settings, false));
+    shown.back().inspection = surveyed->inspection;
   }
   return shown;
 }

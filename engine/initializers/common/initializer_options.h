@@ -12,7 +12,7 @@ enum class Solver { schur, ceres };
 
 template <>
 struct ChoiceKeys<Solver> {
-  static constexpr const char* option = "--solver";
+  static constexpr const char* name = "solver";
   static constexpr std::array keys{"schur", "ceres"};
 };
 
@@ -22,7 +22,7 @@ enum class ErrorModel { transfer, sampson };
 
 template <>
 struct ChoiceKeys<ErrorModel> {
-  static constexpr const char* option = "--error";
+  static constexpr const char* name = "error";
   static constexpr std::array keys{"transfer", "sampson"};
 };
 
@@ -30,7 +30,7 @@ enum class Loss { squared, huber };
 
 template <>
 struct ChoiceKeys<Loss> {
-  static constexpr const char* option = "--loss";
+  static constexpr const char* name = "loss";
   static constexpr std::array keys{"squared", "huber"};
 };
 
@@ -40,7 +40,7 @@ enum class Shutter { estimated, global };
 
 template <>
 struct ChoiceKeys<Shutter> {
-  static constexpr const char* option = "--shutter";
+  static constexpr const char* name = "shutter";
   static constexpr std::array keys{"estimated", "global"};
 };
 

@@ -14,7 +14,7 @@ enum class Readiness { ready, weak, degenerate };
 
 template <>
 struct ChoiceKeys<Readiness> {
-  static constexpr const char* option = "readiness";
+  static constexpr const char* name = "readiness";
   static constexpr std::array keys{"ready", "weak", "degenerate"};
 };
 

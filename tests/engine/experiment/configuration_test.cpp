@@ -21,28 +21,78 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
   const Configuration plain = parse_configuration("gpo");
   EXPECT_EQ(plain, (Configuration{.method = "gpo"}));
   const Configuration both = parse_configuration("gpo+averaging+no-ransac");
-  EXPECT_EQ(both.ransac, false);
-  EXPECT_EQ(both.rotations, RotationSource::averaging);
+  EXPECT_EQ(apply(both, {}).ransac, false);
+  EXPECT_EQ(apply(both, {}).rotations, RotationSource::averaging);
   EXPECT_EQ(key_of(both), "gpo+no-ransac+averaging");
   EXPECT_EQ(parse_configuration(key_of(both)), both);
   const Configuration anchored = parse_configuration("ba+anchored+truth");
-  EXPECT_EQ(anchored.tracking, Tracking::anchored);
   EXPECT_EQ(key_of(anchored), "ba+truth+anchored");
   EXPECT_EQ(title_of(anchored), "BA with true rotations with anchored tracks");
   EXPECT_EQ(apply(anchored, {}).tracking, Tracking::anchored);
   const Configuration consistent = parse_configuration("gpo+consistent+truth+anchored");
-  EXPECT_EQ(consistent.inliers, Inliers::consistent);
   EXPECT_EQ(key_of(consistent), "gpo+truth+anchored+consistent");
   EXPECT_EQ(parse_configuration(key_of(consistent)), consistent);
   EXPECT_EQ(title_of(parse_configuration("gpo+consistent")), "GPO with consistent inliers");
   EXPECT_EQ(apply(consistent, {}).inliers, Inliers::consistent);
 }
 
-TEST(Configuration, DropsWhatRepeatsADefault) {
-  EXPECT_EQ(key_of(parse_configuration("gpo+ransac")), "gpo");
-  EXPECT_EQ(key_of(parse_configuration("gpo+automatic")), "gpo");
-  EXPECT_EQ(key_of(parse_configuration("gpo+frame-to-frame")), "gpo");
-  EXPECT_EQ(key_of(parse_configuration("pnp+per-frame")), "pnp");
+TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
+  const Configuration huber = parse_configuration("gpo_joint+global-shutter+huber+time-offset");
+  const Settings settings = apply(huber, {});
+  EXPECT_EQ(settings.initializer.loss, Loss::huber);
+  EXPECT_EQ(settings.initializer.shutter, Shutter::global);
+  EXPECT_TRUE(settings.initializer.time_offset);
+  EXPECT_EQ(key_of(huber), "gpo_joint+huber+global-shutter+time-offset");
+  EXPECT_EQ(configuration_of(settings), huber);
+  EXPECT_EQ(title_of(parse_configuration("gpo+ceres")), "GPO by Ceres");
+  EXPECT_THAT(error_of([] { parse_configuration("ba+huber"); }),
+              HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
+}
+
+TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
+  const auto shortest = [](const char* text) {
+    return key_of(configuration_of(apply(parse_configuration(text), {})));
+  };
+  EXPECT_EQ(shortest("gpo+ransac"), "gpo");
+  EXPECT_EQ(shortest("gpo+automatic"), "gpo");
+  EXPECT_EQ(shortest("gpo+frame-to-frame"), "gpo");
+  EXPECT_EQ(shortest("pnp+per-frame"), "pnp");
+  EXPECT_EQ(shortest("closed_form+per-frame"), "closed_form+per-frame");
+  Settings unread{.method = "ba"};
+  unread.initializer.loss = Loss::huber;
+  EXPECT_EQ(key_of(configuration_of(unread)), "ba");
+}
+
+TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
+  Settings from;
+  from.tracking = Tracking::anchored;
+  from.ransac = false;
+  for (const char* key : {"gpo", "gpo+frame-to-frame", "gpo+ransac+truth"}) {
+    const Settings settings = apply(parse_configuration(key), from);
+    EXPECT_EQ(key_of(configuration_of(settings, from)), key);
+  }
+}
+
+TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
+  Settings anchored;
+  anchored.tracking = Tracking::anchored;
+  anchored.initializer.loss = Loss::huber;
+  const Settings applied = apply(parse_configuration("gpo_joint+averaging"), anchored);
+  EXPECT_EQ(applied.tracking, Tracking::anchored);
+  EXPECT_EQ(applied.initializer.loss, Loss::huber);
+  EXPECT_EQ(apply(parse_configuration("gpo+frame-to-frame"), anchored).tracking,
+            Tracking::frame_to_frame);
+}
+
+TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettings) {
+  Settings settings;
+  settings.tracking = Tracking::anchored;
+  settings.ransac = false;
+  const auto list = parse_configurations("gpo,gpo+no-ransac,pba");
+  const Settings base = base_of(list, settings);
+  EXPECT_EQ(key_of(configuration_of(apply(list[0], base))), "gpo+anchored");
+  EXPECT_EQ(key_of(configuration_of(apply(list[1], base))), "gpo+no-ransac+anchored");
+  EXPECT_EQ(key_of(configuration_of(apply(list[2], base))), "pba+anchored");
 }
 
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
@@ -83,7 +133,7 @@ TEST(Configuration, HasATitleAndAColorOfItsOwn) {
 }
 
 TEST(Configuration, EveryRotationSourceHasATitle) {
-  for (const char* source : rotation_source_keys()) {
+  for (const char* source : ChoiceKeys<RotationSource>::keys) {
     EXPECT_FALSE(title_of(parse_configuration(std::string("gpo+") + source)).empty());
   }
 }
@@ -92,8 +142,8 @@ TEST(Configuration, NamesTheOptionAndWhatIsKnown) {
   const auto error = [](const std::string& text) {
     return error_of([&] { parse_configurations(text); });
   };
-  EXPECT_THAT(error("gpo,gpoo"), HasSubstr("--methods: unknown method 'gpoo', expected all, or"));
-  EXPECT_THAT(error(""), HasSubstr("--methods: unknown method ''"));
+  EXPECT_THAT(error("gpo,gpoo"), HasSubstr("methods: unknown method 'gpoo', expected all, or"));
+  EXPECT_THAT(error(""), HasSubstr("methods: unknown method ''"));
   EXPECT_THAT(error("gpo+gyr"),
               HasSubstr("'gpo+gyr': unknown setting 'gyr', expected one of ransac"));
   EXPECT_THAT(error("gpo+truth+gyro"), HasSubstr("sets one thing twice"));

@@ -3,6 +3,7 @@
 #include "engine/experiment/results_file.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +19,7 @@ Row row(const std::string& configuration, int frames) {
   Settings settings;
   settings.frames = frames;
   settings.start = 7;
-  Row row = refused_row("desk", parse_configuration(configuration), settings, "");
+  Row row = refused_row("desk", apply(parse_configuration(configuration), settings), "");
   row.status = "ok";
   row.pne_deg = 0.1 * frames;
   row.ate_m = 1.0 / 3;
@@ -63,8 +64,8 @@ TEST_F(ResultsFile, ErrorsNameFileAndLine) {
     return refusal(text);
   };
   EXPECT_THAT(broken(",ok,", ",perhaps,"), HasSubstr("results.csv:3: status: found 'perhaps'"));
-  EXPECT_THAT(broken(",7,", ",seven,"), HasSubstr("results.csv:3: start: found 'seven'"));
-  EXPECT_THAT(broken("desk,ba", "desk,baa"), HasSubstr("results.csv:3: --methods"));
+  EXPECT_THAT(broken(",7,", ",seven,"), HasSubstr("results.csv:3: start: 'seven'"));
+  EXPECT_THAT(broken("desk,ba", "desk,baa"), HasSubstr("results.csv:3: methods"));
   EXPECT_THAT(broken(",7,", ","), HasSubstr("results.csv:3: found"));
   EXPECT_THAT(refusal("recording,configuration,frames\n"), HasSubstr("results.csv:1: no column"));
   EXPECT_THAT(refusal(good.substr(0, good.find('\n') + 1)), HasSubstr("no rows"));

@@ -9,6 +9,7 @@
 #include "engine/window/window.h"
 #include "tests/engine/experiment/made_rows.h"
 
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -48,6 +49,42 @@ TEST(Row, HasEveryNumberOfTheReportAndTimesLast) {
   }
   EXPECT_EQ(names[first_time + 6], "jobs");
   EXPECT_EQ(names[first_time + 7], "processor");
+}
+
+/// The cells of one row by their columns.
+std::map<std::string, std::string> cells_of(const Row& row) {
+  const std::string csv = to_csv(std::vector{row});
+  std::istringstream line(csv.substr(csv.find('\n') + 1));
+  std::map<std::string, std::string> cells;
+  for (const std::string& name : column_names()) std::getline(line, cells[name], ',');
+  return cells;
+}
+
+TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
+  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+  const auto inspection =
+      Inspector(recording).inspect({.frames = 6, .tracking = Tracking::anchored});
+  const Row row = make_row(*inspection);
+  EXPECT_EQ(row.configuration, "gpo+anchored");
+  EXPECT_EQ(row.settings.tracking, Tracking::anchored);
+  EXPECT_EQ(row.settings.rotations, RotationSource::gyro);
+  EXPECT_EQ(row.settings.ransac, true);
+}
+
+TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
+  Settings settings;
+  settings.initializer.loss = Loss::huber;
+  auto cells = cells_of(refused_row("desk", settings, ""));
+  EXPECT_EQ(cells.at("configuration"), "gpo");
+  EXPECT_EQ(cells.at("solver"), "schur");
+  EXPECT_EQ(cells.at("loss"), "");
+  EXPECT_EQ(cells.at("shutter"), "");
+  settings.method = "gpo_joint";
+  cells = cells_of(refused_row("desk", settings, ""));
+  EXPECT_EQ(cells.at("configuration"), "gpo_joint+huber");
+  EXPECT_EQ(cells.at("loss"), "huber");
+  EXPECT_EQ(cells.at("shutter"), "estimated");
+  EXPECT_EQ(cells.at("time_offset"), "false");
 }
 
 TEST(Row, ComesBackFromJsonToTheBit) {

@@ -79,7 +79,7 @@ TEST_F(RunnerTest, RowsAreWhatRunGivesInTheOrderOfThePlan) {
     for (const int frames : {5, 7}) {
       for (const Configuration& c : experiment_.configurations) {
         const Settings window{.start = start, .frames = frames, .seed = 3};
-        expected.push_back(make_row(c, *Inspector(recordings_[0]).inspect(apply(c, window))));
+        expected.push_back(make_row(*Inspector(recordings_[0]).inspect(apply(c, window))));
       }
     }
   }
@@ -272,7 +272,7 @@ TEST_F(RunnerTest, WhatARecordingLacksIsAFailedRowWithTheReason) {
   const std::vector<Row> rows = collect_rows(experiment, std::span(&a_, 1));
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].status, "failed");
-  EXPECT_EQ(rows[0].reason, "--rotations gyro: desk has no gyroscope");
+  EXPECT_EQ(rows[0].reason, "rotations: gyro: desk has no gyroscope");
   EXPECT_FALSE(rows[0].pne_deg);
   EXPECT_EQ(rows[1].settings.rotations, RotationSource::averaging);
 }

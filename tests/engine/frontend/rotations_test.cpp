@@ -194,11 +194,11 @@ TEST(GyroRotations, SayThatTheWindowIsNotCovered) {
 
 TEST(RotationSource, TypoNamesTheKnownOnes) {
   try {
-    rotation_source("gyr");
+    choice<RotationSource>("gyr");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "--rotations: unknown source 'gyr', expected one of automatic, gyro, "
+                 "rotations: unknown value 'gyr', expected one of automatic, gyro, "
                  "gyro-calibrated, averaging, truth");
   }
 }

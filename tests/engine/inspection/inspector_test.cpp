@@ -292,9 +292,10 @@ TEST(Inspector, SaysWhatARecordingLacks) {
   const auto recording = std::make_shared<const Recording>(bare);
   Settings settings;
   settings.rotations = RotationSource::gyro;
-  EXPECT_EQ(message(recording, settings), "--rotations gyro: desk has no gyroscope");
+  EXPECT_EQ(message(recording, settings), "rotations: gyro: desk has no gyroscope");
   settings.rotations = RotationSource::truth;
-  EXPECT_EQ(message(recording, settings), "--rotations truth: desk has no ground truth");
+  EXPECT_THAT(message(recording, settings),
+              HasSubstr("rotations: truth: desk has no ground truth"));
   bare.pictures.reset();
   EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
               HasSubstr("no pictures and no tracks"));
@@ -305,7 +306,7 @@ TEST(Inspector, NamesATrackToLeaveOutThatIsNotThere) {
   const int last = Inspector(recording).inspect({.frames = 12})->tracks->track_count() - 1;
   EXPECT_EQ(
       message(recording, {.frames = 12, .exclude = {3, 9999}}),
-      "--exclude: track 9999 is not in the window, which has tracks 0 to " + std::to_string(last));
+      "exclude: track 9999 is not in the window, which has tracks 0 to " + std::to_string(last));
 }
 
 TEST(Inspector, NamesTheFrameWithoutTruth) {

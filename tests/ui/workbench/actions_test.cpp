@@ -3,7 +3,6 @@
 #include "ui/workbench/actions/actions.h"
 
 #include "ui/workbench/adopt.h"
-#include "ui/workbench/setting_text.h"
 
 #include <set>
 
@@ -59,18 +58,6 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
     run_action(state, line);
     EXPECT_THAT(state.message, testing::HasSubstr(what)) << line;
   }
-}
-
-TEST(SettingText, IsReadBackAsItWasWritten) {
-  Settings settings{.start = 3, .frames = 20, .method = "ba"};
-  settings.ransac = false;
-  settings.ransac_threshold_px = 1.25;
-  settings.initializer.solver = Solver::ceres;
-  Settings read;
-  for (const std::string& key : setting_keys())
-    read = with_setting(read, key, setting_text(settings, key));
-  EXPECT_EQ(read, settings);
-  EXPECT_EQ(with_defaults(settings), (Settings{.start = 3, .frames = 20, .method = "ba"}));
 }
 
 TEST(Actions, AreFoundByTheKeysThatTheDesignNames) {

@@ -80,6 +80,26 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
   EXPECT_EQ(key_of(configuration_of(settings)), "gpo");
 }
 
+TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
+  WorkbenchState state;
+  state.settings.tracking = Tracking::anchored;
+  run(state, "compare gpo,ba");
+  const auto keys = [&] {
+    std::vector<std::string> all;
+    for (const Compared& one : compared_results(state)) all.push_back(key_of(one.configuration));
+    return all;
+  };
+  EXPECT_THAT(keys(), ElementsAre("gpo+anchored", "ba+anchored"));
+  run(state, "compare gpo,gpo+no-ransac");
+  state.settings.ransac = false;  // as a click on the second makes it
+  EXPECT_THAT(keys(), ElementsAre("gpo+anchored", "gpo+no-ransac+anchored"));
+  run(state, "compare gpo,gpo+frame-to-frame");  // the same by default, and not here
+  EXPECT_THAT(state.compared, ElementsAre("gpo"));
+  run(state, "compare gpo+frame-to-frame");
+  state.settings.ransac.reset();
+  EXPECT_THAT(keys(), ElementsAre("gpo"));
+}
+
 TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   WorkbenchState state;
   EXPECT_EQ(flipped(state), std::nullopt);

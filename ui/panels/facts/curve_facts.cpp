@@ -24,14 +24,14 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
   std::vector<int> lengths = curve_lengths(state.settings.frames);
   std::ranges::reverse(lengths);
   for (const int length : lengths) {
-    for (const Configuration& configuration : facts.configurations) {
-      Settings settings = apply(configuration, state.settings);
-      settings.frames = length;
+    Settings window = state.settings;
+    window.frames = length;
+    for (const Settings& settings : compared_settings(state, window)) {
       ++facts.of;
       const Surveyed* found = find_surveyed(state.surveyed.get(), settings);
       if (found == nullptr) continue;
       ++facts.done;
-      if (found->inspection) samples.push_back({configuration, found->inspection});
+      if (found->inspection) samples.push_back({configuration_of(settings), found->inspection});
     }
   }
   return samples;
@@ -67,14 +67,13 @@ Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configur
 
 CurveFacts facts_of_survey(const WorkbenchState& state) {
   CurveFacts facts;
-  for (const std::string& key : state.compared)
-    facts.configurations.push_back(parse_configuration(key));
+  for (const Settings& settings : compared_settings(state, state.settings))
+    facts.configurations.push_back(configuration_of(settings));
   if (!state.recording) return facts;
   const std::vector<Sample> samples = samples_of(state, facts);
   if (samples.empty()) return facts;
   std::vector<Row> rows;
-  for (const Sample& sample : samples)
-    rows.push_back(make_row(sample.configuration, *sample.inspection));
+  for (const Sample& sample : samples) rows.push_back(make_row(*sample.inspection));
   const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
   if (plan.configurations.empty()) return facts;
   const bool truth = std::ranges::any_of(

@@ -181,30 +181,6 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   return facts;
 }
 
-std::string why_no_rotations(const Recording& recording, RotationSource source) {
-  if (needs_gyroscope(source) && !recording.gyroscope) {
-    return "The recording has no gyroscope";
-  }
-  const bool truth = recording.truth || (recording.board && recording.pictures);
-  if (source == RotationSource::truth && !truth) {
-    return "The recording has neither ground truth nor a board to compute it from";
-  }
-  return "";
-}
-
-std::string why_idle(const Settings& settings, const std::string& key) {
-  const std::string& method = settings.method;
-  const bool all_inliers = !uses_ransac(settings) && find_method(method).needs_plane;
-  if ((key == "ransac_threshold_px" || key == "inliers") && all_inliers)
-    return "Without RANSAC every track counts as an inlier";
-  if (key == "solver" && method != "gpo" && method != "gpo_joint")
-    return "Only gpo and gpo_joint let one choose who minimizes";
-  if ((key == "error" || key == "loss" || key == "shutter" || key == "time_offset") &&
-      method != "gpo_joint")
-    return "Only gpo_joint lets one choose this";
-  return "";
-}
-
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings) {
   if (!inspection || !inspection->initialization || !inspection->window) {
     return {nothing(kVerdictTitle, {"Rotation alone", "Moved"}),

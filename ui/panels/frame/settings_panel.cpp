@@ -1,206 +1,153 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initializers/methods.h"
+#include "engine/inspection/setting_values.h"
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/setting_text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
 
 constexpr const char* kDrag = ". Drag, or double-click to type";
 
-/// What few people change; folded away.
-bool is_advanced(const SettingInfo& info) {
-  static const std::set<std::string> keys = {
-      "inliers", "seed", "exclude", "solver", "error", "loss", "shutter", "time_offset"};
-  return keys.contains(info.key);
-}
-
-/// One visit a setting: label to the left, the widget that fits its type to the right; dim, with
-/// the reason, where it changes nothing. `changed` tells whether the user changed one.
+/// One row a setting: label to the left, the widget that fits its kind to the right; dim, with the
+/// reason, where it changes nothing. `changed` tells whether the user changed one.
 struct SettingRows {
   const PanelInput& input;
   Commands& commands;
   float label_width;
-  bool advanced = false;  ///< which of the settings are shown
+  Settings settings = input.state.settings;  ///< as the user changes them
   bool changed = false;
   std::string idle = {};  ///< why the setting at hand does nothing
 
-  template <class Value>
-  void operator()(const SettingInfo& info, Value& value) {
-    if (is_advanced(info) != advanced) return;
-    idle = why_idle(input.state.settings, info.key);
-    const std::string normal = setting_text(Settings{}, info.key);
-    const bool other = setting_text(input.state.settings, info.key) != normal;
+  void draw(bool advanced) {
+    for (const Setting& setting : settings_table())
+      if (setting.advanced == advanced) draw(setting);
+  }
+
+  void draw(const Setting& setting) {
+    const Settings& now = input.state.settings;
+    idle = why_idle(setting, now, input.state.recording.get());
+    const bool other = setting.get(now) != setting.get(Settings{});
     ImGui::BeginDisabled(!idle.empty());
-    ImGui::PushID(info.key);
-    label(info.title, idle.empty() ? info.help : idle.c_str(), other);
-    widget(info, value);
+    ImGui::PushID(setting.key.c_str());
+    label(setting.title, idle.empty() ? setting.help : idle, other);
+    widget(setting);
     ImGui::PopID();
     ImGui::EndDisabled();
     if (other && ImGui::IsItemClicked(ImGuiMouseButton_Right))
-      push(commands, RunAction{std::string("reset ") + info.key});
+      push(commands, RunAction{"reset " + setting.key});
+  }
+
+  void widget(const Setting& setting) {
+    const SettingValue value =
+        setting.used != nullptr ? setting.used(settings) : setting.get(settings);
+    switch (setting.kind) {
+      case SettingKind::on_off:
+        return check_box(setting, std::get<bool>(value));
+      case SettingKind::whole:
+        return drag(setting, std::get<std::int64_t>(value), 0.25F, "%lld");
+      case SettingKind::number:
+        return drag(setting, std::get<double>(value), 0.02F, "%.1f " + setting.unit);
+      case SettingKind::choice:
+        return combo(setting, std::get<std::string>(value));
+      case SettingKind::ids:
+        ImGui::TextUnformatted(value_text(value).c_str());
+        return explain(setting);
+    }
+  }
+
+  void change(const Setting& setting, const SettingValue& value) {
+    setting.set(settings, value);
+    changed = true;
   }
 
   /// Of the item drawn last.
-  void explain(const SettingInfo& info, const char* how = "") const {
-    const std::string unit = *info.unit == '\0' ? "" : fmt::format(" [{}]", info.unit);
-    const std::string normal = setting_text(Settings{}, info.key);
-    tooltip(
-        idle.empty()
-            ? fmt::format("{}{}{}\nDefault: {}; right click resets", info.help, unit, how, normal)
-            : idle);
-  }
-
-  bool begin_combo(const SettingInfo& info, const char* title) const {
-    if (ImGui::BeginCombo((std::string("##") + info.key).c_str(), title)) return true;
-    explain(info);
-    return false;
+  void explain(const Setting& setting, const char* how = "") const {
+    const std::string unit = setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit);
+    const std::string normal = setting_text(Settings{}, setting.key);
+    tooltip(idle.empty()
+                ? fmt::format(
+                      "{}{}{}\nDefault: {}; right click resets", setting.help, unit, how, normal)
+                : idle);
   }
 
   /// In the color of what was chosen, where it is `other` than the default.
-  void label(const char* title, const char* help, bool other = false) const {
+  void label(const std::string& title, const std::string& help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
     ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(other ? palette::kAccent : palette::kText));
-    ImGui::TextUnformatted(title);
+    ImGui::TextUnformatted(title.c_str());
     ImGui::PopStyleColor();
     tooltip(help);
     ImGui::SameLine(label_width);
     ImGui::SetNextItemWidth(-1);
   }
 
-  int most_of(const SettingInfo& info) const {
+  /// What chooses the window does not reach beyond the recording.
+  double most_of(const Setting& setting) const {
     const int frames = input.state.frame_count();
-    return frames > 0 ? std::min(static_cast<int>(info.most), frames) : static_cast<int>(info.most);
+    const bool window = setting.stage == SettingStage::tracks && frames > 0;
+    return window ? std::min<double>(setting.most, frames) : setting.most;
   }
 
-  void widget(const SettingInfo& info, int& value) {
-    changed |= ImGui::DragInt((std::string("##") + info.key).c_str(),
-                              &value,
-                              0.25F,
-                              static_cast<int>(info.least),
-                              most_of(info),
-                              "%d",
-                              ImGuiSliderFlags_AlwaysClamp);
-    explain(info, kDrag);
+  template <class Number>
+  void drag(const Setting& setting, Number value, float speed, const std::string& format) {
+    const auto least = static_cast<Number>(setting.least);
+    const auto most = static_cast<Number>(most_of(setting));
+    const auto type = std::is_same_v<Number, double> ? ImGuiDataType_Double : ImGuiDataType_S64;
+    if (ImGui::DragScalar(("##" + setting.key).c_str(),
+                          type,
+                          &value,
+                          speed,
+                          &least,
+                          &most,
+                          format.c_str(),
+                          ImGuiSliderFlags_AlwaysClamp))
+      change(setting, value);
+    explain(setting, kDrag);
   }
 
-  void widget(const SettingInfo& info, std::uint64_t& value) {
-    const auto least = static_cast<std::uint64_t>(info.least);
-    const auto most = static_cast<std::uint64_t>(info.most);
-    changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
-                                 ImGuiDataType_U64,
-                                 &value,
-                                 0.1F,
-                                 &least,
-                                 &most,
-                                 "%llu",
-                                 ImGuiSliderFlags_AlwaysClamp);
-    explain(info, kDrag);
+  void check_box(const Setting& setting, bool on) {
+    if (ImGui::Checkbox(("##" + setting.key).c_str(), &on)) change(setting, on);
+    explain(setting);
   }
 
-  void widget(const SettingInfo& info, double& value) {
-    const std::string format = fmt::format("%.1f {}", info.unit);
-    changed |= ImGui::DragScalar((std::string("##") + info.key).c_str(),
-                                 ImGuiDataType_Double,
-                                 &value,
-                                 0.02F,
-                                 &info.least,
-                                 &info.most,
-                                 format.c_str(),
-                                 ImGuiSliderFlags_AlwaysClamp);
-    explain(info, kDrag);
+  /// Why the recording does not have a choice; empty where it does.
+  std::string why_not(const Setting& setting, const SettingChoice& one) const {
+    const bool asks = setting.why_not != nullptr && input.state.recording;
+    return asks ? setting.why_not(*input.state.recording, one.key) : "";
   }
 
-  void widget(const SettingInfo& info, std::optional<bool>& value) {
-    bool used = uses_ransac(input.state.settings);
-    if (ImGui::Checkbox((std::string("##") + info.key).c_str(), &used)) {
-      value = used;
-      changed = true;
-    }
-    explain(info);
+  /// "automatic (gyro)": the first of the others that the recording has.
+  std::string title_of(const Setting& setting, const SettingChoice& one) const {
+    if (one.key != "automatic" || !input.state.recording) return one.title;
+    for (const SettingChoice& other : setting.choices)
+      if (other.key != one.key && why_not(setting, other).empty())
+        return fmt::format("{} ({})", one.title, other.title);
+    return one.title;
   }
 
-  void widget(const SettingInfo& info, std::string& value) {
-    const auto table = methods();
-    const auto chosen = std::find_if(
-        table.begin(), table.end(), [&](const Method& method) { return method.key == value; });
-    const std::string& title = chosen == table.end() ? value : chosen->title;
-    if (!begin_combo(info, title.c_str())) return;
-    for (const Method& method : table) {
-      ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(method.rgb));
-      ImGui::Bullet();
-      ImGui::PopStyleColor();
-      if (ImGui::Selectable(method.title.c_str(), method.key == value)) {
-        value = method.key;
-        changed = true;
+  void combo(const Setting& setting, const std::string& chosen) {
+    const auto now = std::ranges::find(setting.choices, chosen, &SettingChoice::key);
+    const std::string title = now == setting.choices.end() ? chosen : title_of(setting, *now);
+    if (!ImGui::BeginCombo(("##" + setting.key).c_str(), title.c_str())) return explain(setting);
+    for (const SettingChoice& one : setting.choices) {
+      const std::string lacks = why_not(setting, one);
+      if (one.rgb != 0) {
+        ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(one.rgb));
+        ImGui::Bullet();
+        ImGui::PopStyleColor();
       }
-    }
-    ImGui::EndCombo();
-  }
-
-  std::string source_title(RotationSource source) const {
-    if (source != RotationSource::automatic || !input.state.recording) return to_string(source);
-    const bool gyro = why_no_rotations(*input.state.recording, RotationSource::gyro).empty();
-    return std::string(to_string(source)) + (gyro ? " (gyro)" : " (averaging)");
-  }
-
-  void widget(const SettingInfo& info, RotationSource& value) {
-    if (!begin_combo(info, source_title(value).c_str())) return;
-    for (std::size_t i = 0; i < rotation_source_keys().size(); ++i) {
-      const auto source = static_cast<RotationSource>(i);
-      const std::string why_not =
-          input.state.recording ? why_no_rotations(*input.state.recording, source) : "";
-      const auto flags = why_not.empty() ? 0 : ImGuiSelectableFlags_Disabled;
-      if (ImGui::Selectable(source_title(source).c_str(), source == value, flags)) {
-        value = source;
-        changed = true;
-      }
-      tooltip(why_not);
-    }
-    ImGui::EndCombo();
-  }
-
-  void widget(const SettingInfo& info, std::vector<std::int64_t>& value) {
-    ImGui::TextUnformatted(value.empty() ? "none"
-                                         : fmt::format("{}", fmt::join(value, ",")).c_str());
-    explain(info);
-  }
-
-  template <Choice E>
-  void widget(const SettingInfo& info, E& value) {
-    choose(info, value, value);
-  }
-
-  void widget(const SettingInfo& info, std::optional<Inliers>& value) {
-    choose(info, value, inliers_used(input.state.settings));
-  }
-
-  void widget(const SettingInfo& info, bool& value) {
-    changed |= ImGui::Checkbox((std::string("##") + info.key).c_str(), &value);
-    explain(info);
-  }
-
-  /// A combo box; `value` is a choice, or an optional one that comes to `used`.
-  template <Choice E>
-  void choose(const SettingInfo& info, auto& value, E used) {
-    if (!begin_combo(info, to_string(used))) return;
-    for (std::size_t i = 0; i < ChoiceKeys<E>::keys.size(); ++i) {
-      const auto each = static_cast<E>(i);
-      if (!ImGui::Selectable(to_string(each), each == used)) continue;
-      value = each;
-      changed = true;
+      const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
+      if (ImGui::Selectable(title_of(setting, one).c_str(), one.key == chosen, flags))
+        change(setting, one.key);
+      tooltip(lacks);
     }
     ImGui::EndCombo();
   }
@@ -250,15 +197,11 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
   heading("SETTINGS");
   reset_button(input, commands);
   SettingRows rows{input, commands, std::round(104 * s)};
-  Settings settings = input.state.settings;
-  visit_settings(settings, rows);
+  rows.draw(false);
   cube_row(rows, input, commands);
-  if (ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen)) {
-    rows.advanced = true;
-    visit_settings(settings, rows);
-  }
+  if (ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen)) rows.draw(true);
   tooltip("Inliers, seed, and what the optimizations let one choose");
-  if (rows.changed) push(commands, ChangeSettings{settings, ImGui::IsMouseDown(0)});
+  if (rows.changed) push(commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
   ImGui::PopStyleVar(2);
 }
 

@@ -6,6 +6,7 @@
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +43,13 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
   return clicked;
 }
 
-void chip(const Configuration& one, bool last, float width, float s, Commands& commands) {
-  const std::string key = key_of(one);
+/// `key`: as it is among the compared ones; `one`: what it comes to in the window.
+void chip(const std::string& key,
+          const Configuration& one,
+          bool last,
+          float width,
+          float s,
+          Commands& commands) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = std::round(kHeight * s);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -62,11 +68,11 @@ void chip(const Configuration& one, bool last, float width, float s, Commands& c
   if (remove && !last) push(commands, RunAction{"compare remove " + key});
 }
 
-/// The current settings, as they are or with the other RANSAC.
+/// The current settings, as they are or with the other RANSAC, beside what is compared.
 Configuration current(const WorkbenchState& state, std::optional<bool> ransac) {
   Settings settings = state.settings;
   if (ransac) settings.ransac = ransac;
-  return configuration_of(settings);
+  return configuration_of(settings, compared_base(state));
 }
 
 void entry(const PanelInput& input,
@@ -91,7 +97,7 @@ void list_of_all(const PanelInput& input, Commands& commands) {
   heading("CURRENT SETTINGS");
   const WorkbenchState& state = input.state;
   const Configuration now = current(state, {});
-  entry(input, now, title_of(now), commands);
+  entry(input, now, title_of(configuration_of(state.settings)), commands);
   const bool ransac = uses_ransac(state.settings);
   entry(input,
         current(state, !ransac),
@@ -113,12 +119,13 @@ float compare_chips(const PanelInput& input, const Rectangle& place, Commands& c
   const float s = input.scale;
   const auto& keys = input.state.compared;
   float x = place.x + kGap * s, y = place.y + kGap * s;
-  for (const std::string& key : keys) {
-    const Configuration one = parse_configuration(key);
+  const std::vector<Settings> settings = compared_settings(input.state, input.state.settings);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Configuration one = configuration_of(settings[i]);
     const float width =
         std::round(ImGui::CalcTextSize(title_of(one).c_str()).x + (12 + kHeight) * s);
     place_next(x, y, width, place, s);
-    chip(one, keys.size() == 1, width, s, commands);
+    chip(keys[i], one, keys.size() == 1, width, s, commands);
   }
   const float side = std::round(kHeight * s);
   place_next(x, y, side, place, s);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/setting_values.h"
 #include "ui/workbench/actions/tables.h"
-#include "ui/workbench/setting_text.h"
 #include "ui/workbench/undo.h"
 
 #include <GLFW/glfw3.h>

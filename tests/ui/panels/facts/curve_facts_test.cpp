@@ -90,7 +90,7 @@ TEST(CurveFacts, AFileTakesTheirPlaceUntilItIsClosed) {
   std::vector<Row> rows;
   for (const double pne : {0.2, 0.4, 0.9}) {
     settings.frames = 10;
-    rows.push_back(refused_row("desk", parse_configuration("pba"), settings, ""));
+    rows.push_back(refused_row("desk", apply(parse_configuration("pba"), settings), ""));
     rows.back().status = "ok";
     rows.back().pne_deg = pne;
     settings.start += 10;

@@ -84,23 +84,6 @@ TEST(RecordingFacts, SayWhatIsMissing) {
   EXPECT_EQ(recording_facts(recording).back(), "truth from the board");
 }
 
-TEST(Rotations, WhatTheRecordingLacksIsExplained) {
-  Recording recording = desk();
-  for (const auto source : {RotationSource::automatic,
-                            RotationSource::gyro,
-                            RotationSource::gyro_calibrated,
-                            RotationSource::averaging,
-                            RotationSource::truth}) {
-    EXPECT_EQ(why_no_rotations(recording, source), "");
-  }
-  recording.gyroscope.reset();
-  recording.truth.reset();
-  EXPECT_EQ(why_no_rotations(recording, RotationSource::automatic), "");
-  EXPECT_EQ(why_no_rotations(recording, RotationSource::averaging), "");
-  EXPECT_THAT(why_no_rotations(recording, RotationSource::gyro), HasSubstr("no gyroscope"));
-  EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("ground truth"));
-}
-
 TEST(Results, SayHowInliersWereTold) {
   Inspection inspection = inspected();
   inspection.settings.inliers = Inliers::consistent;
@@ -120,22 +103,6 @@ TEST(Results, SayHowSureATruthFromTheBoardIs) {
   const ResultRow row = rows_of(&inspection).at("Truth");
   EXPECT_EQ(row.value, "\u00b10.050\u00b0");
   EXPECT_THAT(row.tooltip, HasSubstr("certain to 0.4 mm, 0.06 deg, its normal 0.05 deg"));
-}
-
-TEST(Settings, ThatDoNothingSayWhy) {
-  Settings settings;
-  for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"}) {
-    EXPECT_EQ(why_idle(settings, key), "") << key;
-  }
-  for (const char* key : {"error", "loss", "shutter", "time_offset"}) {
-    EXPECT_THAT(why_idle(settings, key), HasSubstr("gpo_joint")) << key;
-  }
-  settings.ransac = false;
-  EXPECT_THAT(why_idle(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
-  EXPECT_THAT(why_idle(settings, "inliers"), HasSubstr("RANSAC"));
-  settings.method = "ba";  // takes all tracks, and still counts inliers
-  EXPECT_EQ(why_idle(settings, "ransac_threshold_px"), "");
-  EXPECT_THAT(why_idle(settings, "solver"), HasSubstr("gpo"));
 }
 
 TEST(Results, CarryUnitsAndSensibleDigits) {

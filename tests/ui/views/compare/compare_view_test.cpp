@@ -53,8 +53,7 @@ TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
   keep("compare", picture);
   ASSERT_EQ(picture.size(), default_compare_size(inspections));
   for (int i = 0; i < 3; ++i) {
-    const Settings& settings = inspections[i]->settings;
-    const Configuration configuration{settings.method, settings.ransac, settings.rotations};
+    const Configuration configuration = configuration_of(inspections[i]->settings);
     const cv::Mat heading = column(picture, i).rowRange(38, 92);
     EXPECT_GT(count_pixels(heading, color_of(configuration)), 150) << "column " << i;
     const bool ok = inspections[i]->initialization->ok;
