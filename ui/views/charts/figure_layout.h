@@ -32,7 +32,7 @@ struct FigureSheet {
 struct LegendKey {
   const CurveStyle* style = nullptr;  ///< null: of hollow points
   std::string text;
-  Eigen::Vector2d at;  ///< the sample's left end; the text is beside
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside
 };
 
 /// Where the parts of a figure are, y down [units].
