@@ -1,19 +1,23 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/board/charuco.h"
 #include "engine/recording/layouts/pictures_reader.h"
 #include "engine/recording/layouts/sidecar_files.h"
 
+#include <array>
 #include <cstdio>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -31,11 +35,9 @@ double required_length(const std::optional<double>& length, const char* option) 
 
 /// Corners of a chessboard, squares of a ChArUco board.
 cv::Size board_counts(const std::string& text, bool charuco) {
-  cv::Size counts;
-  char rest = 0;
-  const int read = std::sscanf(text.c_str(), "%dx%d%c", &counts.width, &counts.height, &rest);
   const auto good = [](int count) { return count >= 3 && count <= 100; };
-  if (read == 2 && good(counts.width) && good(counts.height)) return counts;
+  const auto counts = parse_size(text);
+  if (counts && good(counts->first) && good(counts->second)) return {counts->first, counts->second};
   throw InputError(fmt::format("--board: '{}', expected COLUMNSxROWS of {}, 3 to 100 each, e.g. {}",
                                text,
                                charuco ? "squares" : "inner corners",
@@ -67,7 +69,7 @@ BoardMarkers markers_of(const CalibrateArguments& arguments, const Board& board)
 }
 
 Board board_of_options(const CalibrateArguments& arguments) {
-  const bool charuco = arguments.pattern == "charuco";
+  const bool charuco = arguments.pattern.value_or("chessboard") == "charuco";
   const cv::Size counts = board_counts(*arguments.board, charuco);
   const double square = required_length(arguments.square, "--square");
   if (!charuco) return {counts.width, counts.height, square};
@@ -76,15 +78,43 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
+/// Beside a board.yaml what describes another board is not read unless `--board` is there, too.
+void tell_unused_options(const CalibrateArguments& arguments, const fs::path& board_file) {
+  std::vector<std::string> unused;
+  if (arguments.square) unused.emplace_back("--square");
+  if (arguments.pattern) unused.emplace_back("--pattern");
+  if (arguments.marker) unused.emplace_back("--marker");
+  if (arguments.dictionary) unused.emplace_back("--dictionary");
+  if (unused.empty()) return;
+  fmt::print(stderr,
+             "{}: not used, the board is that of {}; --board describes another one\n",
+             fmt::join(unused, ", "),
+             board_file.string());
+}
+
 /// The options', else that of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
   const fs::path folder = fs::is_directory(recording) ? recording : recording.parent_path();
   for (const fs::path& base : {folder, folder / "mav0"}) {
-    if (fs::exists(base / "board.yaml")) return read_board(base / "board.yaml");
+    const fs::path file = base / "board.yaml";
+    if (!fs::exists(file)) continue;
+    tell_unused_options(arguments, file);
+    return read_board(file);
   }
   throw InputError(
       fmt::format("--board is required: there is no {}", (folder / "board.yaml").string()));
+}
+
+/// The camera does not depend on the unit, but who takes the wrong one will want to know.
+void question_square(double side_m) {
+  constexpr double kLargest_m = 1;
+  if (side_m < kLargest_m) return;
+  fmt::print(
+      stderr,
+      "a square of {0:g} m: are these millimeters? Lengths are in meters ({0:g} mm are {1:g})\n",
+      side_m,
+      side_m / 1000);
 }
 
 CalibrationOptions options_of(const CalibrateArguments& arguments) {
@@ -103,13 +133,15 @@ CalibrationOptions options_of(const CalibrateArguments& arguments) {
 }  // namespace
 
 int calibrate_command(const CalibrateArguments& arguments) {
-  check_writable(arguments.output);
+  check_outputs(std::array{NamedFile{"--output", arguments.output}},
+                std::array{NamedFile{"recording", arguments.recording}});
   const CalibrationOptions options = options_of(arguments);
   const fs::path recording = resolve_recordings({arguments.recording}).front();
   if (!fs::exists(recording)) {
     throw InputError(fmt::format("{}: no such file or folder", recording.string()));
   }
   const Board board = board_of(arguments, recording);
+  question_square(board.square_m);
   const auto pictures = open_pictures(recording, kCacheBytes);
   ProgressBar bar("looking for the board");
   const BoardSearch search = find_calibration_views(
@@ -120,7 +152,7 @@ int calibrate_command(const CalibrateArguments& arguments) {
     return kFailed;
   }
   fmt::print("{}", to_text(calibration));
-  write_file(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
   return kDone;
 }
 

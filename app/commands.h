@@ -39,6 +39,12 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 /// Opens it and inspects. Throws InputError.
 std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments);
 
+struct InfoArguments {
+  std::filesystem::path recording;
+  bool wants_json = false;
+  std::filesystem::path json;  ///< file to write; empty or "-": standard output
+};
+
 struct RunArguments {
   InspectArguments inspect;
   std::optional<std::filesystem::path> json;
@@ -89,7 +95,7 @@ struct CalibrateArguments {
   std::filesystem::path recording;   ///< needs no calibration
   std::optional<std::string> board;  ///< "CxR" inner corners, of a ChArUco board squares; default:
                                      ///< the recording's board.yaml
-  std::string pattern = "chessboard";
+  std::optional<std::string> pattern;     ///< "chessboard" (the default) or "charuco"
   std::optional<double> square;           ///< [m]
   std::optional<double> marker;           ///< [m]
   std::optional<std::string> dictionary;  ///< OpenCV's name
@@ -105,7 +111,7 @@ std::filesystem::path example_recording();
 int calibrate_command(const CalibrateArguments& arguments);
 int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output);
 int evaluate_command(const EvaluateArguments& arguments);
-int info_command(const std::filesystem::path& recording, bool json);
+int info_command(const InfoArguments& arguments);
 int run_command(const RunArguments& arguments);
 int snapshot_command(const SnapshotArguments& arguments);
 /// Runs the window's commands off-screen; `size`: of the window.

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/recording/board/board_truth.h"
@@ -14,21 +15,27 @@ namespace gpo {
 namespace {
 
 /// Stored, or computed from a board in view.
-std::optional<GroundTruth> truth_of(const Recording& recording) {
+std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_token& stop) {
   if (recording.truth || !recording.board || !recording.pictures) return recording.truth;
   ProgressBar bar("finding the board");
   return board_truth(
-      recording, 0, recording.frame_count(), {}, [&](int done, int of) { bar.show(done, of); });
+      recording, 0, recording.frame_count(), stop, [&](int done, int of) { bar.show(done, of); });
 }
 
 }  // namespace
 
 int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output) {
   const auto opened = open_given(recording);
-  const auto truth = truth_of(*opened);
+  const Interrupt interrupt;
+  const std::string nothing = "nothing is left of " + output.string();
+  const auto truth = truth_of(*opened, interrupt.token());
+  interrupt.check(nothing);
   {
     ProgressBar bar("writing " + output.string());
-    write_euroc(*opened, truth, output, [&](int done, int of) { bar.show(done, of); });
+    write_euroc(*opened, truth, output, [&](int done, int of) {
+      bar.show(done, of);
+      interrupt.check(nothing);
+    });
   }
   fmt::print("{}: {} frames\n", output.string(), opened->frame_count());
   return kDone;

@@ -1,23 +1,45 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/recordings.h"
+#include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/recording_info.h"
+
+#include <array>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 
-int info_command(const std::filesystem::path& recording, bool json) {
-  const auto opened = open_given(recording);
-  const RecordingInfo info = describe(*opened);
-  if (json) {
-    fmt::print("{}", json_text(to_json(info), 2));
+namespace {
+
+/// What the word after `--json` may be: not, by mistake, a recording or anything else that is
+/// there.
+void check_json_file(const InfoArguments& arguments) {
+  const auto& file = arguments.json;
+  if (std::filesystem::exists(file) && file.extension() != ".json") {
+    throw InputError(
+        fmt::format("--json: {} is there already and is no .json file, expected a file to write",
+                    file.string()));
+  }
+  check_outputs(std::array{NamedFile{"--json", file}},
+                std::array{NamedFile{"recording", arguments.recording}});
+}
+
+}  // namespace
+
+int info_command(const InfoArguments& arguments) {
+  const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
+  if (to_file) check_json_file(arguments);
+  const RecordingInfo info = describe(*open_given(arguments.recording));
+  if (!arguments.wants_json) {
+    fmt::print("{}", to_text(info));
     return kDone;
   }
-  fmt::print("{}", to_text(info));
+  write_output(to_file ? arguments.json : "-", json_text(to_json(info), 2));
   return kDone;
 }
 

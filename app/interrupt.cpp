@@ -18,6 +18,10 @@ Interrupt::~Interrupt() {
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
 }
 
+void Interrupt::check(const std::string& what_is_left) const {
+  if (source_.stop_requested()) throw Interrupted("stopped; " + what_is_left);
+}
+
 void Interrupt::wait(const std::stop_token& end) {
   constexpr timespec kPatience{0, 20'000'000};  // 20 ms, after which it looks for its own end
   while (!end.stop_requested()) {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/setting_options.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
@@ -15,8 +16,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/core/ocl.hpp>
 #include <opencv2/core/utils/logger.hpp>
+
+extern "C" {
+#include <libavutil/log.h>
+}
 
 namespace gpo {
 namespace {
@@ -45,10 +51,27 @@ void add_inspection(CLI::App& command, InspectArguments& arguments) {
   add_settings(command, arguments.settings, arguments.given);
 }
 
+void add_info(CLI::App& app, InfoArguments& arguments) {
+  CLI::App* command = app.add_subcommand("info", "What is found in a recording");
+  command->add_option(
+      "recording", arguments.recording, "Folder or file of a recording, or a recipe");
+  command
+      ->add_option("--json",
+                   arguments.json,
+                   "As JSON, into a file; without one, or as -, to standard output")
+      ->expected(0, 1);
+  command->callback([command, &arguments] {
+    arguments.wants_json = command->count("--json") > 0;
+    // `info --json RECORDING` has always printed; there the recording looks like the file.
+    if (arguments.recording.empty()) std::swap(arguments.recording, arguments.json);
+    if (arguments.recording.empty()) throw CLI::RequiredError("recording");
+  });
+}
+
 void add_run(CLI::App& app, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "One initialization; prints a short table");
   add_inspection(*command, arguments.inspect);
-  command->add_option("--json", arguments.json, "Write the whole result");
+  command->add_option("--json", arguments.json, "Write the whole result; -: to standard output");
   command->add_option("--trajectory", arguments.trajectory, "Write the camera poses");
   command->add_option(
       "--true-trajectory", arguments.true_trajectory, "Write the true camera poses of the window");
@@ -158,8 +181,7 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
                       "COLUMNSxROWS inner corners, of a ChArUco board squares, e.g. 9x6; default: "
                       "the recording's board.yaml");
   command->add_option("--square", arguments.square, "Side of a square [m]");
-  command->add_option("--pattern", arguments.pattern, "What is printed")
-      ->capture_default_str()
+  command->add_option("--pattern", arguments.pattern, "What is printed; default: chessboard")
       ->check(CLI::IsMember({"chessboard", "charuco"}));
   command->add_option("--marker", arguments.marker, "Of a ChArUco board: side of a marker [m]");
   command->add_option(
@@ -179,8 +201,7 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
 struct Arguments {
   CalibrateArguments calibrate;
   EvaluateArguments evaluate;
-  std::filesystem::path info_recording;
-  bool info_json = false;
+  InfoArguments info;
   RunArguments run;
   SnapshotArguments snapshot;
   std::filesystem::path convert_recording;
@@ -199,11 +220,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   add_settings(*view, arguments.view.settings, arguments.view.given);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");
-  CLI::App* info = app.add_subcommand("info", "What is found in a recording");
-  info->add_option(
-          "recording", arguments.info_recording, "Folder or file of a recording, or a recipe")
-      ->required();
-  info->add_flag("--json", arguments.info_json, "As JSON");
+  add_info(app, arguments.info);
   CLI::App* convert = app.add_subcommand("convert", "Writes any recording as an EuRoC folder");
   convert
       ->add_option(
@@ -222,8 +239,7 @@ void declare(CLI::App& app, Arguments& arguments) {
 }
 
 int dispatch(const CLI::App& app, const Arguments& arguments) {
-  if (app.got_subcommand("info"))
-    return info_command(arguments.info_recording, arguments.info_json);
+  if (app.got_subcommand("info")) return info_command(arguments.info);
   if (app.got_subcommand("convert"))
     return convert_command(arguments.convert_recording, arguments.convert_output);
   if (app.got_subcommand("run")) return run_command(arguments.run);
@@ -240,10 +256,35 @@ int complain(const std::string& message) {
   return kBadInput;
 }
 
-/// CLI11's messages may span lines; the contract promises one.
-std::string one_line(std::string message) {
+std::string names_of_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// In one line, and where there is more to read.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
   std::ranges::replace(message, '\n', ' ');
-  return InputError(message).what();
+  std::string help = app.get_name();
+  const auto commands = app.get_subcommands();
+  const auto words = app.remaining();
+  if (!commands.empty()) {
+    help += " " + commands.front()->get_name();
+  } else if (!words.empty() && !words.front().starts_with('-')) {
+    message = fmt::format(
+        "unknown command '{}', expected one of {}", words.front(), names_of_commands(app));
+  }
+  return InputError(fmt::format("{}; see {} --help", message, help)).what();
+}
+
+/// What libraries would do to the whole process or say beside our own messages; the engine itself
+/// changes nothing of the kind.
+void quiet_libraries() {
+  cv::ocl::setUseOpenCL(false);  // the engine does not use it; only its drivers would be loaded
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  av_log_set_level(AV_LOG_QUIET);         // what it says of broken videos becomes an InputError
+  std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
 }
 
 int main_with_errors(int argc, char** argv) {
@@ -251,9 +292,7 @@ int main_with_errors(int argc, char** argv) {
                "gpo-inspector");
   Arguments arguments;
   try {
-    cv::ocl::setUseOpenCL(false);  // its results differ from the CPU's
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
+    quiet_libraries();
     declare(app, arguments);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
@@ -264,7 +303,10 @@ int main_with_errors(int argc, char** argv) {
   } catch (const CLI::Success& asked_for_help) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
-    return complain(one_line(error.what()));
+    return complain(usage_error(app, error));
+  } catch (const Interrupted& interrupted) {
+    complain(interrupted.what());
+    return kFailed;
   } catch (const SettingError& error) {
     return complain(option_name(error.name) + std::string(error.what()).substr(error.name.size()));
   } catch (const std::exception& error) {

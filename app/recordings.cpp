@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings.h"
 
+#include "app/interrupt.h"
+#include "app/known_files.h"
 #include "app/progress_bar.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
+#include "ui/workbench/user_folders.h"
 
 #include <string>
 #include <thread>
@@ -36,11 +39,18 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
 }
 
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+  if (recipes.empty()) return {};
   const fs::path cache = GPO_RECORDINGS_DIR;
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
+  const Interrupt interrupt;
+  const auto check = [&] { interrupt.check("of what was being synthesized nothing is left"); };
   ProgressBar bar("synthesizing " + names_of_missing(recipes, cache));
-  return synthesized_recordings(
-      recipes, cache, threads, [&](int done, int of) { bar.show(done, of); });
+  auto made = synthesized_recordings(recipes, cache, threads, [&](int done, int of) {
+    bar.show(done, of);
+    check();
+  });
+  check();
+  return made;
 }
 
 }  // namespace
@@ -48,6 +58,7 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
   std::vector<fs::path> recipes;
   for (const fs::path& path : paths) {
+    refuse_known_file(path);
     if (is_recipe(path)) recipes.push_back(path);
   }
   const std::vector<fs::path> made = make_recordings(recipes);
@@ -60,7 +71,9 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 }
 
 std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOptions& options) {
-  Recording recording = *open_recording(resolve_recordings({path}).front(), options);
+  OpenOptions with_cache = options;
+  with_cache.cache_folder = user_cache_folder();
+  Recording recording = *open_recording(resolve_recordings({path}).front(), with_cache);
   recording.path = path;
   return std::make_shared<const Recording>(std::move(recording));
 }

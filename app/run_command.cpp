@@ -1,13 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/recordings.h"
 #include "app/setting_options.h"
 #include "engine/files/json_text.h"
-#include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -24,26 +28,45 @@ std::shared_ptr<const Inspection> inspect(const InspectArguments& arguments) {
   return Inspector(open(arguments)).inspect(arguments.settings);
 }
 
+namespace {
+
+std::vector<NamedFile> outputs_of(const RunArguments& arguments) {
+  return {{"--json", arguments.json},
+          {"--trajectory", arguments.trajectory},
+          {"--true-trajectory", arguments.true_trajectory},
+          {"--points", arguments.points}};
+}
+
+/// The table makes room where standard output is wanted for something else.
+std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
+  const auto taken = [](const NamedFile& file) {
+    return file.path && is_standard_output(*file.path);
+  };
+  return std::ranges::any_of(outputs, taken) ? stderr : stdout;
+}
+
+}  // namespace
+
 int run_command(const RunArguments& arguments) {
-  for (const auto& file :
-       {arguments.json, arguments.trajectory, arguments.true_trajectory, arguments.points}) {
-    if (file) check_writable(*file);
-  }
+  const auto outputs = outputs_of(arguments);
+  check_outputs(outputs,
+                std::array{NamedFile{"--tracks", arguments.inspect.tracks},
+                           NamedFile{"recording", arguments.inspect.recording}});
   const auto inspection = inspect(arguments.inspect);
   const bool ok = inspection->initialization->ok;
   tell_unused(arguments.inspect.given, *inspection);
   if (arguments.trajectory_format && !arguments.trajectory && !arguments.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
-  fmt::print("{}", to_text(*inspection));
-  if (arguments.json) write_file(*arguments.json, json_text(to_json(*inspection), 2));
+  fmt::print(table_stream(outputs), "{}", to_text(*inspection));
+  if (arguments.json) write_output(*arguments.json, json_text(to_json(*inspection), 2));
   const auto write_trajectory = [&](const auto& file, const CameraPath& path) {
-    write_file(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
+    write_output(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
   };
   if (ok && arguments.trajectory)
     write_trajectory(*arguments.trajectory, estimated_path(*inspection));
   if (arguments.true_trajectory)
     write_trajectory(*arguments.true_trajectory, true_path(*inspection));
-  if (ok && arguments.points) write_file(*arguments.points, to_ply(*inspection));
+  if (ok && arguments.points) write_output(*arguments.points, to_ply(*inspection));
   return ok ? kDone : kFailed;
 }
 

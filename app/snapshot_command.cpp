@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/comparison.h"
+#include "app/output.h"
 #include "app/setting_options.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "ui/views/charts/figure_view.h"
 #include "ui/views/picture_compare.h"
+#include "ui/views/picture_size.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
+#include <array>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -20,24 +24,6 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<cv::Size> parse_size(const std::optional<std::string>& text) {
-  if (!text) return std::nullopt;
-  int width = 0;
-  int height = 0;
-  char rest = 0;
-  const int read = std::sscanf(text->c_str(), "%dx%d%c", &width, &height, &rest);
-  constexpr int kLeast = 16;
-  constexpr int kMost = 8192;
-  if (read != 2 || width < kLeast || height < kLeast || width > kMost || height > kMost) {
-    throw InputError(
-        fmt::format("--size: '{}', expected WIDTHxHEIGHT of {} to {} pixels, e.g. 1280x720",
-                    *text,
-                    kLeast,
-                    kMost));
-  }
-  return cv::Size(width, height);
-}
 
 /// A picture, and whether what it shows could be computed.
 struct Drawn {
@@ -129,21 +115,49 @@ cv::Mat read_baseline(const fs::path& file) {
   return picture;
 }
 
+/// Where the picture and the baseline are drawn as they differ.
+fs::path difference_file(const SnapshotArguments& arguments) {
+  return fs::path(arguments.output).replace_extension(".diff.png");
+}
+
+int tell_other_size(const cv::Mat& picture,
+                    const cv::Mat& baseline,
+                    const SnapshotArguments& arguments) {
+  fmt::print("differs from {}: the baseline is {}x{}, the picture {}x{}; see {}\n",
+             arguments.baseline->string(),
+             baseline.cols,
+             baseline.rows,
+             picture.cols,
+             picture.rows,
+             arguments.output.string());
+  return kFailed;
+}
+
 int compare(const cv::Mat& picture, const cv::Mat& baseline, const SnapshotArguments& arguments) {
+  if (picture.size() != baseline.size()) return tell_other_size(picture, baseline, arguments);
   const PictureComparison comparison = compare_pictures(picture, baseline, arguments.tolerance);
   fmt::print("pixels that differ by more than");
   for (std::size_t k = 0; k < PictureComparison::kSweep.size(); ++k) {
     fmt::print(" {}: {}{}", PictureComparison::kSweep[k], comparison.beyond[k], k < 3 ? "," : "\n");
   }
   if (comparison.equal) return kDone;
-  const fs::path diff_file = fs::path(arguments.output).replace_extension(".diff.png");
-  if (!comparison.difference.empty()) write_picture(diff_file, comparison.difference);
+  write_picture(difference_file(arguments), comparison.difference);
   fmt::print("differs from {}: {}; see {} and {}\n",
              arguments.baseline->string(),
              comparison.reason,
              arguments.output.string(),
-             diff_file.string());
+             difference_file(arguments).string());
   return kFailed;
+}
+
+/// Before the work: what is written must be writable, and must not be what is read.
+void check_files(const SnapshotArguments& arguments) {
+  const std::array read{NamedFile{"--baseline", arguments.baseline},
+                        NamedFile{"--tracks", arguments.inspect.tracks},
+                        NamedFile{"recording", arguments.inspect.recording}};
+  check_outputs(std::array{NamedFile{"--output", arguments.output}}, read);
+  if (arguments.baseline)
+    check_outputs(std::array{NamedFile{"--output's .diff.png", difference_file(arguments)}}, read);
 }
 
 /// Without a script: one view of one recording.
@@ -156,7 +170,8 @@ void check_required(const SnapshotArguments& arguments) {
 }  // namespace
 
 int snapshot_command(const SnapshotArguments& arguments) {
-  const auto size = parse_size(arguments.size);
+  const auto size =
+      arguments.size ? std::optional(picture_size(*arguments.size, "--size")) : std::nullopt;
   if (arguments.script)
     return script_command(*arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)));
   check_required(arguments);
@@ -164,10 +179,11 @@ int snapshot_command(const SnapshotArguments& arguments) {
     throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",
                                  arguments.output.string()));
   }
-  check_writable(arguments.output);
+  check_files(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   tell_unused_by_view(arguments);
   const auto [picture, ok] = draw(arguments, size);
+  make_folder(folder_of(fs::absolute(arguments.output)));
   write_picture(arguments.output, picture);
   if (!ok) return kFailed;
   fmt::print("{}: {}x{}\n", arguments.output.string(), picture.cols, picture.rows);

@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
+#include "engine/experiment/results_file.h"
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
@@ -123,8 +124,9 @@ int view_command(const ViewArguments& arguments) {
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }
-  if (recording) resolve_recordings({*recording});  // before there is a window that would wait
-  if (session_file) read_session(*session_file);    // an error is said before there is a window
+  const bool shown = recording && (is_session(*recording) || is_results(*recording));
+  if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
+  if (session_file) read_session(*session_file);  // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
   Session session(cache_mib);
   session.script.assign(lines.begin(), lines.end());

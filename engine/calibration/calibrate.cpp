@@ -3,11 +3,11 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/base/parallel.h"
-#include "engine/geometry/pose.h"
+#include "engine/calibration/lens_fit.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_pose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -16,7 +16,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <opencv2/calib3d.hpp>
 
 namespace gpo {
 
@@ -27,160 +26,20 @@ using Views = std::vector<CalibrationView>;
 constexpr int kLeastViews = 8;
 constexpr int kBlocks = 10;
 constexpr double kMostTimesMedian = 2;  // the RMS of a view that is kept
-const cv::TermCriteria kEnough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
 constexpr double kLeastSlantDeg = 10;
 constexpr double kMostFocalSigma = 0.05;  // of the focal length
-
-/// One least squares.
-struct Solution {
-  Camera camera;
-  double rms_px = 0;
-  std::vector<double> sigmas;       ///< the least squares' own; empty where it tells none
-  std::vector<double> view_rms_px;  ///< one a view
-  std::vector<double> slant_deg;    ///< one a view
-};
-
-/// Corners that are seen, one list a view, as OpenCV wants them.
-struct Correspondences {
-  std::vector<std::vector<cv::Point3f>> points;
-  std::vector<std::vector<cv::Point2f>> pixels;
-};
-
-Correspondences correspondences(const Views& views, const Board& board) {
-  const auto all = board_points(board);
-  Correspondences result;
-  for (const CalibrationView& view : views) {
-    auto& points = result.points.emplace_back();
-    auto& pixels = result.pixels.emplace_back();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const Eigen::Vector2f px = view.corners[i].cast<float>();
-      if (!px.allFinite()) continue;
-      points.emplace_back(static_cast<float>(all[i].x()), static_cast<float>(all[i].y()), 0.0F);
-      pixels.emplace_back(px.x(), px.y());
-    }
-  }
-  return result;
-}
-
-cv::Matx33d intrinsics_of(const Camera& camera) {
-  return {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-}
-
-/// Takes over what OpenCV found.
-void set_parameters(Camera& camera, const cv::Matx33d& K, const cv::Mat& coefficients) {
-  camera.fx = K(0, 0);
-  camera.fy = K(1, 1);
-  camera.cx = K(0, 2);
-  camera.cy = K(1, 2);
-  for (std::size_t i = 0; i < camera.coefficients.size(); ++i) {
-    camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
-  }
-}
-
-double slant_deg(const cv::Mat& rotation_vector) {
-  const cv::Mat_<double> v(rotation_vector);
-  const Eigen::Matrix3d R = so3_exp({v(0), v(1), v(2)});
-  return degrees(std::acos(std::clamp(std::abs(R(2, 2)), 0.0, 1.0)));
-}
-
-/// From which camera, whether it is one already, and whether the least squares' own standard
-/// deviations are wanted, which takes longer than all the rest.
-struct Start {
-  Camera camera;
-  bool known = false;
-  bool with_sigmas = true;
-};
-
-Solution solve_radial_tangential(const Correspondences& seen, const Start& start) {
-  Camera camera = start.camera;
-  Solution solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
-  cv::Mat sigmas;
-  // By LU: OpenCV's singular value decomposition of all views' unknowns takes seconds.
-  int flags = cv::CALIB_USE_LU | (start.known ? cv::CALIB_USE_INTRINSIC_GUESS : 0);
-  if (camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
-  if (camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
-  solution.rms_px = cv::calibrateCamera(seen.points,
-                                        seen.pixels,
-                                        {camera.width, camera.height},
-                                        K,
-                                        coefficients,
-                                        rotations,
-                                        translations,
-                                        start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
-                                        cv::noArray(),
-                                        solution.view_rms_px,
-                                        flags,
-                                        kEnough);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
-  for (std::size_t i = 0; start.with_sigmas && i < 4 + camera.coefficients.size(); ++i) {
-    solution.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
-  }
-  for (const auto& rotation : rotations) solution.slant_deg.push_back(slant_deg(rotation));
-  return solution;
-}
-
-Solution solve_equidistant(const Correspondences& seen, const Start& start) {
-  Camera camera = start.camera;
-  Solution solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
-  int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW;
-  if (start.known) flags |= cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
-  solution.rms_px = cv::fisheye::calibrate(seen.points,
-                                           seen.pixels,
-                                           {camera.width, camera.height},
-                                           K,
-                                           coefficients,
-                                           rotations,
-                                           translations,
-                                           flags,
-                                           kEnough);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    std::vector<cv::Point2f> projected;
-    cv::fisheye::projectPoints(
-        seen.points[i], projected, rotations[i], translations[i], K, coefficients);
-    const double norm = cv::norm(projected, seen.pixels[i]);
-    solution.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
-    solution.slant_deg.push_back(slant_deg(rotations[i]));
-  }
-  return solution;
-}
-
-bool plausible(const Camera& camera) {
-  const double largest = 20.0 * std::max(camera.width, camera.height);
-  const auto all = parameters(camera);
-  return std::all_of(all.begin(), all.end(), [](double p) { return std::isfinite(p); }) &&
-         camera.fx > 0 && camera.fy > 0 && camera.fx < largest && camera.fy < largest &&
-         camera.cx > 0 && camera.cx < camera.width && camera.cy > 0 && camera.cy < camera.height;
-}
-
-/// Nothing where the least squares come to nothing sensible.
-std::optional<Solution> solve(const Views& views, const Board& board, const Start& start) {
-  try {
-    const Correspondences seen = correspondences(views, board);
-    Solution solution = start.camera.distortion == Distortion::equidistant
-                            ? solve_equidistant(seen, start)
-                            : solve_radial_tangential(seen, start);
-    if (plausible(solution.camera)) return solution;
-  } catch (const cv::Exception&) {
-    // OpenCV's word for views that fix no camera.
-  }
-  return std::nullopt;
-}
+// A coefficient is vague beyond either; those of lenses are of the order of 1.
+constexpr double kMostSigma = 10;
+constexpr double kMostShift = 0.25;   // of the corner of the picture, of its distance
+constexpr double kTellsFromZero = 3;  // standard deviations
 
 /// Leaves out the views that fit far worse than the others and solves again, while there are such.
-std::optional<Solution> solve_without_bad(Views& views, const Board& board, const Camera& start) {
+std::optional<LensFit> fit_without_bad(Views& views,
+                                       const Board& board,
+                                       const Camera& start,
+                                       const HeldCoefficients& held) {
   constexpr int kRounds = 4;
-  auto solution = solve(views, board, {start});
+  auto solution = fit_lens(views, board, {start, false, false, held});
   for (int round = 0; solution && round < kRounds; ++round) {
     const double most = kMostTimesMedian * median(solution->view_rms_px);
     Views good;
@@ -189,7 +48,7 @@ std::optional<Solution> solve_without_bad(Views& views, const Board& board, cons
     }
     if (good.size() == views.size() || good.size() < kLeastViews) break;
     views = std::move(good);
-    solution = solve(views, board, {solution->camera, true});
+    solution = fit_lens(views, board, {solution->camera, true, false, held});
   }
   return solution;
 }
@@ -198,16 +57,17 @@ std::optional<Solution> solve_without_bad(Views& views, const Board& board, cons
 /// Nothing where one of them fails.
 std::optional<std::vector<double>> jackknife_sigmas(const Views& views,
                                                     const Board& board,
-                                                    const Camera& camera) {
+                                                    const Camera& camera,
+                                                    const HeldCoefficients& held) {
   const int count = static_cast<int>(views.size());
   const int blocks = std::min(kBlocks, count);
-  std::vector<std::optional<Solution>> solutions(blocks);
+  std::vector<std::optional<LensFit>> solutions(blocks);
   in_parallel(blocks, static_cast<int>(std::thread::hardware_concurrency()), [&](int block) {
     Views others;
     for (int i = 0; i < count; ++i) {
       if (i * blocks / count != block) others.push_back(views[i]);
     }
-    solutions[block] = solve(others, board, {camera, true, false});
+    solutions[block] = fit_lens(others, board, {camera, true, false, held});
   });
   const std::size_t unknowns = parameters(camera).size();
   std::vector<double> mean(unknowns, 0);
@@ -223,6 +83,100 @@ std::optional<std::vector<double>> jackknife_sigmas(const Views& views,
   }
   for (double& sigma : sigmas) sigma = std::sqrt(sigma * (blocks - 1) / blocks);
   return sigmas;
+}
+
+/// A camera with standard deviations, and the views that it rests on.
+struct Estimate {
+  std::optional<LensFit> solution;  ///< nothing where the views fix no camera
+  std::vector<double> sigmas;       ///< one a parameter; empty where single views decide
+  Views views;
+  std::vector<std::string> left_at_0;  ///< a sentence for each coefficient that is held
+};
+
+Estimate estimate(const Views& views,
+                  const Board& board,
+                  const Camera& start,
+                  const HeldCoefficients& held) {
+  Estimate result{{}, {}, views, {}};
+  result.solution = fit_without_bad(result.views, board, start, held);
+  if (!result.solution) return result;
+  const auto sigmas = jackknife_sigmas(result.views, board, result.solution->camera, held);
+  if (!sigmas) return result;
+  result.sigmas = *sigmas;
+  return result;
+}
+
+/// The least squares' own standard deviations, where they are larger. They take longer than all
+/// the rest, so only the last estimate gets them.
+void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
+  if (!estimate.solution || estimate.sigmas.empty()) return;
+  const auto fit = fit_lens(estimate.views, board, {estimate.solution->camera, true, true, held});
+  for (std::size_t k = 0; fit && k < fit->sigmas.size(); ++k)
+    estimate.sigmas[k] = std::max(estimate.sigmas[k], fit->sigmas[k]);
+}
+
+/// The farthest corner of the picture from its middle [focal lengths].
+double picture_radius(const Camera& camera) {
+  const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
+  const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
+  return std::hypot(x / camera.fx, y / camera.fy);
+}
+
+/// A coefficient that the views do not determine: they do not tell it from 0, and it is vague by
+/// itself or for the corner of the picture. Of several the last, without which the lens is
+/// simplest. Nothing where all are determined.
+std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
+                                                    const HeldCoefficients& held) {
+  if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;
+  const Camera& camera = estimate.solution->camera;
+  const auto known = coefficients_of(camera.distortion);
+  const double radius = picture_radius(camera);
+  for (std::size_t k = camera.coefficients.size(); k-- > 0;) {
+    const double sigma = estimate.sigmas[4 + k];
+    const double shift = sigma * std::pow(radius, known[k].power);
+    const bool vague = sigma > kMostSigma || shift > kMostShift;
+    const bool not_zero = std::abs(camera.coefficients[k]) > kTellsFromZero * sigma;
+    if (vague && !not_zero && !held.contains(k)) return k;
+  }
+  return std::nullopt;
+}
+
+/// A polynomial with more terms than the views determine fits them as well with thousands as with
+/// nothing, and is wrong wherever no view was: such terms are held at 0, one after the other.
+Estimate estimate_determined(const Views& views, const Board& board, const Camera& start) {
+  HeldCoefficients held;
+  std::vector<std::string> left_at_0;
+  Estimate result = estimate(views, board, start, held);
+  const auto names = parameter_names(start);
+  while (const auto vague = undetermined_coefficient(result, held)) {
+    left_at_0.push_back(
+        fmt::format("{} is not determined by these views ({:.3g} +- {:.3g}): left at 0",
+                    names[4 + *vague],
+                    result.solution->camera.coefficients[*vague],
+                    result.sigmas[4 + *vague]));
+    const int flag = coefficients_of(start.distortion)[*vague].hold;
+    for (std::size_t k = 0; k < start.coefficients.size(); ++k) {
+      if (coefficients_of(start.distortion)[k].hold == flag) held.insert(k);
+    }
+    result = estimate(views, board, start, held);
+  }
+  add_own_sigmas(result, board, held);
+  result.left_at_0 = std::move(left_at_0);
+  return result;
+}
+
+/// "the focal length", ... : the first that is known to less than a share of the focal length;
+/// nothing where all are known.
+std::string undetermined_intrinsics(const Estimate& estimate) {
+  if (estimate.sigmas.empty()) return "the focal length";
+  constexpr std::array kNames = {"the focal length (fx)",
+                                 "the focal length (fy)",
+                                 "the principal point (cx)",
+                                 "the principal point (cy)"};
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    if (estimate.sigmas[k] > kMostFocalSigma * estimate.solution->camera.fx) return kNames[k];
+  }
+  return "";
 }
 
 /// Share of 8 x 6 cells of the picture that hold a corner.
@@ -289,30 +243,13 @@ Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> parameter_names(const Camera& camera) {
-  std::vector<std::string> names = {"fx", "fy", "cx", "cy", "k1", "k2"};
-  if (camera.distortion == Distortion::equidistant) {
-    names.insert(names.end(), {"k3", "k4"});
-  } else {
-    names.insert(names.end(), {"p1", "p2", "k3", "k4", "k5", "k6"});
-  }
-  names.resize(4 + camera.coefficients.size());
-  return names;
-}
-
-std::vector<double> parameters(const Camera& camera) {
-  std::vector<double> values = {camera.fx, camera.fy, camera.cx, camera.cy};
-  values.insert(values.end(), camera.coefficients.begin(), camera.coefficients.end());
-  return values;
-}
-
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options) {
   CameraCalibration result;
   result.examined = search.examined;
   result.found = static_cast<int>(search.views.size());
-  Views views = choose_views(search, board, options.most_views);
+  const Views views = choose_views(search, board, options.most_views);
   if (views.size() < kLeastViews) {
     return failed(
         result,
@@ -321,7 +258,8 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
                     result.examined,
                     kLeastViews));
   }
-  const auto solution = solve_without_bad(views, board, unknown_camera(search.size, options));
+  const Estimate estimate = estimate_determined(views, board, unknown_camera(search.size, options));
+  const auto& solution = estimate.solution;
   if (!solution) return failed(result, "the views fix no camera; show the board from more sides");
   std::vector<double> slants_deg = solution->slant_deg;
   std::ranges::sort(slants_deg);
@@ -333,23 +271,21 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
                     "focal length from the distance; look at it from the side",
                     slant));
   }
-  const auto sigmas = jackknife_sigmas(views, board, solution->camera);
-  if (!sigmas || (*sigmas)[0] > kMostFocalSigma * solution->camera.fx) {
-    return failed(result,
-                  "the focal length depends on single views by more than 5 %; show the board from "
-                  "more sides");
+  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty()) {
+    return failed(
+        result,
+        unknown + " depends on single views by more than 5 %; show the board from more sides");
   }
   result.ok = true;
   result.camera = solution->camera;
-  result.sigmas = *sigmas;
-  for (std::size_t k = 0; k < solution->sigmas.size(); ++k) {
-    result.sigmas[k] = std::max(result.sigmas[k], solution->sigmas[k]);
-  }
+  result.sigmas = estimate.sigmas;
   result.rms_px = solution->rms_px;
-  for (const auto& view : views) result.frames.push_back(view.frame);
-  result.coverage = coverage(views, search.size);
+  for (const auto& view : estimate.views) result.frames.push_back(view.frame);
+  result.coverage = coverage(estimate.views, search.size);
   result.slant_deg = slant;
   result.warnings = warnings_of(result);
+  result.warnings.insert(
+      result.warnings.end(), estimate.left_at_0.begin(), estimate.left_at_0.end());
   return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/calibration/calibration_views.h"
+#include "engine/calibration/camera_parameters.h"
 #include "engine/geometry/camera.h"
 
 #include <string>
@@ -22,7 +23,7 @@ struct CameraCalibration {
   std::string reason;  ///< why not
   Camera camera;
   /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: by a jackknife over ten
-  /// blocks of time, or the least squares' own where they are larger.
+  /// blocks of time, or the least squares' own where they are larger; 0 of what is left at 0.
   std::vector<double> sigmas;
   double rms_px = 0;        ///< distance of the corners from where the model puts them [raw px]
   int examined = 0;         ///< pictures
@@ -33,16 +34,16 @@ struct CameraCalibration {
   std::vector<std::string> warnings;
 };
 
-/// Names of the parameters, as `sigmas` has them: "fx", ..., "k1", ...
-std::vector<std::string> parameter_names(const Camera& camera);
-/// Their values.
-std::vector<double> parameters(const Camera& camera);
-
 /// Least squares over views that differ (`choose_views`), again without those that fit far worse
 /// than the others. Views that follow one another share their errors (blur, rolling shutter, the
 /// same part of the lens), so the least squares' own standard deviations are too small; leaving out
 /// blocks of time shows how far the result depends on them. Of a board that is not flat, or of
 /// another size, they know nothing.
+///
+/// A coefficient that the views do not determine is left at 0, with a warning that names it: one
+/// that is within three standard deviations of 0, where these are above 10 or each would shift the
+/// corner of the picture by a quarter of its distance from the middle. A focal length or principal
+/// point that is not determined (5 % of the focal length) is a failure.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options = {});

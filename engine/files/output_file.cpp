@@ -71,6 +71,17 @@ void check_writable(const fs::path& file) {
   if (access(written.c_str(), W_OK) != 0) refuse(file, last_error());
 }
 
+bool same_file(const fs::path& one, const fs::path& other) {
+  if (is_stream(one) || is_stream(other)) return false;
+  std::error_code error;
+  if (fs::equivalent(one, other, error)) return true;
+  const auto place = [&](const fs::path& file) {
+    const fs::path whole = fs::weakly_canonical(followed(file), error);
+    return error ? fs::absolute(file).lexically_normal() : whole;
+  };
+  return place(one) == place(other);
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);

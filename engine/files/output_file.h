@@ -13,6 +13,10 @@ namespace gpo {
 /// that is a folder. Throws InputError.
 void check_writable(const std::filesystem::path& file);
 
+/// Whether what is written to one file would be written over the other: the same place, however it
+/// is spelled, also through links. Never true of what is no regular file, like /dev/null.
+bool same_file(const std::filesystem::path& one, const std::filesystem::path& other);
+
 /// Makes a folder and those above it where they are missing. Throws InputError.
 void make_folder(const std::filesystem::path& folder);
 

@@ -99,6 +99,16 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
   return whole ? std::optional(value) : std::nullopt;
 }
 
+std::optional<std::pair<int, int>> parse_size(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos) return std::nullopt;
+  const auto width = parse_integer(text.substr(0, cross));
+  const auto height = parse_integer(text.substr(cross + 1));
+  if (!width || !height || !std::in_range<int>(*width) || !std::in_range<int>(*height))
+    return std::nullopt;
+  return std::pair(static_cast<int>(*width), static_cast<int>(*height));
+}
+
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
   const bool negative = !text.empty() && text[0] == '-';
   text = negative ? text.substr(1) : without_plus(text);

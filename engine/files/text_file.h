@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace gpo {
 
@@ -27,6 +28,8 @@ std::string lower_case(std::string_view text);
 /// A finite number that fills the whole text; nothing otherwise.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
+/// "640x480": two whole numbers, width and height, or columns and rows; nothing otherwise.
+std::optional<std::pair<int, int>> parse_size(std::string_view text);
 /// The number times 10^decimals, rounded, without the detour through a double that would cost the
 /// nanoseconds of a time stamp: ("1403636579.763555584", 9) is 1403636579763555584.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);

@@ -3,6 +3,7 @@
 #include "engine/inspection/camera_path.h"
 
 #include "engine/base/error.h"
+#include "engine/recording/layouts/euroc_text.h"
 
 #include <cstdlib>
 
@@ -11,6 +12,8 @@
 
 namespace gpo {
 namespace {
+
+constexpr int kDecimals = 9;
 
 std::string seconds(std::int64_t ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -39,17 +42,8 @@ std::string tum_line(std::int64_t ns, const Pose& camera) {
 }
 
 std::string euroc_line(std::int64_t ns, const Pose& camera) {
-  const auto& p = camera.p_wc;
-  const Eigen::Quaterniond q = quaternion(camera);
-  return fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
-                     ns,
-                     p.x(),
-                     p.y(),
-                     p.z(),
-                     q.w(),
-                     q.x(),
-                     q.y(),
-                     q.z());
+  return std::to_string(ns) + cells(camera.p_wc, kDecimals) +
+         quaternion_cells(quaternion(camera), kDecimals) + "\n";
 }
 
 std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {

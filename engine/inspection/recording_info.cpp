@@ -22,12 +22,6 @@ constexpr int kSample = 60;
 constexpr double kFrameGap = 1.5;  // median periods
 constexpr double kGyroGap = 5;
 
-const char* layout_name(Layout layout) {
-  if (layout == Layout::euroc) return "EuRoC";
-  if (layout == Layout::tum_rgbd) return "TUM RGB-D";
-  return layout == Layout::pictures ? "pictures" : "tracks";
-}
-
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 /// `label(i)` names sample i.
@@ -216,7 +210,7 @@ RecordingInfo describe(const Recording& recording) {
   RecordingInfo info;
   info.path = recording.path.string();
   info.name = recording.name;
-  info.layout = layout_name(recording.layout);
+  info.layout = recording.layout;
   info.pictures = recording.pictures != nullptr;
   info.frames = recording.frame_count();
   info.duration_s = seconds(times.back() - times.front());

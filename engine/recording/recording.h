@@ -20,8 +20,6 @@
 
 namespace gpo {
 
-enum class Layout { euroc, tum_rgbd, pictures, tracks };  ///< README, "Recordings"
-
 /// ArUco markers in the light squares of a board.
 struct BoardMarkers {
   double side_m = 0;       ///< of a marker, with its black border
@@ -39,8 +37,8 @@ struct Board {
 /// What was recorded, immutable once opened. Shared between threads by shared_ptr<const>.
 struct Recording {
   std::filesystem::path path;
-  std::string name;  ///< last component of the path
-  Layout layout = Layout::euroc;
+  std::string name;    ///< last component of the path
+  std::string layout;  ///< for people: "EuRoC"; the titles in the table of layouts
   Camera camera;
   std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
   std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
@@ -53,6 +51,8 @@ struct Recording {
   std::optional<Board> board;
   std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use our tracker
   std::vector<std::string> notes;        ///< "no gyroscope: ...", each said once to the user
+  /// Where what was found in the pictures is kept for the next time; empty: nowhere.
+  std::filesystem::path cache_folder;
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };

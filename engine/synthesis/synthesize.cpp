@@ -5,8 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/output_folder.h"
-#include "engine/recording/layouts/calibration_file.h"
-#include "engine/recording/layouts/euroc_writer.h"
+#include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/layouts/sidecar_files.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
@@ -14,9 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -27,29 +24,15 @@ namespace fs = std::filesystem;
 constexpr double kMargin_s = 0.1;
 constexpr double kPhase = 0.37;  ///< of the samples' grid to the frames', in sample periods
 constexpr std::uint64_t kGyroscopeStream = 1;
-
-std::string join(const std::vector<double>& values) {
-  return fmt::format("[{}]", fmt::join(values, ", "));
-}
-std::string join(const Eigen::Vector3d& v) {
-  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
-}
+constexpr int kDecimals = 9;  ///< of rates, accelerations and velocities
 
 std::string camera_yaml(const Recipe& recipe) {
-  const Camera& camera = recipe.camera;
   std::string text = fmt::format(
       "# Synthesized: exact.\nsensor_type: camera\ncomment: synthesized\n\n"
-      "# Camera in the axes of the body (the IMU).\n{}\n"
-      "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
-      "intrinsics: {}  # fx, fy, cx, cy\n"
-      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      "# Camera in the axes of the body (the IMU).\n{}\nrate_hz: {}\n{}",
       transformation_yaml(recipe.T_body_camera),
       recipe.frame_rate,
-      camera.width,
-      camera.height,
-      join(std::vector{camera.fx, camera.fy, camera.cx, camera.cy}),
-      distortion_name(camera.distortion),
-      join(camera.coefficients));
+      lens_yaml(recipe.camera));
   if (recipe.picture.rolling_shutter > 0) {
     text += fmt::format("rolling_shutter: {}  # [s] from first to last row; stamp: middle row\n",
                         recipe.picture.rolling_shutter);
@@ -69,64 +52,34 @@ std::string imu_yaml(const GyroscopeRecipe& gyroscope) {
       gyroscope.noise_density);
   if (gyroscope.calibrated_bias) {
     text += fmt::format("gyroscope_bias: {}  # [rad/s], as calibrated, not as it is\n",
-                        join(*gyroscope.calibrated_bias));
+                        yaml_list(*gyroscope.calibrated_bias));
   }
   return text;
 }
 
 std::string imu_csv(const Recipe& recipe) {
-  std::string text =
-      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
-      "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+  std::string text = std::string(kGyroscopeHead) + kAccelerometerHead + "\n";
   for (const ImuSample& sample : simulate_imu(recipe)) {
-    const auto& w = sample.rate_b;
-    const auto& a = sample.specific_force_b;
-    text += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
-                        sample.timestamp_ns,
-                        w.x(),
-                        w.y(),
-                        w.z(),
-                        a.x(),
-                        a.y(),
-                        a.z());
+    text += std::to_string(sample.timestamp_ns) + cells(sample.rate_b, kDecimals) +
+            cells(sample.specific_force_b, kDecimals) + "\n";
   }
   return text;
 }
 
+/// The accelerometer, being perfect, has a bias of 0.
 std::string truth_csv(const Recipe& recipe) {
-  std::string text =
-      "#timestamp,p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],"
-      "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
-      "b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
-      "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
-  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
+  std::string text = std::string("#timestamp") + kPoseHead +
+                     ",v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
+                     "b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],"
+                     "b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+  SteadyQuaternions steady;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const BodyMotion body =
         body_motion(recipe.trajectory, recipe.T_body_camera, trajectory_seconds(recipe, timestamp));
-    Eigen::Quaterniond q(body.pose.R_wc);
-    if (q.dot(previous) < 0) q.coeffs() *= -1;  // no jumps for who interpolates
-    previous = q;
-    const auto& p = body.pose.p_wc;
-    const auto& v = body.velocity_w;
-    const auto& b = recipe.gyroscope.bias;
-    text += fmt::format(
-        "{},{:.12f},{:.12f},{:.12f},{:.15f},{:.15f},{:.15f},{:.15f},{:.9f},{:.9f},{:.9f},"
-        "{:.9f},{:.9f},{:.9f},0,0,0\n",
-        timestamp,
-        p.x(),
-        p.y(),
-        p.z(),
-        q.w(),
-        q.x(),
-        q.y(),
-        q.z(),
-        v.x(),
-        v.y(),
-        v.z(),
-        b.x(),
-        b.y(),
-        b.z());
+    text += std::to_string(timestamp) + cells(body.pose.p_wc, 12) +
+            quaternion_cells(steady(body.pose.R_wc), 15) + cells(body.velocity_w, kDecimals) +
+            cells(recipe.gyroscope.bias, kDecimals) + ",0,0,0\n";
   }
   return text;
 }
@@ -172,7 +125,7 @@ void write_pictures(const Recipe& recipe,
                     int threads) {
   const Scene scene = make_scene(recipe.desk, threads);
   const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
-  std::string list = "#timestamp [ns],filename\n";
+  std::string list = kPictureListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const double seconds = trajectory_seconds(recipe, timestamp);

@@ -82,6 +82,47 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
 }
 
+TEST(CalibrateCommand, SaysWhichBoardItTakes) {
+  const fs::path folder = test::fresh_folder();
+  fs::create_directories(folder / "in");
+  for (int i = 0; i < 2; ++i) {
+    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  }
+  const std::string calibrate =
+      fmt::format("calibrate {0}/in --output {0}/camera.yaml ", folder.string());
+  test::write_file(folder / "in/board.yaml",
+                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  const Outcome beside = program(calibrate + "--square 0.03 --pattern charuco");
+  EXPECT_EQ(beside.err,
+            fmt::format("--square, --pattern: not used, the board is that of {}/in/board.yaml; "
+                        "--board describes another one\n",
+                        folder.string()));
+  EXPECT_EQ(program(calibrate).err, "");
+  EXPECT_EQ(program(calibrate + "--board 9x6 --square 0.03").err, "");
+}
+
+TEST(CalibrateCommand, QuestionsSquaresOfMeters) {
+  const fs::path folder = test::fresh_folder();
+  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  const Outcome outcome = program(fmt::format(
+      "calibrate {0} --board 9x6 --square 25 --output {0}/camera.yaml", folder.string()));
+  EXPECT_EQ(outcome.err,
+            "a square of 25 m: are these millimeters? Lengths are in meters (25 mm are 0.025)\n");
+}
+
+TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
+  const fs::path output = test::fresh_folder() / "camera.yaml";
+  const Outcome outcome = program("calibrate " + test::desk().string() +
+                                  " --model equidistant --output " + output.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("warning     k4 is not determined by these views ("));
+  const Camera found = read_calibration(output).camera;
+  EXPECT_EQ(found.coefficients.back(), 0);
+  for (const double k : found.coefficients) EXPECT_LT(std::abs(k), 10);
+  EXPECT_NEAR(found.fx, 500, 20);
+}
+
 TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
   const fs::path folder = test::fresh_folder();
   fs::create_directories(folder / "in");
@@ -124,8 +165,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "README.md: found a file that is no video"},
         BadInput{"no/such --board 9x6 --square 0.02 --output {}",
                  "no/such: no such file or folder"},
-        BadInput{"assets --board 9x6 --square 0.02 --output {}/no/camera.yaml",
-                 "cannot be written, there is no folder"},
+        BadInput{"assets --board 9x6 --square 0.02 --output README.md/camera.yaml",
+                 "README.md/camera.yaml: cannot be written, there is no folder README.md"},
+        BadInput{"README.md --board 9x6 --square 0.02 --output README.md",
+                 "--output and recording: found README.md for both"},
+        BadInput{"assets --board 4294967305x6 --square 0.02 --output {}",
+                 "--board: '4294967305x6', expected"},
         BadInput{"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.04 --output {}",
                  "--marker: 0.04, expected less than the square's side, 0.03"},
         BadInput{"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.02 --output {}",

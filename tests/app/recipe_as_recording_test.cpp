@@ -71,6 +71,35 @@ TEST(RecipeAsRecording, SnapshotDrawsIt) {
   EXPECT_TRUE(fs::exists(picture));
 }
 
+/// Runs it and presses Ctrl-C as soon as there is `begun`.
+Outcome interrupted(const std::string& arguments, const std::string& begun) {
+  return shell("'" GPO_PROGRAM "' " + arguments + " & pid=$!; for i in $(seq 4000); do [ -e " +
+               begun + " ] && break; sleep 0.005; done; kill -INT $pid; wait $pid");
+}
+
+TEST(Synthesize, InterruptedSaysThatItLeavesNothing) {
+  const fs::path recipe = fresh_recipe("interrupted", small_recipe_with("count: 4", "count: 1000"));
+  const std::string output = (recipe.parent_path() / "out").string();
+  const Outcome outcome = interrupted("synthesize " + recipe.string() + " --output " + output,
+                                      output + ".unfinished/mav0/imu0/data.csv");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("gpo-inspector: stopped; nothing is left of " + output + "\n"));
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_FALSE(fs::exists(output + ".unfinished"));
+}
+
+TEST(Synthesize, InterruptedOnTheWayToAResultSaysThatItLeavesNothing) {
+  const fs::path recipe =
+      fresh_recipe("interruptedrun", small_recipe_with("count: 4", "count: 1000"));
+  const Outcome outcome = interrupted("run " + recipe.string(),
+                                      GPO_RECORDINGS_DIR "/interruptedrun-*/*/mav0/imu0/data.csv");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.err, "gpo-inspector: stopped; of what was being synthesized nothing is left\n");
+  for (const fs::path& folder : recordings_of("interruptedrun"))
+    EXPECT_FALSE(fs::exists(folder / "interruptedrun")) << folder;
+}
+
 TEST(RecipeAsRecording, ProcessesThatWantTheSameShareIt) {
   const fs::path recipe = fresh_recipe("sharetest", small_recipe_text());
   const std::string info = "'" GPO_PROGRAM "' info --json " + recipe.string();

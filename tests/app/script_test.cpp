@@ -93,6 +93,10 @@ TEST_F(Script, EndsAtTheFirstLineThatIsWrong) {
        {std::pair{"frame 3\nfly\n", "script.txt:2: no action is called \"fly\""},
         {"frame\n", "script.txt:1: frame: expected one word after it"},
         {"screenshot a.png cellar\n", "script.txt:1: screenshot: no view is called 'cellar'"},
+        {"frame 200\n",
+         "script.txt:1: frame: 200 is not in the recording, which has frames 0 to 59"},
+        {"frame 59\nframe -1\n", "script.txt:2: frame: -1 is not in the recording"},
+        {"screenshot a.png 4294967936x480\n", "script.txt:1: screenshot: '4294967936x480'"},
         {"set frames 1\n", "script.txt:1: frames: '1', expected a number from 2 to 1000"},
         {"open no/such/folder\n", "script.txt:1: no/such/folder"},
         {"export result no/such/a.json\n", "script.txt:1: no/such/a.json"}}) {

@@ -136,6 +136,33 @@ TEST(Snapshot, ToleranceDecidesWhatCountsAsEqual) {
   EXPECT_EQ(snapshot("image", folder / "c.png", baseline + " --tolerance 6").exit_code, 0);
 }
 
+TEST(Snapshot, DoesNotWriteOverItsBaseline) {
+  const fs::path folder = fresh_folder();
+  test::write_file(folder / "base.png", "the baseline");
+  for (const char* output : {"base.png", "./base.png"}) {
+    const Outcome outcome =
+        snapshot("image", folder / output, "--baseline " + (folder / "base.png").string());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--output and --baseline: found "));
+  }
+  fs::rename(folder / "base.png", folder / "a.diff.png");
+  const Outcome difference =
+      snapshot("image", folder / "a.png", "--baseline " + (folder / "a.diff.png").string());
+  EXPECT_EQ(difference.exit_code, 2);
+  EXPECT_EQ(read_file(folder / "a.diff.png"), "the baseline");
+}
+
+TEST(Snapshot, BaselineOfAnotherSizeIsSaidToBeThat) {
+  const fs::path folder = fresh_folder();
+  cv::imwrite((folder / "base.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)));
+  const Outcome outcome =
+      snapshot("image", folder / "a.png", "--baseline " + (folder / "base.png").string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("the baseline is 320x240, the picture 640x480"));
+  EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // there is none
+}
+
 class SnapshotOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
 TEST_P(SnapshotOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
@@ -152,6 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"", "--view"},
                       BadInput{"--view image --size 100", "--size: '100'"},
                       BadInput{"--view image --size 0x5", "--size: '0x5'"},
+                      BadInput{"--view image --size 4294967936x480", "--size: '4294967936x480'"},
                       BadInput{"--view image --frame 60", "--frame: 60 is not in the recording"},
                       BadInput{"--view image --frame -1", "--frame: -1"},
                       BadInput{"--view image --tolerance 300", "--tolerance"},

@@ -4,6 +4,15 @@
 #include "engine/recording/pictures/video_decoder.h"
 #include "tests/fuzz/fuzzed_file.h"
 
+extern "C" {
+#include <libavutil/log.h>
+}
+
+extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
+  av_log_set_level(AV_LOG_QUIET);  // it has much to say about what is tried here
+  return 0;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
   gpo::fuzz::parse([&] {

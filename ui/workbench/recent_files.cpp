@@ -5,8 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
-#include "engine/files/user_folders.h"
 #include "ui/workbench/session_file.h"
+#include "ui/workbench/user_folders.h"
 
 #include <algorithm>
 

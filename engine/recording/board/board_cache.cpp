@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/files/user_folders.h"
 
 #include <cstdint>
 #include <cstring>
@@ -101,7 +100,8 @@ std::string text_of(const Board& board) {
 }  // namespace
 
 std::optional<fs::path> board_cache_file(const Recording& recording) {
-  if (recording.picture_files.empty() || !recording.board) return std::nullopt;
+  if (recording.cache_folder.empty() || recording.picture_files.empty() || !recording.board)
+    return std::nullopt;
   std::string key = fmt::format("{} {}\n", kAlgorithm, CV_VERSION) + text_of(recording.camera) +
                     text_of(*recording.board);
   for (const fs::path& file : recording.picture_files) {
@@ -112,7 +112,7 @@ std::optional<fs::path> board_cache_file(const Recording& recording) {
     if (no_size || no_time) return std::nullopt;
     key += fmt::format("{} {} {}\n", fs::absolute(file).string(), size, time);
   }
-  return user_cache_folder() / "boards" / fmt::format("{:016x}", hash(key));
+  return recording.cache_folder / "boards" / fmt::format("{:016x}", hash(key));
 }
 
 BoardViews load_board_views(const fs::path& file) {

@@ -15,8 +15,9 @@ namespace gpo {
 /// frame by itself: which of the board's symmetric poses it is, is not decided yet.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// The file in the user's cache folder for these pictures (their absolute paths, sizes and times of
-/// change), this camera and this board. Nothing where the pictures are not from files.
+/// The file in the recording's cache folder for these pictures (their absolute paths, sizes and
+/// times of change), this camera and this board. Nothing where there is no such folder, or the
+/// pictures are not from files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
 /// Empty where there is no such file, or it is not one of ours, cut or damaged.

@@ -20,9 +20,10 @@ using BoardProgress = std::function<void(int done, int of)>;
 /// frame has none where the board is not found, or where its fit's RMS is above 0.5 px and above
 /// four times the median of them all.
 ///
-/// Each frame is looked at by itself, on all processors, and once only: the user's cache folder
-/// keeps what was found. Of a board that looks the same turned, the pose nearest in rotation to the
-/// last one found is taken then; in the first frame the one whose rows run to the right.
+/// Each frame is looked at by itself, on all processors, and once only: the recording's cache
+/// folder, if it has one, keeps what was found. Of a board that looks the same turned, the pose
+/// nearest in rotation to the last one found is taken then; in the first frame the one whose rows
+/// run to the right.
 ///
 /// The recording must have pictures and a board. Once stopped it returns what it has within about
 /// one frame's time. Throws InputError for pictures that cannot be decoded.

@@ -41,6 +41,10 @@ constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
 constexpr double kMostFocalLength = 1e6;  // [px]
 constexpr double kMostCoefficient = 1e6;
 constexpr double kMostShift_s = 3600;
+/// From one picture in 100 s to a high-speed camera: the time stamps of as many pictures as are
+/// read are all different and fit into nanoseconds.
+constexpr double kLeastPictureRate_hz = 0.01;
+constexpr double kMostPictureRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
   for (const char* name : names) {
@@ -230,6 +234,10 @@ Pose rigid_motion(const YamlEntry& entry) {
   return {svd.matrixU() * svd.matrixV().transpose(), T.topRightCorner<3, 1>()};
 }
 
+bool is_picture_rate(double rate_hz) {
+  return rate_hz >= kLeastPictureRate_hz && rate_hz <= kMostPictureRate_hz;
+}
+
 const char* distortion_name(Distortion distortion) {
   if (distortion == Distortion::none) return "none";
   return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
@@ -256,6 +264,11 @@ Calibration read_calibration(const std::filesystem::path& file) {
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
+    if (!is_picture_rate(*result.rate_hz)) {
+      yaml_fail(
+          *rate,
+          fmt::format("{} to {:.0f} pictures a second", kLeastPictureRate_hz, kMostPictureRate_hz));
+    }
   }
   return result;
 }

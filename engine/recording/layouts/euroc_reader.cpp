@@ -173,6 +173,13 @@ fs::path calibration_of(const fs::path& folder) {
 
 }  // namespace
 
+std::optional<fs::path> find_euroc(const fs::path& folder) {
+  for (const fs::path& base : {folder, folder / "mav0"}) {
+    if (is_folder(base / "cam0")) return base;
+  }
+  return std::nullopt;
+}
+
 bool euroc_lacks_pictures(const fs::path& folder) {
   const PictureList list = read_picture_list(folder);
   return std::ranges::none_of(list.files, is_file);
@@ -189,7 +196,6 @@ Recording read_euroc(const fs::path& folder,
   PictureList list = read_picture_list(folder);
   recording.timestamps_ns = list.timestamps_ns;
   add_pictures(recording, std::move(list), tracks.has_value(), cache_bytes);
-  recording.layout = recording.pictures ? Layout::euroc : Layout::tracks;
   if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
 
   const auto mean_bias = add_truth(recording, folder);

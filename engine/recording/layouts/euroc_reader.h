@@ -8,6 +8,9 @@
 
 namespace gpo {
 
+/// The folder that holds cam0: this one, or mav0 in it.
+std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
+
 /// Reads the EuRoC / ASL layout from the folder that holds cam0. With `tracks` pictures may be
 /// missing; where any is, there are none. Throws InputError.
 Recording read_euroc(const std::filesystem::path& folder,

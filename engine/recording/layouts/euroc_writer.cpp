@@ -6,13 +6,12 @@
 #include "engine/files/output_file.h"
 #include "engine/files/output_folder.h"
 #include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/layouts/sidecar_files.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -20,27 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// fmt's shortest text reads back as the same number.
-std::string list(const Eigen::Vector3d& v) {
-  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
-}
-
 std::string camera_yaml(const Recording& recording) {
-  const Camera& camera = recording.camera;
-  std::string text = fmt::format(
-      "sensor_type: camera\n{}resolution: [{}, {}]\ncamera_model: pinhole\n"
-      "intrinsics: [{}, {}, {}, {}]  # fx, fy, cx, cy\ndistortion_model: {}\n"
-      "distortion_coefficients: [{}]\n",
-      transformation_yaml(recording.T_body_camera.value_or(Pose{})),
-      camera.width,
-      camera.height,
-      camera.fx,
-      camera.fy,
-      camera.cx,
-      camera.cy,
-      distortion_name(camera.distortion),
-      fmt::join(camera.coefficients, ", "));
-  if (const double rate = rate_hz(recording.timestamps_ns); rate > 0)
+  std::string text = "sensor_type: camera\n" +
+                     transformation_yaml(recording.T_body_camera.value_or(Pose{})) +
+                     lens_yaml(recording.camera);
+  if (const double rate = rate_hz(recording.timestamps_ns); is_picture_rate(rate))
     text += fmt::format("rate_hz: {:.6g}\n", rate);
   if (recording.gyroscope && recording.gyroscope->time_offset_ns != 0)
     text += fmt::format("timeshift_cam_imu: {}  # [s] gyroscope's clock - camera's clock\n",
@@ -55,47 +38,30 @@ std::string imu_yaml(const Gyroscope& gyroscope, const Pose& T_body_camera) {
                                  transformation_yaml(T_body_gyro),
                                  rate_hz(gyroscope.timestamps_ns));
   if (!gyroscope.bias_rad_s.isZero(0))
-    text += fmt::format("gyroscope_bias: {}  # [rad/s]\n", list(gyroscope.bias_rad_s));
+    text += fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
   return text + fmt::format("gyroscope_bias_sigma: {}  # [rad/s]\n", gyroscope.bias_sigma_rad_s);
 }
 
 std::string imu_csv(const Gyroscope& gyroscope) {
   const bool accelerations = !gyroscope.accelerations_m_s2.empty();
-  std::string text = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
-  text += accelerations ? ",a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n" : "\n";
+  std::string text = std::string(kGyroscopeHead) + (accelerations ? kAccelerometerHead : "") + "\n";
   for (std::size_t i = 0; i < gyroscope.timestamps_ns.size(); ++i) {
-    const Eigen::Vector3d& w = gyroscope.rates_rad_s[i];
-    text += fmt::format("{},{},{},{}", gyroscope.timestamps_ns[i], w.x(), w.y(), w.z());
-    if (accelerations) {
-      const Eigen::Vector3d& a = gyroscope.accelerations_m_s2[i];
-      text += fmt::format(",{},{},{}", a.x(), a.y(), a.z());
-    }
+    text += std::to_string(gyroscope.timestamps_ns[i]) + cells(gyroscope.rates_rad_s[i]);
+    if (accelerations) text += cells(gyroscope.accelerations_m_s2[i]);
     text += '\n';
   }
   return text;
 }
 
 std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
-  std::string text =
-      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
-      "q_RS_z []\n";
+  std::string text = std::string("#timestamp [ns]") + kPoseHead + "\n";
   const Pose T_camera_body = inverse(recording.T_body_camera.value_or(Pose{}));
-  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
+  SteadyQuaternions steady;
   for (std::size_t i = 0; i < truth.poses.size(); ++i) {
     if (!truth.poses[i]) continue;
     const Pose body = *truth.poses[i] * T_camera_body;
-    Eigen::Quaterniond q(body.R_wc);
-    if (q.dot(previous) < 0) q.coeffs() *= -1;  // no jumps for who interpolates
-    previous = q;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n",
-                        recording.timestamps_ns[i],
-                        body.p_wc.x(),
-                        body.p_wc.y(),
-                        body.p_wc.z(),
-                        q.w(),
-                        q.x(),
-                        q.y(),
-                        q.z());
+    text += std::to_string(recording.timestamps_ns[i]) + cells(body.p_wc) +
+            quaternion_cells(steady(body.R_wc)) + "\n";
   }
   return text;
 }
@@ -105,7 +71,7 @@ void write_pictures(const Recording& recording,
                     const fs::path& cam,
                     const std::function<void(int done, int of)>& progress) {
   make_folder(cam / "data");
-  std::string list = "#timestamp [ns],filename\n";
+  std::string list = kPictureListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::string name = fmt::format("{:019d}.png", recording.timestamps_ns[i]);
     list += fmt::format("{},{}\n", recording.timestamps_ns[i], name);
@@ -142,15 +108,6 @@ void write_sidecars(const Recording& recording, const fs::path& folder) {
 }
 
 }  // namespace
-
-std::string transformation_yaml(const Pose& pose) {
-  std::string rows;
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Matrix3d& R = pose.R_wc;
-    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
-  }
-  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
-}
 
 void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,

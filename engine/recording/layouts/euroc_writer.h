@@ -21,7 +21,4 @@ void write_euroc(const Recording& recording,
                  const std::filesystem::path& folder,
                  const std::function<void(int done, int of)>& progress = {});
 
-/// `T_BS` as EuRoC's sensor.yaml has it; reads back as the same numbers.
-std::string transformation_yaml(const Pose& pose);
-
 }  // namespace gpo

@@ -4,10 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/layouts/euroc_reader.h"
-#include "engine/recording/layouts/pictures_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/sidecar_files.h"
-#include "engine/recording/layouts/tum_reader.h"
 #include "engine/recording/pictures/video_file.h"
 
 #include <algorithm>
@@ -23,41 +21,59 @@ namespace fs = std::filesystem;
 
 /// What there is to open, once it is known which layout it has.
 struct Found {
+  const Layout* layout;
   fs::path path;    ///< of the layout: the folder that holds cam0 or rgb.txt, a video, a folder
   fs::path folder;  ///< where the optional files are looked for first
-  Recording (*read)(const fs::path& path,
-                    const std::optional<fs::path>& tracks,
-                    std::size_t cache_bytes) = read_pictures;
   std::optional<fs::path> tracks;
 };
 
+/// Tracks beside pictures are used only where they are asked for.
+std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
+  if (options.tracks) return options.tracks;
+  auto tracks = if_file(found.folder / "tracks.csv");
+  if (!tracks) tracks = if_file(found.path / "tracks.csv");
+  return tracks && !found.layout->has_pictures(found.path) ? tracks : std::nullopt;
+}
+
+/// A folder, or a file that is a recording by itself; nothing where it has no layout.
+std::optional<Found> find_layout(const fs::path& path, const OpenOptions& options) {
+  const fs::path folder = is_folder(path) ? path : folder_of(path);
+  for (const Layout& layout : layouts()) {
+    const auto place = layout.find(path);
+    if (!place) continue;
+    Found found{&layout, *place, folder, {}};
+    found.tracks = tracks_of(found, options);
+    const bool tracks_alone = &layout == &layouts().back();
+    if (!tracks_alone || found.tracks) return found;
+  }
+  return std::nullopt;
+}
+
+/// "cam0/data.csv (EuRoC), rgb.txt (TUM RGB-D), ..., or tracks.csv".
+std::string expected_layouts() {
+  std::string text;
+  for (const Layout& layout : layouts())
+    text += fmt::format("{}{}{}",
+                        text.empty() ? "" : ", ",
+                        &layout == &layouts().back() ? "or " : "",
+                        layout.expected);
+  return text;
+}
+
 Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
-  Found found{folder, folder, read_pictures, options.tracks};
-  if (!found.tracks) found.tracks = if_file(folder / "tracks.csv");
-  for (const fs::path& base : {folder, folder / "mav0"}) {
-    if (!is_folder(base / "cam0")) continue;
-    found.path = base;
-    found.read = read_euroc;
-    if (!found.tracks) found.tracks = if_file(base / "tracks.csv");
-    if (!options.tracks && found.tracks && !euroc_lacks_pictures(base)) found.tracks.reset();
-    return found;
-  }
-  const bool listed = is_file(folder / "rgb.txt");
-  if (listed) found.read = read_tum;
-  const bool pictures = listed || holds_pictures(folder);
-  if (!pictures && !found.tracks) {
-    throw InputError(folder.string() +
-                     ": found no recording, expected cam0/data.csv (EuRoC), rgb.txt (TUM RGB-D), a "
-                     "video or numbered pictures with camera.yaml, or tracks.csv");
-  }
-  if (!options.tracks && pictures) found.tracks.reset();
-  return found;
+  if (const auto found = find_layout(folder, options)) return *found;
+  throw InputError(folder.string() + ": found no recording, expected " + expected_layouts());
 }
 
 /// The file stands for its folder; tracks that are named are wanted, even where there are pictures.
 Found find_around(const fs::path& file, OpenOptions options) {
   if (file.filename() == "tracks.csv" && !options.tracks) options.tracks = file;
   return find_in_folder(folder_of(file), options);
+}
+
+bool stands_for_folder(const fs::path& file) {
+  return std::ranges::any_of(layouts(),
+                             [&](const Layout& layout) { return file.filename() == layout.file; });
 }
 
 Found find_recording(const fs::path& path, const OpenOptions& options) {
@@ -71,12 +87,9 @@ Found find_recording(const fs::path& path, const OpenOptions& options) {
                      "), expected a recording");
   }
   if (fs::is_directory(status)) return find_in_folder(path, options);
-  const bool file = fs::is_regular_file(status);
-  if (file && (path.filename() == "tracks.csv" || path.filename() == "rgb.txt")) {
-    return find_around(path, options);
-  }
-  if (file && is_video_name(path)) {
-    return {path, folder_of(path), read_pictures, options.tracks};
+  if (fs::is_regular_file(status)) {
+    if (stands_for_folder(path)) return find_around(path, options);
+    if (const auto found = find_layout(path, options)) return *found;
   }
   throw InputError(path.string() +
                    ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or "
@@ -128,8 +141,10 @@ std::string name_of(const fs::path& path) {
 
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
   const Found found = find_recording(path, options);
-  Recording recording = found.read(found.path, found.tracks, options.cache_bytes);
+  Recording recording = found.layout->read(found.path, found.tracks, options.cache_bytes);
+  recording.layout = (recording.pictures ? *found.layout : layouts().back()).title;
   recording.path = path;
+  recording.cache_folder = options.cache_folder;
   recording.name = name_of(is_video_name(path) || is_folder(path) ? path : found.folder);
   add_sidecars(recording, found);
   add_notes(recording);

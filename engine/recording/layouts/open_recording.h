@@ -14,6 +14,8 @@ namespace gpo {
 struct OpenOptions {
   std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
+  /// Where what was found in the pictures is kept for the next time; empty: nowhere.
+  std::filesystem::path cache_folder{};
 };
 
 /// Opens a folder or a file; finds out which layout it is. Pictures are not decoded yet, but each

@@ -122,8 +122,10 @@ void check_size_is_known(const Camera& camera, const fs::path& calibration) {
 
 }  // namespace
 
-bool holds_pictures(const fs::path& folder) {
-  return !videos_in(folder).empty() || !pictures_in(folder).empty();
+std::optional<fs::path> find_pictures(const fs::path& path) {
+  const bool found = is_folder(path) ? !videos_in(path).empty() || !pictures_in(path).empty()
+                                     : is_video_name(path);
+  return found ? std::optional(path) : std::nullopt;
 }
 
 std::shared_ptr<const FrameCache> open_pictures(const fs::path& path, std::size_t cache_bytes) {
@@ -163,7 +165,6 @@ Recording read_pictures(const fs::path& path,
     add_picture_files(recording, std::move(files), cache_bytes);
   }
   check_size_is_known(recording.camera, calibration_file);
-  recording.layout = recording.pictures ? Layout::pictures : Layout::tracks;
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   set_times(recording, folder, count, video_times, calibration.rate_hz, name);

@@ -21,7 +21,7 @@ Recording read_pictures(const std::filesystem::path& path,
 std::shared_ptr<const FrameCache> open_pictures(const std::filesystem::path& path,
                                                 std::size_t cache_bytes);
 
-/// Whether the folder holds a video or numbered pictures.
-bool holds_pictures(const std::filesystem::path& folder);
+/// The path itself, where it is a video or a folder with a video or with numbered pictures.
+std::optional<std::filesystem::path> find_pictures(const std::filesystem::path& path);
 
 }  // namespace gpo

@@ -35,6 +35,10 @@ void add_pictures(Recording& recording,
 
 }  // namespace
 
+std::optional<fs::path> find_tum(const fs::path& folder) {
+  return is_file(folder / "rgb.txt") ? std::optional(folder) : std::nullopt;
+}
+
 Recording read_tum(const fs::path& folder,
                    const std::optional<fs::path>& tracks,
                    std::size_t cache_bytes) {
@@ -44,7 +48,6 @@ Recording read_tum(const fs::path& folder,
   recording.timestamps_ns = csv_time_stamps(list, TimeUnit::seconds);
   recording.camera = read_calibration(calibration_in(folder)).camera;
   add_pictures(recording, folder, list, tracks.has_value(), cache_bytes);
-  recording.layout = recording.pictures ? Layout::tum_rgbd : Layout::tracks;
   if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;

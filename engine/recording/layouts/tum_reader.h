@@ -9,6 +9,9 @@
 
 namespace gpo {
 
+/// The folder, where it holds rgb.txt.
+std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
+
 /// Reads the layout of the TUM RGB-D benchmark: rgb.txt, the pictures that it lists,
 /// groundtruth.txt (the camera's poses) and a calibration beside them; depth is passed over. With
 /// `tracks` pictures may be missing. Throws InputError.

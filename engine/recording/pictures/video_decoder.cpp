@@ -60,9 +60,6 @@ struct VideoDecoder::Input {
   Scaler scaler;
 
   explicit Input(const fs::path& file) {
-    // What it says about broken files becomes our InputError. Others (OpenCV) change the level,
-    // too.
-    av_log_set_level(AV_LOG_QUIET);
     AVFormatContext* opened = nullptr;
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", kContainers, 0);

@@ -35,7 +35,6 @@ struct VideoEncoder::Output {
 
 VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
-  av_log_set_level(AV_LOG_QUIET);  // what it says becomes our InputError
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
   if (encoder == nullptr) {
     throw InputError(file_.string() + ": cannot be written: FFmpeg has no MPEG-4 encoder");

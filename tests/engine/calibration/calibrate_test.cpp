@@ -128,6 +128,20 @@ TEST(Calibrate, TakesViewsWithHiddenCorners) {
   EXPECT_LT(largest_normalized_error(found, phone()), 3);
 }
 
+TEST(Calibrate, LeavesWhatTheViewsDoNotDetermineAtZero) {
+  // A narrow lens has angles whose ninth powers no view tells from nothing.
+  Camera narrow = phone();
+  narrow.fx = narrow.fy = 1100;
+  narrow.coefficients = {0, 0, 0, 0};
+  const CalibrationOptions options{.distortion = Distortion::equidistant};
+  const auto found = calibrate_camera(simulated(narrow, 40, 1, 0.7, 35), kBoard, options);
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_EQ(found.camera.coefficients[3], 0);
+  EXPECT_EQ(found.sigmas[7], 0);
+  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("k4 is not determined by these views")));
+  EXPECT_LT(std::abs(found.camera.fx - 1100), 3 * found.sigmas[0]);
+}
+
 TEST(Calibrate, SaysWhyItFails) {
   const auto few = calibrate_camera(simulated(phone(), 5, 1, 0.4, 35), kBoard);
   EXPECT_FALSE(few.ok);

@@ -140,5 +140,21 @@ TEST(UnfinishedFile, IsRemovedUnlessFinished) {
   EXPECT_EQ(count_in(folder.path()), 0);
 }
 
+TEST(SameFile, IsTheSamePlaceHoweverItIsSpelled) {
+  const TestFolder folder;
+  const fs::path file = folder.path() / "a";  // need not be there
+  fs::create_symlink("a", folder.path() / "link");
+  for (const char* same : {"a", "./a", "b/../a", "link"}) {
+    EXPECT_TRUE(same_file(file, folder.path() / same)) << same;
+    EXPECT_TRUE(same_file(folder.path() / same, file)) << same;
+  }
+  EXPECT_TRUE(same_file(file, fs::relative(file)));
+  EXPECT_FALSE(same_file(file, folder.path() / "b"));
+  folder.write("a", "x");
+  fs::create_hard_link(file, folder.path() / "hard");
+  EXPECT_TRUE(same_file(file, folder.path() / "hard"));
+  EXPECT_FALSE(same_file("/dev/null", "/dev/null"));
+}
+
 }  // namespace
 }  // namespace gpo

@@ -56,5 +56,24 @@ TEST(TextFile, DifferencesOfDecimalsFitIntoAnInteger) {
   EXPECT_FALSE(parse_decimal("-4611686018427387903", 0));
 }
 
+TEST(ParseSize, TakesTwoWholeNumbersAndNothingElse) {
+  EXPECT_EQ(parse_size("640x480"), std::pair(640, 480));
+  EXPECT_EQ(parse_size("-1x0"), std::pair(-1, 0));
+  // The last two are 640x480 in the lowest 32 bits.
+  for (const char* text : {"",
+                           "x",
+                           "640",
+                           "640x",
+                           "x480",
+                           "640x480x",
+                           "640x480 ",
+                           "640X480",
+                           "6.4x4",
+                           "4294967936x480",
+                           "640x4294967776"}) {
+    EXPECT_EQ(parse_size(text), std::nullopt) << text;
+  }
+}
+
 }  // namespace
 }  // namespace gpo

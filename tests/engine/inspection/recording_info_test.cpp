@@ -21,7 +21,7 @@ Recording tracks_recording() {
   Recording recording;
   recording.path = "some/desk";
   recording.name = "desk";
-  recording.layout = Layout::tracks;
+  recording.layout = "tracks";
   recording.camera = {640, 480, 500, 501, 320, 240, Distortion::equidistant, {0.1, 0, 0, 0}};
   for (const int ms : {0, 100, 200, 400, 500, 600}) {
     recording.timestamps_ns.push_back(1'000'000'000 + ms * 1'000'000LL);

@@ -5,11 +5,10 @@
 #include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
 #include "engine/inspection/report.h"
+#include "ui/views/picture_size.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"
-
-#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -17,19 +16,6 @@ namespace gpo {
 namespace {
 
 using State = WorkbenchState;
-
-cv::Size size_in(const std::string& text) {
-  cv::Size size;
-  char rest = 0;
-  constexpr int kLeast = 16, kMost = 8192;
-  const int read = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest);
-  if (read != 2 || std::min(size.width, size.height) < kLeast ||
-      std::max(size.width, size.height) > kMost) {
-    throw InputError(fmt::format(
-        "screenshot: '{}', expected WIDTHxHEIGHT of {} to {} pixels", text, kLeast, kMost));
-  }
-  return size;
-}
 
 /// FILE [VIEW] [WxH]
 void take_screenshot(State& state, const Arguments& arguments) {
@@ -41,7 +27,7 @@ void take_screenshot(State& state, const Arguments& arguments) {
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const bool size = std::isdigit(static_cast<unsigned char>(arguments[i].front())) != 0;
     if (size)
-      shot.size = size_in(arguments[i]);
+      shot.size = picture_size(arguments[i], "screenshot");
     else
       shot.view = arguments[i];
   }

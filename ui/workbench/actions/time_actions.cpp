@@ -153,8 +153,13 @@ void add_steps(std::vector<Action>& table) {
   frame.arguments = "N";
   frame.run = [](State& s, const Arguments& arguments) {
     expect_count("frame", arguments, 1, 1);
+    const int wanted = whole_number_in("frame", arguments);
+    if (wanted < 0 || wanted >= s.frame_count())
+      throw InputError(fmt::format("frame: {} is not in the recording, which has frames 0 to {}",
+                                   wanted,
+                                   s.frame_count() - 1));
     s.playing = false;
-    go_to_frame(s, whole_number_in("frame", arguments));
+    go_to_frame(s, wanted);
   };
   table.push_back(frame);
 }

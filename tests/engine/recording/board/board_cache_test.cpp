@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_cache.h"
 
-#include "engine/files/user_folders.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
@@ -23,7 +22,6 @@ using test::kTwin;
 class BoardCache : public testing::Test {
  protected:
   BoardCache() {
-    setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
     folder_.write("1.png", "not decoded");
     folder_.write("2.png", "not decoded either");
   }
@@ -33,6 +31,7 @@ class BoardCache : public testing::Test {
     Recording recording;
     recording.camera = {160, 120, 150, 151, 79.5, 60, Distortion::none, {}};
     recording.board = kTwin;
+    recording.cache_folder = folder_.path() / "cache";
     recording.picture_files = {folder_.path() / "1.png", folder_.path() / "2.png"};
     for (int i = 0; i < frames; ++i) recording.timestamps_ns.push_back(i);
     static const cv::Mat kPicture = [camera = recording.camera] {
@@ -63,7 +62,7 @@ TEST_F(BoardCache, LooksAtEachFrameOnce) {
   EXPECT_EQ(decoded_for(0, 32, 40), 32);
   EXPECT_EQ(decoded_for(0, 32, 40), 0);
   EXPECT_EQ(decoded_for(5, 31, 40), 4);  // frames 32 to 35
-  EXPECT_TRUE(fs::is_directory(folder_.path() / "cache/gpo-inspector/boards"));
+  EXPECT_TRUE(fs::is_directory(folder_.path() / "cache/boards"));
 }
 
 TEST_F(BoardCache, GivesWhatLookingGave) {
@@ -121,7 +120,7 @@ TEST_F(BoardCache, IsMadeAnewWhereItIsCutDamagedOrForeign) {
 }
 
 TEST_F(BoardCache, IsNoErrorWhereItCannotBeWritten) {
-  folder_.write("cache/gpo-inspector", "a file where the folder should be");
+  folder_.write("cache", "a file where the folder should be");
   EXPECT_EQ(decoded_for(0, 4), 8);
   EXPECT_EQ(decoded_for(0, 4), 8);
 }
@@ -157,14 +156,14 @@ TEST_F(BoardCache, OfTwoAtOnceIsNeverBroken) {
   EXPECT_TRUE(views.contains(50) || views.contains(100));  // whoever was last
 }
 
-TEST(UserFolders, FollowTheirVariablesAndElseTheHome) {
-  setenv("HOME", "/home/nobody", 1);
-  setenv("XDG_CACHE_HOME", "/somewhere", 1);
-  EXPECT_EQ(user_cache_folder(), "/somewhere/gpo-inspector");
-  setenv("XDG_CACHE_HOME", "not/absolute", 1);
-  EXPECT_EQ(user_cache_folder(), "/home/nobody/.cache/gpo-inspector");
-  unsetenv("XDG_STATE_HOME");
-  EXPECT_EQ(user_state_folder(), "/home/nobody/.local/state/gpo-inspector");
+TEST_F(BoardCache, IsNotThereUnlessAskedFor) {
+  setenv("XDG_CACHE_HOME", (folder_.path() / "home").c_str(), 1);
+  setenv("HOME", (folder_.path() / "home").c_str(), 1);
+  Recording unasked = recording();
+  unasked.cache_folder.clear();
+  EXPECT_FALSE(board_cache_file(unasked));
+  board_truth(unasked, 0, 4);
+  EXPECT_FALSE(fs::exists(folder_.path() / "home"));
 }
 
 }  // namespace

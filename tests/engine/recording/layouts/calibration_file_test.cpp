@@ -227,6 +227,12 @@ INSTANTIATE_TEST_SUITE_P(
                        ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
         BadCalibration{with("rate_hz", "rate_hz: 0"),
                        ":12: key `rate_hz`: found a rate that is not positive, expected pictures a "
+                       "second"},
+        BadCalibration{with("rate_hz", "rate_hz: 1e10"),
+                       ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 pictures a "
+                       "second"},
+        BadCalibration{with("rate_hz", "rate_hz: 1e-300"),
+                       ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 pictures a "
                        "second"}));
 
 TEST(CalibrationFile, RefusesAMatrixThatIsNoRotation) {

@@ -61,7 +61,7 @@ class EurocReader : public testing::Test {
 TEST_F(EurocReader, FindsItWithAndWithoutMav0) {
   for (const auto& path : {folder.path(), folder.path() / "mav0", folder.path() / ""}) {
     const auto recording = open_recording(path);
-    EXPECT_EQ(recording->layout, Layout::euroc);
+    EXPECT_EQ(recording->layout, "EuRoC");
     EXPECT_EQ(recording->frame_count(), 4);
     EXPECT_EQ(recording->timestamps_ns[1], 1403636579100000001);
     EXPECT_EQ(recording->pictures->bgr(2).at<cv::Vec3b>(0, 0)[0], 2);
@@ -292,7 +292,7 @@ TEST_F(EurocReader, UsesTracksOnlyWhenAskedWherePicturesExist) {
   options.tracks = folder.path() / "tracks.csv";
   const auto recording = open_recording(folder.path(), options);
   EXPECT_EQ(recording->tracks.size(), 1U);
-  EXPECT_EQ(recording->layout, Layout::euroc);
+  EXPECT_EQ(recording->layout, "EuRoC");
   EXPECT_TRUE(recording->pictures);
   // The file itself stands for its folder with these tracks.
   const auto by_file = open_recording(folder.path() / "tracks.csv");
@@ -305,7 +305,7 @@ TEST_F(EurocReader, TakesTracksWhereThereAreNoPictures) {
   folder.write("tracks.csv", "frame,track,x,y\n3,1,2,3\n0,5,1.5,2\n0,1,2.25,3\n");
   std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
   const auto recording = open();
-  EXPECT_EQ(recording->layout, Layout::tracks);
+  EXPECT_EQ(recording->layout, "tracks");
   EXPECT_EQ(recording->pictures, nullptr);
   ASSERT_EQ(recording->tracks.size(), 3U);
   EXPECT_EQ(recording->tracks[0].track, 1);

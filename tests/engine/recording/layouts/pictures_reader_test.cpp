@@ -70,7 +70,7 @@ TEST_F(PicturesReader, GivesEveryFrameOfAVideoInWhateverOrder) {
   options.cache_bytes = 3 * 64 * 48 * 3;
   for (const auto& path : {folder.path(), folder.path() / "clip.avi"}) {
     const auto recording = open_recording(path, options);
-    EXPECT_EQ(recording->layout, Layout::pictures);
+    EXPECT_EQ(recording->layout, "pictures");
     ASSERT_EQ(recording->frame_count(), kVideoFrames);
     EXPECT_EQ(recording->timestamps_ns[25], 1000000000);
     for (int i = 0; i < kVideoFrames; ++i) EXPECT_EQ(number_of(recording->pictures->bgr(i)), i);
@@ -208,7 +208,7 @@ TEST_F(PicturesReader, AsksWhichOfTwoVideos) {
 TEST_F(PicturesReader, TakesTracksWithoutPicturesOrList) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n4,1,2,3\n");
   const auto recording = open();
-  EXPECT_EQ(recording->layout, Layout::tracks);
+  EXPECT_EQ(recording->layout, "tracks");
   EXPECT_EQ(recording->frame_count(), 5);
   folder.write("frame_timestamps.txt", "1\n2\n3\n");
   EXPECT_EQ(error(),

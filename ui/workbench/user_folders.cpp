@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/user_folders.h"
+#include "ui/workbench/user_folders.h"
 
 #include <cstdlib>
 

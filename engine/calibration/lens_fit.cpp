@@ -1,0 +1,178 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/lens_fit.h"
+
+#include "engine/calibration/camera_parameters.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/board/board_pose.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+
+namespace gpo {
+namespace {
+
+const cv::TermCriteria kEnough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
+
+/// Corners that are seen, one list a view, as OpenCV wants them.
+struct Correspondences {
+  std::vector<std::vector<cv::Point3f>> points;
+  std::vector<std::vector<cv::Point2f>> pixels;
+};
+
+Correspondences correspondences(const std::vector<CalibrationView>& views, const Board& board) {
+  const auto all = board_points(board);
+  Correspondences result;
+  for (const CalibrationView& view : views) {
+    auto& points = result.points.emplace_back();
+    auto& pixels = result.pixels.emplace_back();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Eigen::Vector2f px = view.corners[i].cast<float>();
+      if (!px.allFinite()) continue;
+      points.emplace_back(static_cast<float>(all[i].x()), static_cast<float>(all[i].y()), 0.0F);
+      pixels.emplace_back(px.x(), px.y());
+    }
+  }
+  return result;
+}
+
+cv::Matx33d intrinsics_of(const Camera& camera) {
+  return {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+}
+
+/// Takes over what OpenCV found.
+void set_parameters(Camera& camera, const cv::Matx33d& K, const cv::Mat& coefficients) {
+  camera.fx = K(0, 0);
+  camera.fy = K(1, 1);
+  camera.cx = K(0, 2);
+  camera.cy = K(1, 2);
+  for (std::size_t i = 0; i < camera.coefficients.size(); ++i) {
+    camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
+  }
+}
+
+double slant_deg(const cv::Mat& rotation_vector) {
+  const cv::Mat_<double> v(rotation_vector);
+  const Eigen::Matrix3d R = so3_exp({v(0), v(1), v(2)});
+  return degrees(std::acos(std::clamp(std::abs(R(2, 2)), 0.0, 1.0)));
+}
+
+constexpr std::array<LensCoefficient, 8> kRadialTangential = {{{2, cv::CALIB_FIX_K1},
+                                                               {4, cv::CALIB_FIX_K2},
+                                                               {1, cv::CALIB_ZERO_TANGENT_DIST},
+                                                               {1, cv::CALIB_ZERO_TANGENT_DIST},
+                                                               {6, cv::CALIB_FIX_K3},
+                                                               {2, cv::CALIB_FIX_K4},
+                                                               {4, cv::CALIB_FIX_K5},
+                                                               {6, cv::CALIB_FIX_K6}}};
+constexpr std::array<LensCoefficient, 4> kEquidistant = {{{2, cv::fisheye::CALIB_FIX_K1},
+                                                          {4, cv::fisheye::CALIB_FIX_K2},
+                                                          {6, cv::fisheye::CALIB_FIX_K3},
+                                                          {8, cv::fisheye::CALIB_FIX_K4}}};
+
+int flags_of(const HeldCoefficients& held, Distortion distortion) {
+  int flags = 0;
+  for (const std::size_t k : held) flags |= coefficients_of(distortion)[k].hold;
+  return flags;
+}
+
+LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start) {
+  Camera camera = start.camera;
+  LensFit solution;
+  cv::Mat K(intrinsics_of(camera));
+  cv::Mat coefficients(camera.coefficients, true);
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+  cv::Mat sigmas;
+  // By LU: OpenCV's singular value decomposition of all views' unknowns takes seconds.
+  int flags = cv::CALIB_USE_LU | (start.known ? cv::CALIB_USE_INTRINSIC_GUESS : 0);
+  if (camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
+  if (camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
+  flags |= flags_of(start.held, camera.distortion);
+  solution.rms_px = cv::calibrateCamera(seen.points,
+                                        seen.pixels,
+                                        {camera.width, camera.height},
+                                        K,
+                                        coefficients,
+                                        rotations,
+                                        translations,
+                                        start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
+                                        cv::noArray(),
+                                        solution.view_rms_px,
+                                        flags,
+                                        kEnough);
+  set_parameters(camera, K, coefficients);
+  solution.camera = camera;
+  for (std::size_t i = 0; start.with_sigmas && i < 4 + camera.coefficients.size(); ++i) {
+    solution.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
+  }
+  for (const auto& rotation : rotations) solution.slant_deg.push_back(slant_deg(rotation));
+  return solution;
+}
+
+LensFit fit_equidistant(const Correspondences& seen, const LensStart& start) {
+  Camera camera = start.camera;
+  LensFit solution;
+  cv::Mat K(intrinsics_of(camera));
+  cv::Mat coefficients(camera.coefficients, true);
+  std::vector<cv::Mat> rotations;
+  std::vector<cv::Mat> translations;
+  int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW;
+  if (start.known) flags |= cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
+  flags |= flags_of(start.held, camera.distortion);
+  solution.rms_px = cv::fisheye::calibrate(seen.points,
+                                           seen.pixels,
+                                           {camera.width, camera.height},
+                                           K,
+                                           coefficients,
+                                           rotations,
+                                           translations,
+                                           flags,
+                                           kEnough);
+  set_parameters(camera, K, coefficients);
+  solution.camera = camera;
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    std::vector<cv::Point2f> projected;
+    cv::fisheye::projectPoints(
+        seen.points[i], projected, rotations[i], translations[i], K, coefficients);
+    const double norm = cv::norm(projected, seen.pixels[i]);
+    solution.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
+    solution.slant_deg.push_back(slant_deg(rotations[i]));
+  }
+  return solution;
+}
+
+bool plausible(const Camera& camera) {
+  const double largest = 20.0 * std::max(camera.width, camera.height);
+  const auto all = parameters(camera);
+  return std::all_of(all.begin(), all.end(), [](double p) { return std::isfinite(p); }) &&
+         camera.fx > 0 && camera.fy > 0 && camera.fx < largest && camera.fy < largest &&
+         camera.cx > 0 && camera.cx < camera.width && camera.cy > 0 && camera.cy < camera.height;
+}
+
+}  // namespace
+
+std::span<const LensCoefficient> coefficients_of(Distortion distortion) {
+  if (distortion == Distortion::equidistant) return kEquidistant;
+  return kRadialTangential;
+}
+
+std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
+                                const Board& board,
+                                const LensStart& start) {
+  try {
+    const Correspondences seen = correspondences(views, board);
+    LensFit solution = start.camera.distortion == Distortion::equidistant
+                           ? fit_equidistant(seen, start)
+                           : fit_radial_tangential(seen, start);
+    if (plausible(solution.camera)) return solution;
+  } catch (const cv::Exception&) {
+    // OpenCV's word for views that fix no camera.
+  }
+  return std::nullopt;
+}
+
+}  // namespace gpo
