@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Builds the tests by clang++ with sanitizers and runs them: with the address and the undefined-behavior
+# sanitizer all of them, with the thread sanitizer those that start threads.
+#   tests/sanitized.sh                      one after the other
+#   tests/sanitized.sh asan|tsan ARGS...    one of them; ARGS go to ctest, e.g. -R Worker
+# JOBS=n builds and runs n at a time (else as many as there are processors). A test in which anything is
+# reported fails. tests/sanitizers holds what is not reported: others' libraries, each with its reason.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source .ci/install.sh
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+jobs=${JOBS:-$(nproc)}
+unreported=$PWD/tests/sanitizers
+
+# What builds or starts something else than what is sanitized here: ./run.sh its own program, tests/fuzz
+# with sanitizers of its own, the engine alone.
+elsewhere='^(Fuzz|Readme|RunScript|Install|EngineAlone)\.'
+# What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them.
+threads='Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey'
+
+export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export TSAN_OPTIONS=halt_on_error=1:suppressions=$unreported/tsan.supp
+
+# The thread sanitizer's map of the memory leaves little room for addresses at random.
+fixed_addresses() {
+  if setarch "$(uname -m)" -R true 2>/dev/null; then setarch "$(uname -m)" -R "$@"; else "$@"; fi
+}
+# run PRESET ARGS...
+run() {
+  local preset=$1
+  shift
+  cmake --preset "$preset"
+  cmake --build --preset "$preset" --parallel "$jobs" \
+    --target engine_tests ui_tests monkey_tests app_tests video_tests
+  fixed_addresses ctest --preset "$preset" -j "$jobs" -E "$elsewhere" "$@"
+}
+
+case ${1:-both} in
+  asan) run "$@" ;;
+  tsan) shift; run tsan -R "$threads" "$@" ;;
+  both) run asan; run tsan -R "$threads" ;;
+  *) sed -n '7,8p' "$0"; exit 2 ;;
+esac
