@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/cube.h"
 
-#include "engine/inspection/inspection.h"
-#include "engine/window/window.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -79,30 +76,14 @@ std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double sid
   return corners;
 }
 
-void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners) {
-  const Recording& recording = *inspection.recording;
-  const auto rays = undistorted_rays(recording.camera, board_corners);
-  const auto anchor = [&](const Plane& plane, const Pose& camera) {
-    return rays.empty() ? anchor_on_plane(plane, camera, centroid_ray(*inspection.window))
-                        : anchor_on_board(plane, camera, rays, *recording.board);
-  };
-  inspection.cube = anchor(inspection.initialization->plane, Pose{});
-  const WindowTruth* truth = inspection.truth.get();
-  if (truth != nullptr && truth->plane && truth->cameras.front()) {
-    inspection.true_cube = anchor(*truth->plane, *truth->cameras.front());
-  }
-}
-
-void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c) {
-  const auto move = [&](CubeAnchor& cube, const Plane& plane, const Pose& camera) {
-    const auto middle = intersect(plane, camera, ray_c);
-    if (!middle) return;
-    const double half = cube.on_board ? default_cube_side(cube, plane.distance) / 2 : 0;
-    cube.origin = *middle - cube.axes * Eigen::Vector3d(half, half, 0);
-  };
-  if (inspection.cube) move(*inspection.cube, inspection.initialization->plane, Pose{});
-  if (inspection.true_cube)
-    move(*inspection.true_cube, *inspection.truth->plane, *inspection.truth->cameras.front());
+std::optional<CubeAnchor> place_cube(const Plane& plane_w,
+                                     const Pose& reference,
+                                     const Recording& recording,
+                                     const Window& window,
+                                     const std::vector<Eigen::Vector2d>& board_corners_raw_px) {
+  const auto rays = undistorted_rays(recording.camera, board_corners_raw_px);
+  return rays.empty() ? anchor_on_plane(plane_w, reference, centroid_ray(window))
+                      : anchor_on_board(plane_w, reference, rays, *recording.board);
 }
 
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/recording/recording.h"
+#include "engine/window/window.h"
 
 #include <array>
 #include <optional>
@@ -44,15 +45,14 @@ double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 /// Corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top).
 std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side);
 
-struct Inspection;
-
-/// Places `cube` on the estimated plane and `true_cube` on the true one, where the same rays of the
-/// reference camera meet them: those of the board's corners (row by row, raw pixels of the
-/// reference picture), or where there is no board that of the inliers' centroid.
-void place_cubes(Inspection& inspection, const std::vector<Eigen::Vector2d>& board_corners_raw_px);
-
-/// Moves the middle of both cubes' bases to where a ray of the reference camera meets their planes;
-/// they keep their axes. One that the ray misses stays.
-void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
+/// The cube's place on a plane, in the plane's world: on the recording's board, whose corners (row
+/// by row) were seen at these raw pixels of the reference picture, or where there is none where the
+/// ray to the inliers' centroid meets the plane. `reference` is the reference camera in that world.
+/// Nothing where a ray misses the plane.
+std::optional<CubeAnchor> place_cube(const Plane& plane_w,
+                                     const Pose& reference,
+                                     const Recording& recording,
+                                     const Window& window,
+                                     const std::vector<Eigen::Vector2d>& board_corners_raw_px);
 
 }  // namespace gpo

@@ -65,7 +65,17 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       inspection.evaluation = evaluate(
           *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
     }
-    place_cubes(inspection, stages.board_corners.value);
+    const auto place = [&](const Plane& plane, const Pose& reference) {
+      return place_cube(plane,
+                        reference,
+                        *inspection.recording,
+                        *inspection.window,
+                        stages.board_corners.value);
+    };
+    inspection.cube = place(inspection.initialization->plane, Pose{});
+    const WindowTruth* truth = inspection.truth.get();
+    if (truth != nullptr && truth->plane && truth->cameras.front())
+      inspection.true_cube = place(*truth->plane, *truth->cameras.front());
   }
   return std::make_shared<const Inspection>(std::move(inspection));
 }

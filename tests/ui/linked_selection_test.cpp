@@ -1,9 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/moved_cube.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/held_keys.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/panels/panes/view_options.h"
+#include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/actions/apply.h"

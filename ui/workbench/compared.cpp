@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
+#include "engine/inspection/moved_cube.h"
 #include "engine/inspection/setting_values.h"
 
 #include <algorithm>

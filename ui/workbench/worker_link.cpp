@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
+#include "engine/inspection/moved_cube.h"
 #include "ui/workbench/adopt.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/recent_files.h"

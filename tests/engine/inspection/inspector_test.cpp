@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/moved_cube.h"
 #include "engine/inspection/report.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
@@ -251,6 +252,37 @@ TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {
   EXPECT_NEAR(inspection->cube->unit * *inspection->evaluation->scale, 0.025, 0.0005);
   const Plane& plane = inspection->initialization->plane;
   EXPECT_NEAR(plane.normal.dot(inspection->cube->origin) + plane.distance, 0, 1e-12);
+}
+
+TEST(Inspector, TrueCubeIsWhereTheMovedOneIs) {
+  Settings settings;
+  settings.start = 20;
+  settings.frames = 30;
+  settings.method = "ba";  // the best one here
+  Inspection inspection = *Inspector(desk()).inspect(settings);
+  ASSERT_TRUE(inspection.cube && inspection.true_cube);
+  const Camera& camera = inspection.recording->camera;
+  const auto apart_px = [&](int frame) {
+    const CubeAnchor &cube = *inspection.cube, &true_cube = *inspection.true_cube;
+    const double side = default_cube_side(cube);
+    const auto corners = cube_corners(cube, side);
+    const auto true_corners = cube_corners(true_cube, side * true_cube.unit / cube.unit);
+    double most = 0;
+    for (int k = 0; k < 8; ++k)
+      most = std::max(
+          most,
+          (project(camera, to_camera(inspection.initialization->cameras[frame], corners[k])) -
+           project(camera, to_camera(*inspection.truth->cameras[frame], true_corners[k])))
+              .norm());
+    return most;
+  };
+  EXPECT_LT(apart_px(0), 1);
+  // Where a tenth, the middle and nine tenths of the picture are.
+  for (const Eigen::Vector3d& ray :
+       {Eigen::Vector3d(-0.4, -0.1, 1), Eigen::Vector3d(0, 0.1, 1), Eigen::Vector3d(0.4, 0.3, 1)}) {
+    move_cubes(inspection, ray);
+    for (const int frame : {0, 15, 29}) EXPECT_LT(apart_px(frame), 2) << "frame " << frame;
+  }
 }
 
 TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
