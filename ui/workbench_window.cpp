@@ -4,9 +4,8 @@
 
 #include "engine/base/error.h"
 #include "ui/context/framebuffer.h"
-#include "ui/context/gui_style.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/adopt.h"
@@ -28,7 +27,6 @@ constexpr int kFramesToSettle = 3;
 
 void clear(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
-  rgb = themed(rgb);
   glClearColor(static_cast<float>(red(rgb)),
                static_cast<float>(green(rgb)),
                static_cast<float>(blue(rgb)),
@@ -51,10 +49,9 @@ void draw_views(const PanelInput& input,
 }
 
 /// Everything has another color now, also what nobody draws anew.
-void use_theme(const PanelInput& input, Views& views) {
-  if (current_theme() == input.state.theme) return;
-  set_theme(input.state.theme);
-  apply_style(input.scale);
+void use_theme(const PanelInput& input, Gui& gui, Views& views) {
+  if (gui.theme() == input.state.theme) return;
+  gui.set_theme(input.state.theme);
   views.window = WindowPicture();
 }
 
@@ -170,10 +167,10 @@ cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size win
 Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
-  use_theme(input, views);
+  use_theme(input, gui, views);
   gui.begin_frame(size.width, size.height, 1, delta_seconds);
   draw_panels(input, size, views, commands);
-  gui.end_frame(views.window, themed(palette::kBorder));
+  gui.end_frame(views.window, color_of(Role::border));
   return commands;
 }
 
@@ -186,12 +183,12 @@ cv::Mat draw_view(const std::string& view,
   const cv::Size size = wanted.value_or(own_size(view, input, window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
-  use_theme(input, views);
+  use_theme(input, gui, views);
   for (int i = 0; i < kFramesToSettle; ++i) {
     if (view == "window") {
       draw_workbench(input, size, gui, views);
     } else {
-      clear(palette::kBackground);
+      clear(color_of(Role::background));
       gui.begin_frame(size.width, size.height);
       draw_alone(view, input, size, views);
       gui.end_frame();

@@ -8,9 +8,9 @@
 #include "tests/benchmark/tables.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
+#include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
-#include "ui/look/palette.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/picture_texture.h"
@@ -63,7 +63,7 @@ class ImageView : public View {
     gui_.begin_frame(kSize.width, kSize.height);
     draw_image_view(
         *ImGui::GetBackgroundDrawList(), whole(), inspection_, frame, &texture_, {}, {});
-    gui_.end_frame(picture_, palette::kBorder);
+    gui_.end_frame(picture_, color_of(Role::border));
   }
 
  private:
@@ -82,7 +82,7 @@ class CompareView : public View {
     frame_ = frame;
     gui_.begin_frame(kSize.width, kSize.height);
     draw_compare_view(*ImGui::GetBackgroundDrawList(), whole(), inspections_, frame, &texture_);
-    gui_.end_frame(picture_, palette::kBorder);
+    gui_.end_frame(picture_, color_of(Role::border));
   }
 
  private:
@@ -104,7 +104,7 @@ class OnlyScene : public View {
     gui_.begin_frame(kSize.width, kSize.height);
     draw_scene_view(
         *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, {});
-    gui_.end_frame(picture_, palette::kBorder);
+    gui_.end_frame(picture_, color_of(Role::border));
   }
 
  private:

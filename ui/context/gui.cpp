@@ -13,30 +13,28 @@
 #include <imgui.h>
 
 namespace gpo {
-namespace {
 
-void create_imgui(float scale) {
+ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(font)]; }
+
+void Gui::create() {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
-  apply_style(scale);
-  load_fonts(scale);
+  io.UserData = this;
+  apply_style(scale_, theme_);
+  load_fonts(scale_);
 }
 
-}  // namespace
-
-ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(font)]; }
-
 Gui::Gui(float content_scale) : scale_(content_scale), has_window_(false) {
-  create_imgui(scale_);
+  create();
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
 Gui::Gui(WindowContext& window) : scale_(window.content_scale()), has_window_(true) {
-  create_imgui(scale_);
+  create();
   ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -45,6 +43,11 @@ Gui::~Gui() {
   ImGui_ImplOpenGL3_Shutdown();
   if (has_window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
+}
+
+void Gui::set_theme(Theme theme) {
+  theme_ = theme;
+  apply_style(scale_, theme_);
 }
 
 void Gui::begin_frame(int width, int height, float framebuffer_scale, double delta_seconds) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/look/palette.h"
+
 #include <cstdint>
 
 struct ImFont;
@@ -42,8 +44,15 @@ class Gui {
   /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
   float scale() const { return scale_; }
 
+  Theme theme() const { return theme_; }
+  /// Of everything that is drawn from now on.
+  void set_theme(Theme theme);
+
  private:
+  void create();
+
   float scale_;
+  Theme theme_ = Theme::dark;
   bool has_window_;
 };
 

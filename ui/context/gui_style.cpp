@@ -16,50 +16,49 @@ extern const char gpo_font_bold[], gpo_font_bold_end[];
 namespace gpo {
 namespace {
 
-ImVec4 color(std::uint32_t rgb, double alpha = 1) {
-  rgb = themed(rgb);
-  return {static_cast<float>(red(rgb)),
-          static_cast<float>(green(rgb)),
-          static_cast<float>(blue(rgb)),
-          static_cast<float>(alpha)};
-}
-
-void apply_colors(ImVec4* colors) {
-  using namespace palette;
-  colors[ImGuiCol_Text] = color(kText);
-  colors[ImGuiCol_TextDisabled] = color(kTextDim);
-  colors[ImGuiCol_TextSelectedBg] = color(kAccent, 0.35);
-  colors[ImGuiCol_WindowBg] = colors[ImGuiCol_ChildBg] = color(kPanel);
-  colors[ImGuiCol_MenuBarBg] = color(kBackground);
-  colors[ImGuiCol_PopupBg] = color(kRaised, 0.98);
-  colors[ImGuiCol_ModalWindowDimBg] = color(kBackground, 0.6);
-  colors[ImGuiCol_Border] = colors[ImGuiCol_Separator] = color(kBorder);
-  colors[ImGuiCol_BorderShadow] = color(0, 0);
-  colors[ImGuiCol_FrameBg] = color(kRaised);
-  colors[ImGuiCol_FrameBgHovered] = color(kHovered);
-  colors[ImGuiCol_FrameBgActive] = color(kActive);
-  colors[ImGuiCol_Button] = colors[ImGuiCol_Header] = color(kRaised);
-  colors[ImGuiCol_ButtonHovered] = colors[ImGuiCol_HeaderHovered] = color(kHovered);
-  colors[ImGuiCol_ButtonActive] = colors[ImGuiCol_HeaderActive] = color(kActive);
-  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = color(kAccent);
-  colors[ImGuiCol_SliderGrabActive] = color(kText);
-  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgCollapsed] = color(kBackground);
-  colors[ImGuiCol_TitleBgActive] = color(kRaised);
-  colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = color(kPanel);
-  colors[ImGuiCol_TabHovered] = color(kHovered);
-  colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = color(kActive);
-  colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_ResizeGripHovered] = color(kAccent, 0.6);
-  colors[ImGuiCol_SeparatorActive] = colors[ImGuiCol_ResizeGripActive] = color(kAccent);
-  colors[ImGuiCol_ResizeGrip] = color(kBorder);
-  colors[ImGuiCol_ScrollbarBg] = color(kBackground, 0);
-  colors[ImGuiCol_ScrollbarGrab] = color(kHovered);
-  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = color(kActive);
-  colors[ImGuiCol_TableHeaderBg] = color(kRaised);
-  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = color(kBorder);
-  colors[ImGuiCol_TableRowBg] = color(0, 0);
-  colors[ImGuiCol_TableRowBgAlt] = color(kText, 0.03);
-  colors[ImGuiCol_NavHighlight] = color(kAccent);
-  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = color(kAccent);
+void apply_colors(ImVec4* colors, Theme theme) {
+  using enum Role;
+  const auto color = [theme](Role role, double alpha = 1) -> ImVec4 {
+    const std::uint32_t rgb = color_of(role, theme);
+    return {static_cast<float>(red(rgb)),
+            static_cast<float>(green(rgb)),
+            static_cast<float>(blue(rgb)),
+            static_cast<float>(alpha)};
+  };
+  colors[ImGuiCol_Text] = color(text);
+  colors[ImGuiCol_TextDisabled] = color(text_dim);
+  colors[ImGuiCol_TextSelectedBg] = color(accent, 0.35);
+  colors[ImGuiCol_WindowBg] = colors[ImGuiCol_ChildBg] = color(panel);
+  colors[ImGuiCol_MenuBarBg] = color(background);
+  colors[ImGuiCol_PopupBg] = color(raised, 0.98);
+  colors[ImGuiCol_ModalWindowDimBg] = color(background, 0.6);
+  colors[ImGuiCol_Border] = colors[ImGuiCol_Separator] = color(border);
+  colors[ImGuiCol_BorderShadow] = ImVec4(0, 0, 0, 0);
+  colors[ImGuiCol_FrameBg] = color(raised);
+  colors[ImGuiCol_FrameBgHovered] = color(hovered);
+  colors[ImGuiCol_FrameBgActive] = color(active);
+  colors[ImGuiCol_Button] = colors[ImGuiCol_Header] = color(raised);
+  colors[ImGuiCol_ButtonHovered] = colors[ImGuiCol_HeaderHovered] = color(hovered);
+  colors[ImGuiCol_ButtonActive] = colors[ImGuiCol_HeaderActive] = color(active);
+  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = color(accent);
+  colors[ImGuiCol_SliderGrabActive] = color(text);
+  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgCollapsed] = color(background);
+  colors[ImGuiCol_TitleBgActive] = color(raised);
+  colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = color(panel);
+  colors[ImGuiCol_TabHovered] = color(hovered);
+  colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = color(active);
+  colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_ResizeGripHovered] = color(accent, 0.6);
+  colors[ImGuiCol_SeparatorActive] = colors[ImGuiCol_ResizeGripActive] = color(accent);
+  colors[ImGuiCol_ResizeGrip] = color(border);
+  colors[ImGuiCol_ScrollbarBg] = color(background, 0);
+  colors[ImGuiCol_ScrollbarGrab] = color(hovered);
+  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = color(active);
+  colors[ImGuiCol_TableHeaderBg] = color(raised);
+  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = color(border);
+  colors[ImGuiCol_TableRowBg] = ImVec4(0, 0, 0, 0);
+  colors[ImGuiCol_TableRowBgAlt] = color(text, 0.03);
+  colors[ImGuiCol_NavHighlight] = color(accent);
+  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = color(accent);
 }
 
 /// Digits as wide as each other, so that numbers that change do not dance; Inter's own are not.
@@ -104,10 +103,10 @@ std::string_view regular_font() { return {gpo_font_regular, gpo_font_regular_end
 
 std::string_view bold_font() { return {gpo_font_bold, gpo_font_bold_end}; }
 
-void apply_style(float scale) {
+void apply_style(float scale, Theme theme) {
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
-  apply_colors(style.Colors);
+  apply_colors(style.Colors, theme);
   style.WindowPadding = ImVec2(12, 10);
   style.FramePadding = ImVec2(9, 5);
   style.ItemSpacing = ImVec2(8, 7);

@@ -103,9 +103,4 @@ cv::Mat OffscreenContext::read_bgr() {
   return read_bound_framebuffer(width_, height_);
 }
 
-std::string gl_renderer() {
-  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  return name != nullptr ? name : "";
-}
-
 }  // namespace gpo

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include <opencv2/core.hpp>
 
@@ -29,8 +28,5 @@ class OffscreenContext {
   int width_, height_;
   std::unique_ptr<Handles> handles_;
 };
-
-/// GL_RENDERER of the current context. Baselines of pictures hold for "llvmpipe" only.
-std::string gl_renderer();
 
 }  // namespace gpo

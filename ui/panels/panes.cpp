@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -21,15 +21,14 @@ bool tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
   const bool clicked = ImGui::InvisibleButton(action_of(pane).c_str(), size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();
-  if (hovered)
-    list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(palette::kHovered));
+  if (hovered) list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(Role::hovered));
   if (open)
     list.AddRectFilled({at.x, at.y + size.y - std::round(2 * scale)},
                        {at.x + size.x, at.y + size.y},
-                       imgui_color(palette::kAccent));
+                       imgui_color(Role::accent));
   const float y = std::round(at.y + (place.height - ImGui::GetTextLineHeight()) / 2);
   list.AddText({std::round(at.x + padding), y},
-               imgui_color(open || hovered ? palette::kText : palette::kTextDim),
+               imgui_color(open || hovered ? color_of(Role::text) : color_of(Role::text_dim)),
                pane.title);
   if (!open) tooltip(pane.tooltip);
   ImGui::SameLine(0, 0);

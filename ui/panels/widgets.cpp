@@ -3,7 +3,7 @@
 #include "ui/panels/widgets.h"
 
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 
 #include <cmath>
 
@@ -33,14 +33,14 @@ void draw_empty(const Rectangle& place, const std::string& text) {
   const float wrap = place.width * 0.8F;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(
-      {place.x, place.y}, {place.right(), place.bottom()}, imgui_color(palette::kSceneBottom));
+      {place.x, place.y}, {place.right(), place.bottom()}, imgui_color(Role::scene_bottom));
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
   const ImVec2 at(std::round(place.x + (place.width - size.x) / 2),
                   std::round(place.y + (place.height - size.y) / 2));
   list.AddText(ImGui::GetFont(),
                ImGui::GetFontSize(),
                at,
-               imgui_color(palette::kTextDim),
+               imgui_color(Role::text_dim),
                text.c_str(),
                nullptr,
                wrap);
@@ -50,7 +50,7 @@ void table_header(std::span<const ColumnText> columns) {
   ImGui::TableNextRow();
   for (const ColumnText& column : columns) {
     if (!ImGui::TableNextColumn()) continue;
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
     ImGui::TextUnformatted(column.title);
     ImGui::PopStyleColor();
     tooltip(column.meaning);
@@ -67,7 +67,7 @@ void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float sc
 
 void heading(const char* text) {
   ImGui::PushFont(font(Font::small));
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
   ImGui::PopFont();

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/inspection/settings.h"
-#include "ui/views/normals/normals_disc.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/scene/orbit_camera.h"
+#include "ui/look/normals_zoom.h"
+#include "ui/look/orbit_camera.h"
+#include "ui/look/picture_zoom.h"
 #include "ui/workbench/selection.h"
 
 #include <filesystem>

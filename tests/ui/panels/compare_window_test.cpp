@@ -3,7 +3,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/facts/compare_facts.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/views/compare/compare_view.h"
@@ -145,9 +145,9 @@ TEST_F(CompareWindow, WhatIsMissingSaysSoInItsPlace) {
   state_.compared.push_back("pba");
   const cv::Mat three = view("compare", "compare_missing.png");
   const cv::Mat last = three.colRange(610, 900);
-  EXPECT_GT(count(last, palette::kAccent), 30);  // "computing"
-  EXPECT_EQ(count(last, palette::kCubeBase), 0);
-  EXPECT_GT(count(whole.colRange(460, 900), palette::kCubeBase), 100);
+  EXPECT_GT(count(last, color_of(Role::accent)), 30);  // "computing"
+  EXPECT_EQ(count(last, color_of(Role::cube_base)), 0);
+  EXPECT_GT(count(whole.colRange(460, 900), color_of(Role::cube_base)), 100);
 }
 
 TEST_F(CompareWindow, FlipSwapsTheColumnsInPlace) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/drawers/chart_item.h"
 
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ ChartItem chart_item(const std::string& name,
   item.hovered = std::clamp(item.to.x_value(mouse.x), item.to.x_low, item.to.x_high);
   const std::string values = chart_values_at(chart, *item.hovered);
   if (values.empty()) return item;
-  draw_chart_cursor(list, item.to, *item.hovered, palette::kTextDim);
+  draw_chart_cursor(list, item.to, *item.hovered, color_of(Role::text_dim));
   show_tooltip(values);
   return item;
 }

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -23,7 +23,7 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();
   if (hovered)
-    list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(palette::kHovered), 3);
+    list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(Role::hovered), 3);
   const float line = ImGui::GetTextLineHeight(), middle = std::round(at.y + size.y / 2);
   const float dash = line * 1.1F, left = at.x + line * 0.4F;
   list.AddLine({left, middle},
@@ -31,7 +31,7 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
                imgui_color(color_of(one), shown ? 1 : 0.35),
                shown ? line * 0.2F : line * 0.1F);
   list.AddText({std::round(left + dash + line * 0.4F), std::round(middle - line / 2)},
-               imgui_color(shown ? palette::kText : palette::kTextDim, shown ? 1 : 0.6),
+               imgui_color(shown ? Role::text : Role::text_dim, shown ? 1 : 0.6),
                title_of(one).c_str());
   tooltip(shown ? "Click: hides these curves" : "Click: shows these curves");
 }
@@ -75,7 +75,8 @@ float draw_names(const PanelInput& input,
   next(ImGui::CalcTextSize(text.c_str()).x + 10 * s);
   ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, std::round(y + 3 * s)});
   const float room = place.right() - ImGui::GetCursorScreenPos().x - 8 * s - close;
-  clipped_text(text, room, facts.of > facts.done ? palette::kAccent : palette::kTextDim);
+  clipped_text(
+      text, room, facts.of > facts.done ? color_of(Role::accent) : color_of(Role::text_dim));
   if (state.experiment) {
     ImGui::SameLine();
     if (ImGui::SmallButton("Close")) push(commands, RunAction{"close-results"});
@@ -93,7 +94,7 @@ void draw_chart(const PanelInput& input,
   const ChartItem item = chart_item("curves " + chart.y_label, place, views, chart, false);
   if (!state.recording) return;
   // Over the length of the window that ends at the frame.
-  drag_frame(item, state, state.settings.start - 1, palette::kText, commands);
+  drag_frame(item, state, state.settings.start - 1, color_of(Role::text), commands);
 }
 
 std::string why_empty(const WorkbenchState& state, const CurveFacts& facts) {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -9,8 +9,8 @@ namespace gpo {
 namespace {
 
 std::uint32_t color_of(Severity severity) {
-  if (severity == Severity::error) return palette::kBad;
-  return severity == Severity::warning ? palette::kWarning : palette::kText;
+  if (severity == Severity::error) return color_of(Role::bad);
+  return severity == Severity::warning ? color_of(Role::warning) : color_of(Role::text);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -36,7 +36,7 @@ void draw_rms(const PanelInput& input,
               Commands& commands) {
   const Chart chart = rms_chart(residuals, *input.inspection(), focused_track(input, views));
   const ChartItem item = chart_item("rms over frames", place, views, chart);
-  drag_frame(item, input.state, 0, palette::kAccent, commands);
+  drag_frame(item, input.state, 0, color_of(Role::accent), commands);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
-#include "ui/look/verdict_look.h"
+#include "ui/context/theme.h"
 #include "ui/panels/facts/compare_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 void header_cell(const char* title, const char* meaning) {
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted(title);
   ImGui::PopStyleColor();
   tooltip(meaning);
@@ -36,7 +36,7 @@ void header(const std::vector<ComparedRow>& rows) {
   for (const ComparedColumn& column : compared_columns()) ImGui::TableSetupColumn(column.title);
   // Not a row of headers: of those ImGui does not count the text when it chooses widths.
   ImGui::TableNextRow();
-  ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(palette::kRaised));
+  ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(Role::raised));
   header_cell("Method", "Click a row: makes it the current method");
   header_cell("Status", "Whether it solved the window, and how fit the window is by its result");
   for (const ComparedColumn& column : compared_columns()) header_cell(column.title, column.meaning);
@@ -55,13 +55,13 @@ void draw_name(const ComparedRow& row, bool current, float height, Commands& com
                      imgui_color(color_of(row.configuration)),
                      2);
   const ImVec2 name(std::round(at.x + line * 0.7F), at.y);
-  list.AddText(name, imgui_color(palette::kText), title_of(row.configuration).c_str());
+  list.AddText(name, imgui_color(Role::text), title_of(row.configuration).c_str());
   if (!current) return;
   const ImFont* small = font(Font::small);
   list.AddText(small,
                small->FontSize,
                {name.x, std::round(at.y + line)},
-               imgui_color(palette::kAccent),
+               imgui_color(Role::accent),
                "current");
 }
 
@@ -70,7 +70,9 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
   const bool failed = !row.reason.empty(), computing = row.numbers.empty() && !failed;
-  const std::uint32_t rgb = failed ? palette::kBad : computing ? palette::kAccent : palette::kGood;
+  const std::uint32_t rgb = failed      ? color_of(Role::bad)
+                            : computing ? color_of(Role::accent)
+                                        : color_of(Role::good);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
   ImGui::TextUnformatted(row.status.c_str());
   ImGui::PopStyleColor();
@@ -93,15 +95,17 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
 /// Dim where it hardly differs; the more, the stronger in the color of better or worse.
 std::uint32_t color_of_difference(double worse) {
   const double strength = 0.35 + 0.65 * std::abs(worse);
-  if (std::abs(worse) < 0.01) return palette::kTextDim;
-  return mixed_rgb(palette::kTextDim, worse > 0 ? palette::kBad : palette::kGood, strength);
+  if (std::abs(worse) < 0.01) return color_of(Role::text_dim);
+  return mixed_rgb(
+      color_of(Role::text_dim), worse > 0 ? color_of(Role::bad) : color_of(Role::good), strength);
 }
 
 void draw_number(const ComparedNumber& number) {
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
-  ImGui::PushStyleColor(ImGuiCol_Text,
-                        imgui_color(number.why_not.empty() ? palette::kText : palette::kTextDim));
+  ImGui::PushStyleColor(
+      ImGuiCol_Text,
+      imgui_color(number.why_not.empty() ? color_of(Role::text) : color_of(Role::text_dim)));
   ImGui::TextUnformatted(number.text.c_str());
   ImGui::PopStyleColor();
   ImGui::PushFont(font(Font::small));

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/look/palette.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
@@ -19,13 +19,14 @@ namespace {
 
 struct StageText {
   const char *title, *meaning;
+  Role color;
 };
 constexpr std::array<StageText, 5> kStages = {
-    {{"tracking", "Following corners from frame to frame"},
-     {"RANSAC", "Homographies of all frames, and which tracks fit them"},
-     {"rotations", "From the gyroscope or from the homographies"},
-     {"initialization", "The method itself, its optimization aside"},
-     {"optimization", "The method's iterative solver"}}};
+    {{"tracking", "Following corners from frame to frame", Role::tracking},
+     {"RANSAC", "Homographies of all frames, and which tracks fit them", Role::ransac},
+     {"rotations", "From the gyroscope or from the homographies", Role::rotations},
+     {"initialization", "The method itself, its optimization aside", Role::initialization},
+     {"optimization", "The method's iterative solver", Role::optimization}}};
 
 /// Milliseconds, one a stage.
 std::array<double, 5> stages_ms(const Timing& t) {
@@ -39,7 +40,7 @@ double sum_ms(const Timing& timing) {
 }
 
 void dim(const char* text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
 }
@@ -54,7 +55,7 @@ void header(float scale) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float side = 9 * scale, y = at.y + (ImGui::GetTextLineHeight() - side) / 2;
     ImGui::GetWindowDrawList()->AddRectFilled(
-        {at.x, y}, {at.x + side, y + side}, imgui_color(palette::kStages[i]), 2 * scale);
+        {at.x, y}, {at.x + side, y + side}, imgui_color(kStages[i].color), 2 * scale);
     ImGui::SetCursorScreenPos({at.x + side + 5 * scale, at.y});
     dim(kStages[i].title);
     tooltip(kStages[i].meaning);
@@ -78,7 +79,7 @@ void draw_bar(const ShownResult& result, double longest_ms) {
     const auto to = static_cast<float>(std::round(right));
     left = right;
     if (to <= from) continue;
-    list.AddRectFilled({from, at.y}, {to, at.y + height}, imgui_color(palette::kStages[i]));
+    list.AddRectFilled({from, at.y}, {to, at.y + height}, imgui_color(kStages[i].color));
     ImGui::SetCursorScreenPos({from, at.y});
     ImGui::InvisibleButton(kStages[i].title, {to - from, height});
     tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
-#include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -60,7 +60,7 @@ void draw_row(const TrackFrame& frame, bool current, Commands& commands) {
   draw_sign(*ImGui::GetWindowDrawList(),
             frame.inlier ? Sign::circle : Sign::cross,
             {at.x + half, at.y + half},
-            frame.inlier ? palette::kInlier : palette::kOutlier);
+            frame.inlier ? color_of(Role::inlier) : color_of(Role::outlier));
 }
 
 void draw_table(const TrackLife& life, int frame, float width, float height, Commands& commands) {
@@ -90,9 +90,9 @@ Chart life_chart(const TrackLife& life) {
     }
     chart.curves.push_back(std::move(curve));
   };
-  add("transfer", palette::kInlier, &TrackFrame::transfer_px);
-  add("residual", palette::kResidual, &TrackFrame::residual_px);
-  add("fwd-bwd", palette::kRotation, &TrackFrame::forward_backward_px);
+  add("transfer", color_of(Role::inlier), &TrackFrame::transfer_px);
+  add("residual", color_of(Role::residual), &TrackFrame::residual_px);
+  add("fwd-bwd", color_of(Role::rotation), &TrackFrame::forward_backward_px);
   return chart;
 }
 
@@ -102,7 +102,7 @@ void draw_plot(const PanelInput& input,
                Views& views,
                Commands& commands) {
   const ChartItem item = chart_item("track life", place, views, life_chart(life));
-  drag_frame(item, input.state, 0, palette::kAccent, commands);
+  drag_frame(item, input.state, 0, color_of(Role::accent), commands);
 }
 
 /// The surroundings of a place of a picture, enlarged; its middle is the place, to a part of a
@@ -140,11 +140,11 @@ void draw_patch(const Patch& patch, const char* what, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 end(at.x + side, at.y + side);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(at, end, imgui_color(palette::kRaised));
+  list.AddRectFilled(at, end, imgui_color(Role::raised));
   if (!patch.empty) {
     mark_content(list, patch.texture.revision());
     list.AddImage(patch.texture.id(), at, end);
-    const ImU32 color = imgui_color(palette::kSelected, 0.7);
+    const ImU32 color = imgui_color(Role::selected, 0.7);
     const float middle = side / 2, arm = 8 * scale;
     list.AddLine({at.x + middle - arm, at.y + middle}, {at.x + middle + arm, at.y + middle}, color);
     list.AddLine({at.x + middle, at.y + middle - arm}, {at.x + middle, at.y + middle + arm}, color);
@@ -187,8 +187,9 @@ void track_drawer(const PanelInput& input,
   ImGui::TextUnformatted(fmt::format("Track {}", life.id).c_str());
   ImGui::PopFont();
   ImGui::SameLine();
-  clipped_text(
-      life.verdict + " \u00b7 places and errors in px", place.width - 120 * s, palette::kTextDim);
+  clipped_text(life.verdict + " \u00b7 places and errors in px",
+               place.width - 120 * s,
+               color_of(Role::text_dim));
   const float top = ImGui::GetCursorPosY();
   const float patches = (2 * kPatch_px * kMagnification + 20) * s;
   const float rest = place.width - patches - 24 * s;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -25,7 +25,7 @@ namespace {
 bool button(const char* title, const Rectangle& place, float scale, bool first) {
   const float width = std::max(220 * scale, ImGui::CalcTextSize(title).x + 32 * scale);
   ImGui::SetCursorPosX(std::round((place.width - width) / 2));
-  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(palette::kActive));
+  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
   const bool clicked = ImGui::Button(title, {width, 32 * scale});
   if (first) ImGui::PopStyleColor();
   return clicked;
@@ -36,7 +36,7 @@ void recent_list(const PanelInput& input, const Rectangle& place, Commands& comm
   const std::vector<std::filesystem::path>& recent = input.state.recent;
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * input.scale});
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   centered("Opened before", place);
   ImGui::PopStyleColor();
   for (std::size_t i = 0; i < std::min(kMost, recent.size()); ++i) {
@@ -58,7 +58,7 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
   const float inset = std::round(24 * s);
   ImGui::GetWindowDrawList()->AddRect({place.x + inset, place.y + inset},
                                       {place.right() - inset, place.bottom() - inset},
-                                      imgui_color(palette::kBorder),
+                                      imgui_color(Role::border),
                                       8 * s,
                                       0,
                                       2 * s);
@@ -72,7 +72,7 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
   ImGui::PushFont(font(Font::heading));
   centered("Drop a recording here", place);
   ImGui::PopFont();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   centered("an EuRoC folder, a video or a folder of images with camera.yaml,", place);
   centered("or tracks.csv with a calibration; a saved session; a results.csv", place);
   ImGui::PopStyleColor();

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
@@ -49,14 +49,14 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
 void draw_row(const KeyRow& row) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kAccent));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::accent));
   ImGui::TextUnformatted(row.keys.c_str());
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(row.title.c_str());
   tooltip(row.tooltip);
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(row.on ? palette::kGood : palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(row.on ? Role::good : Role::text_dim));
   ImGui::TextUnformatted(row.value.c_str());
   ImGui::PopStyleColor();
 }
@@ -75,7 +75,7 @@ void dim_window(const Rectangle& window, Commands& commands) {
   ImGui::SetNextWindowFocus();
   ImGui::SetNextWindowPos({window.x, window.y});
   ImGui::SetNextWindowSize({window.width, window.height});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kBackground, 0.6));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::background, 0.6));
   ImGui::Begin(
       "dim",
       nullptr,
@@ -97,7 +97,7 @@ void help_overlay(const PanelInput& input, const Rectangle& window, Commands& co
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 3 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kRaised));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
   ImGui::Begin("keys",
                nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/track_highlight.h"
 #include "ui/workbench/compared.h"
@@ -78,8 +79,8 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands&
 void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
   if (!ImGui::IsItemActive() || !ImGui::GetIO().KeyShift) return;
   const ImVec2 a = to_imgui(pointer.pressed_at), b = to_imgui(pointer.at);
-  list.AddRectFilled(a, b, imgui_color(palette::kAccent, 0.15));
-  list.AddRect(a, b, imgui_color(palette::kAccent), 0, 0, 1.5F * pointer.scale);
+  list.AddRectFilled(a, b, imgui_color(Role::accent, 0.15));
+  list.AddRect(a, b, imgui_color(Role::accent), 0, 0, 1.5F * pointer.scale);
 }
 
 /// The ray of the reference camera through the mouse.
@@ -135,7 +136,7 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   draw_rectangle(pointer, list);
   if (track) track_tooltip(input, views, *track);
   if (!views.picture_error.empty()) {
-    draw_badge(list, rect, palette::kBad, "no picture", views.picture_error);
+    draw_badge(list, rect, color_of(Role::bad), "no picture", views.picture_error);
   }
 }
 

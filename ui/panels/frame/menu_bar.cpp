@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -35,7 +35,7 @@ void draw_facts(const Recording& recording, float scale) {
   while (facts.size() > 1 && left + ImGui::CalcTextSize(text().c_str()).x > right) facts.pop_back();
   const std::string shown = text();
   ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(shown.c_str()).x));
-  clipped_text(shown, right - left, palette::kTextDim);
+  clipped_text(shown, right - left, color_of(Role::text_dim));
   std::string all = recording.path.string();
   for (const std::string& note : recording.notes) all += "\n" + note;
   tooltip(all);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
@@ -26,12 +26,13 @@ void draw_row(const Action& action, bool chosen, float width, float scale) {
     list.AddText({std::round(x), at.y + 4 * scale}, imgui_color(rgb), text.c_str());
   };
   if (chosen)
-    list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(palette::kActive), 4 * scale);
-  write(at.x + 8 * scale, palette::kText, action.title);
-  write(at.x + width * 0.45F, palette::kTextDim, usage(action));
+    list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::active), 4 * scale);
+  write(at.x + 8 * scale, color_of(Role::text), action.title);
+  write(at.x + width * 0.45F, color_of(Role::text_dim), usage(action));
   if (action.shortcuts.empty()) return;
   const std::string& keys = action.shortcuts.front().label;
-  write(at.x + width - ImGui::CalcTextSize(keys.c_str()).x - 8 * scale, palette::kAccent, keys);
+  write(
+      at.x + width - ImGui::CalcTextSize(keys.c_str()).x - 8 * scale, color_of(Role::accent), keys);
 }
 
 /// Rows that fit, the chosen one lit. The one that was clicked, or null.
@@ -109,7 +110,7 @@ void palette_overlay(const PanelInput& input,
   const float width = std::min(640 * s, window.width - 16 * s);
   ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * s)});
   ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kRaised));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::Begin("palette",
                nullptr,

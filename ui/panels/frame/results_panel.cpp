@@ -1,13 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/look/palette.h"
-#include "ui/look/verdict_look.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/views/overlay/verdict_look.h"
 
 #include <cmath>
 
@@ -17,15 +17,15 @@ namespace {
 std::uint32_t color_of(Tone tone) {
   switch (tone) {
     case Tone::good:
-      return palette::kGood;
+      return color_of(Role::good);
     case Tone::bad:
-      return palette::kBad;
+      return color_of(Role::bad);
     case Tone::dim:
-      return palette::kTextDim;
+      return color_of(Role::text_dim);
     case Tone::plain:
       break;
   }
-  return palette::kText;
+  return color_of(Role::text);
 }
 
 /// Not SameLine(x): that counts from the group's left edge.
@@ -41,7 +41,7 @@ void draw_value(const ResultRow& row, float right, float gap) {
     ImGui::PushFont(font(Font::small));
     const float note_width = ImGui::CalcTextSize(row.note.c_str()).x;
     continue_line_at(right - value_width - note_width - gap);
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
     ImGui::TextUnformatted(row.note.c_str());
     ImGui::PopStyleColor();
     ImGui::PopFont();
@@ -104,7 +104,7 @@ void draw_state(const PanelInput& input, float right) {
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
   ImGui::PushFont(font(Font::small));
   continue_line_at(right - ImGui::CalcTextSize(text).x);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kWarning));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::warning));
   ImGui::TextUnformatted(text);
   ImGui::PopStyleColor();
   ImGui::PopFont();

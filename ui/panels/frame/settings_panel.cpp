@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/setting_values.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -81,7 +81,8 @@ struct SettingRows {
   /// In the color of what was chosen, where it is `other` than the default.
   void label(const std::string& title, const std::string& help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(other ? palette::kAccent : palette::kText));
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          imgui_color(other ? color_of(Role::accent) : color_of(Role::text)));
     ImGui::TextUnformatted(title.c_str());
     ImGui::PopStyleColor();
     tooltip(help);

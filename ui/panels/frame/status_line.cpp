@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -28,11 +28,10 @@ void draw_bar(float done, float scale) {
   const ImVec2 size(140 * scale, std::round(8 * scale));
   const float y = std::round(at.y + (ImGui::GetTextLineHeight() - size.y) / 2);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(
-      {at.x, y}, {at.x + size.x, y + size.y}, imgui_color(palette::kRaised), size.y / 2);
+  list.AddRectFilled({at.x, y}, {at.x + size.x, y + size.y}, imgui_color(Role::raised), size.y / 2);
   list.AddRectFilled({at.x, y},
                      {at.x + std::max(size.y, size.x * std::clamp(done, 0.0F, 1.0F)), y + size.y},
-                     imgui_color(palette::kAccent),
+                     imgui_color(Role::accent),
                      size.y / 2);
   ImGui::Dummy({size.x, ImGui::GetTextLineHeight()});
   ImGui::SameLine();
@@ -46,7 +45,7 @@ float draw_progress(const WorkerStatus& work, float scale) {
   // At a fixed place: a bar that moves with its text is hard to read.
   ImGui::SameLine(std::max(190 * scale, ImGui::CalcTextSize(text.c_str()).x + 24 * scale));
   if (work.of > 0) draw_bar(static_cast<float>(work.done) / static_cast<float>(work.of), scale);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted("Esc cancels");
   ImGui::PopStyleColor();
   ImGui::SameLine();
@@ -58,13 +57,13 @@ float draw_progress(const WorkerStatus& work, float scale) {
 void status_line(const PanelInput& input, const Rectangle& place) {
   const float s = input.scale;
   const float padding = std::round((place.height - ImGui::GetTextLineHeight()) / 2);
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(palette::kBackground));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::background));
   {
     const PanelScope panel("status", place, {12 * s, padding});
     const float right = place.width - 12 * s;
     const bool error = !input.worker.error.empty();
     const std::string& message = error ? input.worker.error : input.state.message;
-    const std::uint32_t color = error ? palette::kBad : palette::kTextDim;
+    const std::uint32_t color = error ? color_of(Role::bad) : color_of(Role::text_dim);
     if (const auto work = current_work(input)) {
       const float left = draw_progress(*work, s);
       ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));

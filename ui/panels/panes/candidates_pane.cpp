@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/facts/candidate_facts.h"
 #include "ui/panels/facts/study_facts.h"
 #include "ui/panels/panels.h"
@@ -37,7 +37,7 @@ void draw_verdict(const HomographyCandidate& candidate, float scale) {
   draw_sign(*ImGui::GetWindowDrawList(),
             taken ? Sign::circle : Sign::cross,
             {at.x + half, at.y + half},
-            taken ? palette::kInlier : palette::kOutlier);
+            taken ? color_of(Role::inlier) : color_of(Role::outlier));
   ImGui::SetCursorScreenPos({at.x + 20 * scale, at.y});
   ImGui::TextUnformatted(taken ? "taken" : candidate.rejected.c_str());
 }
@@ -45,7 +45,7 @@ void draw_verdict(const HomographyCandidate& candidate, float scale) {
 void draw_row(const HomographyCandidate& candidate, float scale) {
   ImGui::TableNextRow();
   const bool taken = candidate.taken();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? palette::kText : palette::kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? Role::text : Role::text_dim));
   const std::vector<std::string> cells = candidate_cells(candidate);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     ImGui::TableNextColumn();

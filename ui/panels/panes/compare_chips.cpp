@@ -4,7 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/compared.h"
 
@@ -34,7 +34,7 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
   const bool clicked = ImGui::InvisibleButton(("remove " + key).c_str(), {side, side});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered() && !dim;
-  const ImU32 color = imgui_color(hovered ? palette::kText : palette::kTextDim, dim ? 0.35 : 1);
+  const ImU32 color = imgui_color(hovered ? Role::text : Role::text_dim, dim ? 0.35 : 1);
   const ImVec2 middle(at.x + side / 2, at.y + side / 2);
   const float arm = side * 0.17F;
   list.AddLine({middle.x - arm, middle.y - arm}, {middle.x + arm, middle.y + arm}, color, 1.5F);
@@ -54,7 +54,7 @@ void chip(const std::string& key,
   const float height = std::round(kHeight * s);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float round = 4 * s;
-  list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(palette::kRaised), round);
+  list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::raised), round);
   list.AddRectFilled(at,
                      {at.x + std::round(5 * s), at.y + height},
                      imgui_color(color_of(one)),
@@ -62,7 +62,7 @@ void chip(const std::string& key,
                      ImDrawFlags_RoundCornersLeft);
   list.AddText(
       {at.x + std::round(12 * s), std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2)},
-      imgui_color(palette::kText),
+      imgui_color(Role::text),
       title_of(one).c_str());
   const bool remove = draw_cross(key, {at.x + width - height, at.y}, height, last);
   if (remove && !last) push(commands, RunAction{"compare remove " + key});

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/panes/compare_chips.h"
 #include "ui/panels/panes/view_options.h"
@@ -62,10 +62,9 @@ void choose_by_heading(const PanelInput& input,
   const bool current = configuration_of(input.state.settings) == one.configuration;
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  if (ImGui::IsItemHovered() && !current)
-    list.AddRectFilled(a, b, imgui_color(palette::kHovered, 0.5));
+  if (ImGui::IsItemHovered() && !current) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
   if (current)  // as a tab that is open
-    list.AddRectFilled({a.x, b.y - std::round(2 * input.scale)}, b, imgui_color(palette::kAccent));
+    list.AddRectFilled({a.x, b.y - std::round(2 * input.scale)}, b, imgui_color(Role::accent));
   tooltip(current ? "The current method: settings and results at the left are its"
                   : "Click: makes it the current method");
 }
@@ -87,7 +86,7 @@ ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawL
   list.AddText(small,
                small->FontSize,
                {std::round(place.x + 12 * s), std::round(place.y + 4 * s)},
-               imgui_color(palette::kTextDim),
+               imgui_color(Role::text_dim),
                text.c_str());
   const float width = small->CalcTextSizeA(small->FontSize, 1e6F, 0, text.c_str()).x;
   const bool truth = state.inspection && state.inspection->truth && state.view.truth;
@@ -131,7 +130,7 @@ void draw_columns(const PanelInput& input,
     ImGui::Dummy({1, 1});
   }
   if (!views.picture_error.empty())
-    draw_badge(list, visible, palette::kBad, "no picture", views.picture_error);
+    draw_badge(list, visible, color_of(Role::bad), "no picture", views.picture_error);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/look/palette.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -133,7 +133,7 @@ void solver_pane(const PanelInput& input,
   const float s = input.scale, inset = 12 * s;
   ImGui::SetCursorScreenPos({place.x + inset, place.y + 8 * s});
   ImGui::BeginGroup();
-  if (!missing.empty()) clipped_text(missing, place.width - 2 * inset, palette::kWarning);
+  if (!missing.empty()) clipped_text(missing, place.width - 2 * inset, color_of(Role::warning));
   draw_facts(shown, place.width - 2 * inset, input.timings, s);
   ImGui::EndGroup();
   const float top = ImGui::GetItemRectMax().y + 6 * s;

@@ -4,7 +4,7 @@
 
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/tracks_in_view.h"
 
@@ -75,14 +75,14 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
   const ImVec2 end(at.x + width, at.y + height);
   const std::uint32_t rgb = color_of(other.configuration);
-  list.AddRectFilled(at, end, imgui_color(palette::kBackground, 0.88), 5 * s);
+  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
   list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
   list.AddRectFilled(
       at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
   list.AddText(bold,
                bold->FontSize,
                {std::round(at.x + 20 * s), std::round(at.y + 6 * s)},
-               imgui_color(palette::kText),
+               imgui_color(Role::text),
                text.c_str());
 }
 

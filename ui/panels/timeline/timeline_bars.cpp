@@ -3,8 +3,8 @@
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
-#include "ui/look/verdict_look.h"
+#include "ui/context/theme.h"
+#include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,6 @@
 namespace gpo {
 namespace {
 
-using palette::kBad;
-using palette::kGood;
-using palette::kText;
-using palette::kTextDim;
-
 struct BarColors {
   ImU32 inliers, others;
 };
@@ -28,10 +23,11 @@ struct BarColors {
 /// taken for one, so what is no inlier is gray then. Without a verdict it is told by green and red.
 BarColors bar_colors(const Inspection& inspection, int frame) {
   const auto& growth = inspection.growth;
-  if (growth.empty()) return {imgui_color(kGood, 0.75), imgui_color(kBad, 0.75)};
+  if (growth.empty()) return {imgui_color(Role::good, 0.75), imgui_color(Role::bad, 0.75)};
   const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
-  const std::uint32_t rgb = judged ? look_of(growth[frame - 1].readiness).rgb : kTextDim;
-  return {imgui_color(rgb, 0.75), imgui_color(kTextDim, 0.4)};
+  const std::uint32_t rgb =
+      judged ? look_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim);
+  return {imgui_color(rgb, 0.75), imgui_color(Role::text_dim, 0.4)};
 }
 
 }  // namespace
@@ -61,7 +57,7 @@ void draw_verdict_signs(
     const float width = slot_begin(axis, start + run.last + 1) - left;
     if (width < 16 * scale) continue;
     const ImVec2 at(left + 9 * scale, y);
-    list.AddCircleFilled(at, 8 * scale, imgui_color(palette::kBackground, 0.8), 20);
+    list.AddCircleFilled(at, 8 * scale, imgui_color(Role::background, 0.8), 20);
     const ReadinessLook look = look_of(run.readiness);
     draw_sign(list, look.sign, at, look.rgb);
   }
@@ -73,12 +69,12 @@ namespace {
 struct MotionLine {
   const char* name;
   const char* unit;
-  std::uint32_t rgb;
+  Role color;
   double FrameMotion::*value;
 };
 constexpr MotionLine kMotionLines[] = {
-    {"parallax", " px", palette::kText, &FrameMotion::parallax_px},
-    {"rotation", "\u00b0/s", palette::kRotation, &FrameMotion::rotation_rate_deg_s}};
+    {"parallax", " px", Role::text, &FrameMotion::parallax_px},
+    {"rotation", "\u00b0/s", Role::rotation, &FrameMotion::rotation_rate_deg_s}};
 
 double largest(const Inspection& inspection, const MotionLine& line) {
   double most = 0;
@@ -103,8 +99,8 @@ void draw_motion(
                             bottom - static_cast<float>(value / most) * (bottom - top));
     }
     const auto count = static_cast<int>(points.size());
-    list.AddPolyline(points.data(), count, imgui_color(palette::kBackground, 0.7), 0, 3);
-    list.AddPolyline(points.data(), count, imgui_color(line.rgb), 0, 1.4F);
+    list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.7), 0, 3);
+    list.AddPolyline(points.data(), count, imgui_color(line.color), 0, 1.4F);
   }
 }
 
@@ -115,7 +111,7 @@ void draw_bookmarks(ImDrawList& list,
                     float scale) {
   for (const Bookmark& bookmark : bookmarks) {
     const float x = std::round(slot_middle(axis, bookmark.frame));
-    const ImU32 color = imgui_color(palette::kWarning);
+    const ImU32 color = imgui_color(Role::warning);
     list.AddLine({x, top - 6 * scale}, {x, top + 10 * scale}, color, std::round(1.5F * scale));
     list.AddRectFilled({x, top - 6 * scale}, {x + 8 * scale, top}, color);
   }
@@ -128,23 +124,23 @@ void draw_verdict_legend(
     list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);
     left += f->CalcTextSizeA(f->FontSize, 1e6F, 0, text).x;
   };
-  write("window up to here:", kTextDim);
+  write("window up to here:", color_of(Role::text_dim));
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
     const ReadinessLook look = look_of(readiness);
     draw_sign(list, look.sign, {left + 14 * scale, top + f->FontSize / 2}, look.rgb);
     left += 23 * scale;
-    write(to_string(readiness), kText);
+    write(to_string(readiness), color_of(Role::text));
   }
   left += 16 * scale;
-  write("height: tracks; gray: outliers", kTextDim);
+  write("height: tracks; gray: outliers", color_of(Role::text_dim));
   for (const MotionLine& line : kMotionLines) {
     if (inspection.motion.empty()) return;
     left += 16 * scale;
     const float y = std::round(top + f->FontSize / 2);
-    list.AddLine({left, y}, {left + 14 * scale, y}, imgui_color(line.rgb), 1.4F * scale);
+    list.AddLine({left, y}, {left + 14 * scale, y}, imgui_color(line.color), 1.4F * scale);
     left += 18 * scale;
     write(fmt::format("{} to {:.0f}{}", line.name, largest(inspection, line), line.unit).c_str(),
-          kTextDim);
+          color_of(Role::text_dim));
   }
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/timeline/time_axis.h"
@@ -18,12 +18,6 @@
 
 namespace gpo {
 namespace {
-
-using palette::kAccent;
-using palette::kHovered;
-using palette::kRaised;
-using palette::kText;
-using palette::kTextDim;
 
 enum class Icon { first, back, play, pause, on, last };
 
@@ -69,7 +63,7 @@ void icon_button(Icon icon, const char* name, float side, const PanelInput& inpu
   ImGui::EndDisabled();
   const ImVec2 from = ImGui::GetItemRectMin();
   const ImVec2 to = ImGui::GetItemRectMax();
-  const ImU32 color = imgui_color(enabled(action, input.state) ? kText : kTextDim);
+  const ImU32 color = imgui_color(enabled(action, input.state) ? Role::text : Role::text_dim);
   draw_icon(*ImGui::GetWindowDrawList(),
             icon,
             {(from.x + to.x) / 2, (from.y + to.y) / 2},
@@ -87,10 +81,10 @@ void draw_window_ends(ImDrawList& list,
                       float scale) {
   const float left = slot_begin(axis, settings.start);
   const float right = slot_begin(axis, std::min(axis.frames, settings.start + settings.frames));
-  const ImU32 color = imgui_color(kAccent);
+  const ImU32 color = imgui_color(Role::accent);
   const float line = std::max(1.0F, std::round(2 * scale));
   const float foot = std::round(6 * scale);
-  list.AddRectFilled({left, top}, {right, bottom}, imgui_color(kAccent, 0.14));
+  list.AddRectFilled({left, top}, {right, bottom}, imgui_color(Role::accent, 0.14));
   list.AddRectFilled({left, top}, {left + line, bottom}, color);
   list.AddRectFilled({right - line, top}, {right, bottom}, color);
   for (const float y : {top, bottom - line}) {
@@ -101,7 +95,7 @@ void draw_window_ends(ImDrawList& list,
 
 void draw_cursor(ImDrawList& list, float x, float top, float bottom, float scale) {
   const float half = std::max(1.0F, std::round(scale));
-  const ImU32 color = imgui_color(kText);
+  const ImU32 color = imgui_color(Role::text);
   x = std::round(x);
   list.AddRectFilled({x - half, top}, {x + half, bottom}, color);
   const float head = 5 * scale;
@@ -161,9 +155,9 @@ void draw_overview(ImDrawList& list, const TimeAxis& axis, float bottom, float s
   const float top = bottom - std::round(3 * scale);
   const float left = slot_begin(whole, axis.span.first);
   const float right = slot_begin(whole, axis.span.first + axis.span.count);
-  list.AddRectFilled({axis.left, top}, {axis.right, bottom}, imgui_color(kHovered));
+  list.AddRectFilled({axis.left, top}, {axis.right, bottom}, imgui_color(Role::hovered));
   list.AddRectFilled(
-      {left, top}, {std::max(right, left + 3 * scale), bottom}, imgui_color(kAccent));
+      {left, top}, {std::max(right, left + 3 * scale), bottom}, imgui_color(Role::accent));
 }
 
 void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
@@ -171,7 +165,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
   const TimeAxis axis{
       bar.x, bar.right(), state.frame_count(), holding(state.time_span, state.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(kRaised));
+  list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
   if (axis.frames < 1) return;
   const Inspection* shown =
       input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
@@ -215,7 +209,7 @@ void draw_playing(const PanelInput& input, Commands& commands) {
     push(commands, RunAction{state.speed >= 8 ? "speed 0.125" : "faster"});
   tooltip("Speed of playing; click: twice as fast (+), from 8\u00d7 on again at 1/8. - halves it");
   ImGui::SameLine(0, gap);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(state.loop ? kAccent : kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(state.loop ? Role::accent : Role::text_dim));
   if (ImGui::SmallButton("loop")) push(commands, RunAction{"loop"});
   ImGui::PopStyleColor();
   tooltip("Playing repeats the window (L)");
@@ -233,7 +227,7 @@ void draw_numbers(const PanelInput& input, float left, float top, Commands& comm
       fmt::format("frame {} / {}", state.frame, state.frame_count() - 1).c_str());
   ImGui::SetCursorScreenPos({left, top + ImGui::GetTextLineHeightWithSpacing()});
   const int start = state.settings.start;
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(kTextDim));
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted(fmt::format("{:.3f} s", seconds).c_str());
   ImGui::PopStyleColor();
   tooltip(

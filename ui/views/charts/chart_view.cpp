@@ -3,9 +3,9 @@
 #include "ui/views/charts/chart_view.h"
 
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
-#include "ui/look/palette.h"
 #include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/figure_plots.h"
 #include "ui/views/overlay/overlay.h"
@@ -29,10 +29,10 @@ namespace {
 
 /// In the colors of the current theme.
 ChartLook screen_look() {
-  return {themed(palette::kPanel),
-          themed(palette::kTextDim),
-          themed(palette::kBorder),
-          themed(palette::kRaised),
+  return {color_of(Role::panel),
+          color_of(Role::text_dim),
+          color_of(Role::border),
+          color_of(Role::raised),
           12,
           26};
 }
@@ -145,7 +145,7 @@ void draw_key(const TextWriter& text, const Key& key, const Eigen::Vector2d& cor
       text.list.AddCircleFilled({dot, y}, 0.8F * width, color, 8);
   else
     text.list.AddLine({x, y}, {end, y}, color, width);
-  text.write(at.x() + (kSample + kSampleGap) * s, at.y(), key.curve->name, palette::kText);
+  text.write(at.x() + (kSample + kSampleGap) * s, at.y(), key.curve->name, color_of(Role::text));
 }
 
 }  // namespace
@@ -238,8 +238,9 @@ ChartMapping draw_chart_view(ImDrawList& list,
   mark_content(list, view.revision());
   list.AddImage(imgui_texture(texture), to_imgui(corner), to_imgui(corner + size), {0, 1}, {1, 0});
   if (title > 0)
-    bold.write(corner.x() + kInset * s, corner.y() + 3 * s, chart.title, palette::kText);
-  text.write(corner.x() + kInset * s + title, corner.y() + 4 * s, chart.y_label, palette::kTextDim);
+    bold.write(corner.x() + kInset * s, corner.y() + 3 * s, chart.title, color_of(Role::text));
+  text.write(
+      corner.x() + kInset * s + title, corner.y() + 4 * s, chart.y_label, color_of(Role::text_dim));
   for (const Key& key : legend.keys) draw_key(text, key, corner, s);
   ChartMapping to = view.mapping();
   to.left += corner.x();
@@ -248,13 +249,13 @@ ChartMapping draw_chart_view(ImDrawList& list,
   text.write(middle - text.width(chart.x_label) / 2,
              corner.y() + size.y() - 18 * s,
              chart.x_label,
-             palette::kTextDim);
+             color_of(Role::text_dim));
   if (!has_values(chart)) {
     const std::string nothing = "no values";
     text.write(middle - text.width(nothing) / 2,
                to.bottom + to.height / 2 - text.font->FontSize / 2,
                nothing,
-               palette::kTextDim);
+               color_of(Role::text_dim));
   }
   return to;
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/base/chart.h"
+#include "ui/look/rect.h"
 #include "ui/views/charts/chart_mapping.h"
-#include "ui/views/picture/image_geometry.h"
 
 #include <cstdint>
 #include <memory>

@@ -6,7 +6,7 @@
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/residuals.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/charts/axis_ticks.h"
 
 #include <algorithm>
@@ -34,12 +34,17 @@ double bin_width(const std::vector<double>& sorted) {
   return ticks.values[1] - ticks.values[0];
 }
 
+/// The last bin holds what is beyond it, however far that is, and what is no number.
+int bin_of(double value, double width) {
+  const double bin = std::floor(value / width);
+  return bin < kBins ? static_cast<int>(bin) : kBins - 1;
+}
+
 /// Steps from bin to bin, in percent, over a ground that reaches down to zero.
 Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values, double width) {
   std::vector<double> share(kBins, 0);
   for (const double value : values)
-    share[std::min(kBins - 1, static_cast<int>(value / width))] +=
-        100.0 / static_cast<double>(values.size());
+    share[bin_of(value, width)] += 100.0 / static_cast<double>(values.size());
   Curve curve{std::move(name), rgb, false, {}, {}, {}, {}};
   for (int k = 0; k < kBins; ++k) {
     curve.x.insert(curve.x.end(), {k * width, (k + 1) * width});
@@ -73,7 +78,7 @@ Chart residual_histogram(const WindowResiduals& residuals,
   const int i = frame - inspection.window->start;
   if (i < 1 || i >= static_cast<int>(residuals.size()) || residuals[i].empty()) return chart;
   chart.curves.push_back(steps(fmt::format("frame {}, {} inliers", frame, residuals[i].size()),
-                               palette::kResidual,
+                               color_of(Role::residual),
                                residuals[i],
                                width));
   return chart;
@@ -92,7 +97,7 @@ Chart rms_chart(const WindowResiduals& residuals,
   if (residuals.empty()) return chart;
   chart.curves.push_back(std::move(rms));
   if (track == nullptr) return chart;
-  Curve own{fmt::format("track {}", track->id), palette::kSelected, false, {}, {}, {}, {}};
+  Curve own{fmt::format("track {}", track->id), color_of(Role::selected), false, {}, {}, {}, {}};
   for (const TrackFrame& frame : track->frames) {
     own.x.push_back(frame.frame);
     own.y.push_back(frame.residual_px.value_or(NAN));

@@ -3,9 +3,9 @@
 #include "ui/views/compare/compare_caption.h"
 
 #include "ui/look/numbers.h"
-#include "ui/look/verdict_look.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/overlay_text.h"
+#include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
 
@@ -87,8 +87,11 @@ void draw_error(
   const double s = overlay_scale();
   const std::string value = error.value ? error.text(*error.value) : "–";
   const double right = stacked ? 0 : text_width(Font::small, error.name) + 6 * s;
-  write_text(
-      list, Font::small, at + Vector2d(0, stacked ? 0 : 8 * s), error.name, palette::kTextDim);
+  write_text(list,
+             Font::small,
+             at + Vector2d(0, stacked ? 0 : 8 * s),
+             error.name,
+             color_of(Role::text_dim));
   const bool tight = right + text_width(Font::bold, value) > width - 4 * s;
   write_text(
       list, tight ? Font::small : Font::bold, at + Vector2d(right, (stacked ? 14 : 6) * s), value);
@@ -98,12 +101,13 @@ void draw_error(
   const bool repeats = unit != std::string::npos && same != std::string::npos &&
                        value.substr(unit) == difference.substr(same);
   if (tight && repeats) difference.resize(same);
-  const std::uint32_t rgb = *error.value < *error.first ? palette::kGood : palette::kBad;
+  const std::uint32_t rgb =
+      *error.value < *error.first ? color_of(Role::good) : color_of(Role::bad);
   write_text(list,
              Font::small,
              at + Vector2d(right, (stacked ? 34 : 28) * s),
              difference,
-             difference == "\u00b10" ? palette::kTextDim : rgb);
+             difference == "\u00b10" ? color_of(Role::text_dim) : rgb);
 }
 
 }  // namespace
@@ -128,7 +132,7 @@ void draw_compare_heading(ImDrawList& list, const ScreenRect& rect, const Compar
                Font::small,
                bar + s * Vector2d(16, 24),
                conditions(*column.inspection, wide),
-               palette::kTextDim);
+               color_of(Role::text_dim));
 }
 
 void draw_compare_caption(ImDrawList& list,
@@ -137,8 +141,11 @@ void draw_compare_caption(ImDrawList& list,
                           const Inspection* first) {
   const double s = overlay_scale();
   if (!inspection.initialization->ok) {
-    write_text(
-        list, Font::bold, rect.min + Vector2d(0, 8 * s), "not initialized", palette::kWarning);
+    write_text(list,
+               Font::bold,
+               rect.min + Vector2d(0, 8 * s),
+               "not initialized",
+               color_of(Role::warning));
     return;
   }
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
@@ -155,7 +162,7 @@ void draw_compare_caption(ImDrawList& list,
              Font::small,
              rect.min + Vector2d(0, 50 * s),
              remarks(inspection, e, rect.size.x()),
-             palette::kTextDim);
+             color_of(Role::text_dim));
 }
 
 }  // namespace gpo

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/views/compare/compare_view.h"
+#include "ui/look/rect.h"
+#include "ui/views/compare/compare_column.h"
+
+struct ImDrawList;
 
 namespace gpo {
 

@@ -3,10 +3,11 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/compare/compare_caption.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/overlay_text.h"
+#include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
 
 #include <algorithm>
@@ -149,7 +150,7 @@ void draw_missing(ImDrawList& list,
   const bool computing = column.missing == "computing";
   draw_badge(list,
              place.picture,
-             computing ? palette::kAccent : palette::kWarning,
+             computing ? color_of(Role::accent) : color_of(Role::warning),
              computing ? "computing" : "not computed",
              computing ? "" : column.missing);
 }
@@ -187,8 +188,7 @@ void draw_compare_view(ImDrawList& list,
                        int frame,
                        PictureTexture* picture,
                        const CompareOptions& options) {
-  list.AddRectFilled(
-      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kPanel));
+  list.AddRectFilled(to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
   if (columns.empty()) return;
   const Inspection* first = columns.front().inspection.get();
   if (options.top_line) draw_top(list, rect, recording, first, frame);
@@ -219,7 +219,7 @@ void draw_compare_view(ImDrawList& list,
                        PictureTexture* picture) {
   if (inspections.empty()) {
     list.AddRectFilled(
-        to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kPanel));
+        to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
     return;
   }
   draw_compare_view(
@@ -228,13 +228,20 @@ void draw_compare_view(ImDrawList& list,
 
 double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
   const double s = overlay_scale();
-  const std::pair<std::uint32_t, const char*> signs[] = {
-      {palette::kCubeBase, "cube on the estimated plane"}, {palette::kTruth, "true cube"}};
+  const LegendRow rows[] = {
+      {Sign::square, color_of(Role::cube_base), "cube on the estimated plane"},
+      {Sign::square, color_of(Role::truth), "true cube"}};
   double x = at.x();
-  for (const auto& [rgb, meaning] : signs) {
-    draw_sign(list, Sign::square, to_imgui({x, at.y() + 8 * s}), rgb);
-    write_text(list, Font::small, {x + 13 * s, at.y() + s}, meaning, palette::kTextDim);
-    x += 38 * s + text_width(Font::small, meaning);
+  for (const LegendRow& row : rows) {
+    // Texts begin on whole pixels.
+    const double text = std::round(x + 13 * s) - x;
+    draw_legend_row(list,
+                    to_imgui({x, at.y() + s}),
+                    row,
+                    0,
+                    static_cast<float>(text),
+                    color_of(Role::text_dim));
+    x += 38 * s + text_width(Font::small, row.text);
     if (!truth) break;
   }
   return x - at.x();

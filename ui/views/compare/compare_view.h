@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "ui/views/picture/image_geometry.h"
+#include "ui/look/picture_zoom.h"
+#include "ui/views/compare/compare_column.h"
 
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -22,13 +21,6 @@ class PictureTexture;
 
 /// Finished inspections of one window of one recording, a method or setting each.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
-
-/// A configuration, and what came of it.
-struct CompareColumn {
-  Configuration configuration;
-  std::shared_ptr<const Inspection> inspection;  ///< null: not there
-  std::string missing;                           ///< what stands in its place: "computing"
-};
 
 struct CompareOptions {
   std::optional<PictureZoom> zoom = {};  ///< of all columns; nothing: around the cubes

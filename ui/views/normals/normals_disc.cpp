@@ -21,7 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kCorners = 72;
-constexpr double kMargin = 1.13;  // of the disc: room for the labels around it
 
 /// Normals that are turned by `a cos + b sin` [rad], a and b perpendicular to the normal.
 std::vector<Vector2d> closed_line(const Vector3d& normal, const Vector3d& a, const Vector3d& b) {
@@ -38,38 +37,6 @@ std::vector<Vector2d> closed_line(const Vector3d& normal, const Vector3d& a, con
 }
 
 }  // namespace
-
-NormalsZoom within_limits(NormalsZoom zoom) {
-  zoom.factor = std::clamp(zoom.factor, 1.0, kLargestNormalsZoom);
-  if (zoom.center.norm() > 1) zoom.center.normalize();
-  if (zoom.factor == 1) zoom.center.setZero();
-  return zoom;
-}
-
-DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom) {
-  DiscMapping mapping;
-  mapping.radius = zoom.factor * rect.size.minCoeff() / 2 / kMargin;
-  mapping.middle = rect.min + rect.size / 2 - mapping.radius * zoom.center;
-  return mapping;
-}
-
-NormalsZoom zoom_about(const NormalsZoom& zoom,
-                       const ScreenRect& rect,
-                       const Vector2d& pointer,
-                       double by) {
-  const Vector2d under = map_disc(rect, zoom).to_disc(pointer);
-  NormalsZoom zoomed = zoom;
-  zoomed.factor = std::clamp(zoom.factor * by, 1.0, kLargestNormalsZoom);
-  const double radius = map_disc(rect, zoomed).radius;
-  zoomed.center = under - (pointer - rect.min - rect.size / 2) / radius;
-  return within_limits(zoomed);
-}
-
-NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Vector2d& by) {
-  NormalsZoom moved = zoom;
-  moved.center -= by / map_disc(rect, zoom).radius;
-  return within_limits(moved);
-}
 
 std::vector<Vector2d> circle_on_disc(const Vector3d& normal, double radius_deg) {
   const Vector3d a = normal.unitOrthogonal();

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/normals/normals_view.h"
 
 #include <algorithm>
@@ -35,7 +35,6 @@ cv::Vec3b shaded(const cv::Vec3b& bgr, double share) {
 }
 
 cv::Vec3b bgr_of(std::uint32_t rgb) {
-  rgb = themed(rgb);
   return {static_cast<uchar>(rgb), static_cast<uchar>(rgb >> 8), static_cast<uchar>(rgb >> 16)};
 }
 
@@ -118,12 +117,13 @@ cv::Mat picture_of(const LogField& field, float low, float high) {
   }
   cv::Mat3b colors;
   cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
-  cv::Mat3b picture(size, bgr_of(palette::kSceneBottom));
+  cv::Mat3b picture(size, bgr_of(color_of(Role::scene_bottom)));
   for (int y = 0; y < kPicture_px; ++y)
     for (int x = 0; x < kPicture_px; ++x) {
       const double u = (2.0 * x + 1) / kPicture_px - 1, v = (2.0 * y + 1) / kPicture_px - 1;
       if (u * u + v * v > 1) continue;
-      picture(y, x) = known(y, x) < 0.5F ? bgr_of(palette::kRaised) : shaded(colors(y, x), kDimmed);
+      picture(y, x) =
+          known(y, x) < 0.5F ? bgr_of(color_of(Role::raised)) : shaded(colors(y, x), kDimmed);
     }
   return picture;
 }

@@ -4,12 +4,13 @@
 
 #include "engine/geometry/pose.h"
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
 #include "ui/look/numbers.h"
-#include "ui/look/palette.h"
 #include "ui/views/charts/axis_ticks.h"
+#include "ui/views/normals/normals_disc.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/plane_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ struct Stage {
   /// Lighter the later.
   std::uint32_t color_of_frame(int frame_in_window) const {
     const double share = frame_in_window / std::max(1.0, content.frames() - 1.0);
-    return mixed_rgb(palette::kActive, palette::kText, 0.2 + 0.8 * share);
+    return mixed_rgb(color_of(Role::active), color_of(Role::text), 0.2 + 0.8 * share);
   }
 };
 
@@ -59,7 +60,7 @@ void line_on(const Stage& stage,
                            closed ? ImDrawFlags_Closed : 0,
                            thickness);
   };
-  draw(imgui_color(palette::kBackground, 0.5 * alpha), width + 2 * stage.s);
+  draw(imgui_color(Role::background, 0.5 * alpha), width + 2 * stage.s);
   draw(imgui_color(rgb, alpha), width);
 }
 
@@ -68,8 +69,8 @@ void small_text(const Stage& stage, const ImVec2& middle, const std::string& tex
   const ImVec2 size = f->CalcTextSizeA(f->FontSize, INFINITY, 0, text.c_str());
   const ImVec2 at(std::round(middle.x - size.x / 2), std::round(middle.y - size.y / 2));
   stage.list.AddText(
-      f, f->FontSize, {at.x + 1, at.y + 1}, imgui_color(palette::kBackground, 0.7), text.c_str());
-  stage.list.AddText(f, f->FontSize, at, imgui_color(palette::kText), text.c_str());
+      f, f->FontSize, {at.x + 1, at.y + 1}, imgui_color(Role::background, 0.7), text.c_str());
+  stage.list.AddText(f, f->FontSize, at, imgui_color(Role::text), text.c_str());
 }
 
 void draw_map(const Stage& stage, const NormalsMap& map) {
@@ -80,13 +81,13 @@ void draw_map(const Stage& stage, const NormalsMap& map) {
     const ImVec2 a = stage.at(from), b = stage.at(to);
     const bool outside = std::max(a.x, b.x) < low.x || std::min(a.x, b.x) > high.x ||
                          std::max(a.y, b.y) < low.y || std::min(a.y, b.y) > high.y;
-    if (!outside) stage.list.AddLine(a, b, imgui_color(palette::kBackground, 0.55), stage.s);
+    if (!outside) stage.list.AddLine(a, b, imgui_color(Role::background, 0.55), stage.s);
   }
 }
 
 /// Tilts, and what it means for a plane to lie there.
 void draw_rings(const Stage& stage) {
-  const ImU32 color = imgui_color(palette::kText, 0.28);
+  const ImU32 color = imgui_color(Role::text, 0.28);
   const auto radius = static_cast<float>(stage.to.radius);
   const ImVec2 middle = stage.at(Vector2d(0, 0));
   for (const int tilt : {30, 60, 90}) {
@@ -111,14 +112,14 @@ void draw_candidates(const Stage& stage) {
   const int last = std::min<int>(stage.content.frames(), static_cast<int>(candidates.size())) - 1;
   for (int i = 1; i <= last; ++i) {
     const bool now = i == last;
-    const std::uint32_t rgb = now ? palette::kSelected : stage.color_of_frame(i);
+    const std::uint32_t rgb = now ? color_of(Role::selected) : stage.color_of_frame(i);
     for (const HomographyCandidate& candidate : candidates[i]) {
       const Vector2d disc = disc_from_normal(candidate.motion.normal);
       if (disc.norm() > 1) continue;
       const ImVec2 at = stage.at(disc);
       const float r = (now ? 4.2F : 2.2F) * stage.s;
       if (candidate.taken()) {
-        stage.list.AddCircleFilled(at, r + stage.s, imgui_color(palette::kBackground, 0.6), 16);
+        stage.list.AddCircleFilled(at, r + stage.s, imgui_color(Role::background, 0.6), 16);
         stage.list.AddCircleFilled(at, r, imgui_color(rgb), 16);
       } else {
         stage.list.AddCircle(
@@ -144,17 +145,16 @@ void draw_answer(const Stage& stage, const NormalAnswer& answer) {
   if (answer.current && uncertainty)
     line_on(stage,
             confidence_on_disc(answer.normal(), uncertainty->normal_covariance),
-            palette::kUncertain,
+            color_of(Role::uncertain),
             1.6F * stage.s,
             true);
   const ImVec2 at = stage.at(answer.normal());
   const float r = 5 * stage.s;
-  const ImU32 rim = imgui_color(palette::kBackground), color = imgui_color(answer.rgb);
+  const ImU32 rim = imgui_color(Role::background), color = imgui_color(answer.rgb);
   if (answer.current) {
     stage.list.AddCircleFilled(at, r + 2.4F * stage.s, rim, 24);
     stage.list.AddCircleFilled(at, r, color, 24);
-    stage.list.AddCircle(
-        at, r + 1.2F * stage.s, imgui_color(palette::kSelected), 24, 1.4F * stage.s);
+    stage.list.AddCircle(at, r + 1.2F * stage.s, imgui_color(Role::selected), 24, 1.4F * stage.s);
   } else {
     stage.list.AddRect({at.x - r, at.y - r}, {at.x + r, at.y + r}, rim, 0, 0, 4 * stage.s);
     draw_sign(stage.list, Sign::square, at, answer.rgb);
@@ -166,7 +166,7 @@ void draw_truth(const Stage& stage) {
     const ImVec2 c = stage.at(*normal);
     const float r = 8 * stage.s;
     for (const auto& [rgb, width] :
-         {std::pair{palette::kBackground, 4.0F}, std::pair{palette::kTruth, 2.0F}}) {
+         {std::pair{color_of(Role::background), 4.0F}, std::pair{color_of(Role::truth), 2.0F}}) {
       stage.list.AddLine({c.x - r, c.y - r}, {c.x + r, c.y + r}, imgui_color(rgb), width * stage.s);
       stage.list.AddLine({c.x - r, c.y + r}, {c.x + r, c.y - r}, imgui_color(rgb), width * stage.s);
     }
@@ -180,7 +180,7 @@ void draw_scale_bar(const Stage& stage, const ScreenRect& rect) {
   const auto length = static_cast<float>(angle * px_a_degree);
   const auto x = static_cast<float>(rect.min.x() + 12 * stage.s);
   const auto y = static_cast<float>(rect.min.y() + rect.size.y() - 10 * stage.s);
-  const ImU32 color = imgui_color(palette::kText);
+  const ImU32 color = imgui_color(Role::text);
   stage.list.AddLine({x, y}, {x + length, y}, color, 2 * stage.s);
   for (const float end : {x, x + length})
     stage.list.AddLine({end, y - 4 * stage.s}, {end, y + 4 * stage.s}, color, stage.s);
@@ -196,7 +196,7 @@ void draw_color_bar(const Stage& stage, const ScreenRect& rect, const NormalsMap
       fmt::format("RMS over the first {} frames [px]", stage.content.frames());
   const auto x = static_cast<float>(rect.min.x() + 12 * s),
              y = static_cast<float>(rect.min.y() + 8 * s);
-  stage.list.AddText(f, f->FontSize, {x, y}, imgui_color(palette::kTextDim), title.c_str());
+  stage.list.AddText(f, f->FontSize, {x, y}, imgui_color(Role::text_dim), title.c_str());
   const float title_width = f->CalcTextSizeA(f->FontSize, INFINITY, 0, title.c_str()).x;
   const float left = std::round(x + title_width + 14 * s);
   const auto right = static_cast<float>(rect.min.x() + rect.size.x() - 24 * s);
@@ -221,8 +221,7 @@ void draw_color_bar(const Stage& stage, const ScreenRect& rect, const NormalsMap
     const double share = (std::log(ticks.values[i]) - low) / (high - low);
     if (share < -1e-6 || share > 1 + 1e-6) continue;
     const float at = std::round(left + static_cast<float>(share) * (right - left));
-    stage.list.AddLine(
-        {at, y + s + height}, {at, y + 4 * s + height}, imgui_color(palette::kText), s);
+    stage.list.AddLine({at, y + s + height}, {at, y + 4 * s + height}, imgui_color(Role::text), s);
     small_text(stage, {at, y + height + 11 * s}, ticks.labels[i]);
   }
 }
@@ -234,14 +233,15 @@ std::vector<LegendRow> legend_of(const NormalsContent& content) {
   };
   for (const NormalAnswer& answer : content.answers)
     add(answer.current ? Sign::disc : Sign::square, answer.rgb, answer.name);
-  if (true_normal(content.inspection)) add(Sign::cross, palette::kTruth, "truth");
+  if (true_normal(content.inspection)) add(Sign::cross, color_of(Role::truth), "truth");
   const bool uncertain =
       !content.answers.empty() && content.answers.front().current &&
       content.answers.front().inspection->initialization->uncertainty.has_value();
-  if (uncertain) add(Sign::line, palette::kUncertain, "95 %");
-  add(Sign::dot, palette::kSelected, "readings, this frame's larger");
-  add(Sign::circle, palette::kText, "rejected");
-  if (!content.study->clusters.empty()) add(Sign::line, palette::kResidual, "DBSCAN's clusters");
+  if (uncertain) add(Sign::line, color_of(Role::uncertain), "95 %");
+  add(Sign::dot, color_of(Role::selected), "readings, this frame's larger");
+  add(Sign::circle, color_of(Role::text), "rejected");
+  if (!content.study->clusters.empty())
+    add(Sign::line, color_of(Role::residual), "DBSCAN's clusters");
   return rows;
 }
 
@@ -268,7 +268,7 @@ void draw_normals_view(ImDrawList& list,
   const DiscMapping to = map_disc(inner, zoom);
   const Stage stage{list, to, content, overlay_scale()};
   list.AddRectFilled(
-      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(palette::kSceneBottom));
+      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::scene_bottom));
   list.PushClipRect(to_imgui(inner.min), to_imgui(inner.min + inner.size), true);
   draw_map(stage, map);
   draw_rings(stage);
@@ -276,7 +276,7 @@ void draw_normals_view(ImDrawList& list,
   for (const NormalCluster& cluster : content.study->clusters)
     line_on(stage,
             circle_on_disc(cluster.normal, std::max(0.2, cluster.radius_deg)),
-            palette::kResidual,
+            color_of(Role::residual),
             1.4F * stage.s,
             true,
             0.8);

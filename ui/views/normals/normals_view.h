@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/normal_study.h"
+#include "ui/look/normals_zoom.h"
 #include "ui/look/palette.h"
-#include "ui/views/normals/normals_disc.h"
 #include "ui/views/picture/picture_texture.h"
 
 #include <cstdint>

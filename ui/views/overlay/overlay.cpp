@@ -3,7 +3,7 @@
 #include "ui/views/overlay/overlay.h"
 
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ std::string wrapped(Font which, const std::string& text, float width) {
 
 void draw_ground(ImDrawList& list, const ImVec2& min, const ImVec2& max, std::uint32_t frame_rgb) {
   const float scale = overlay_scale();
-  list.AddRectFilled(min, max, imgui_color(palette::kBackground, kGround), 5 * scale);
+  list.AddRectFilled(min, max, imgui_color(Role::background, kGround), 5 * scale);
   list.AddRect(min, max, imgui_color(frame_rgb, 0.9), 5 * scale, 0, scale);
 }
 
@@ -72,7 +72,7 @@ float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) {
   const float s = overlay_scale();
   const ImU32 color = imgui_color(rgb);
-  const ImU32 rim = imgui_color(palette::kBackground, 0.55);
+  const ImU32 rim = imgui_color(Role::background, 0.55);
   switch (sign) {
     case Sign::circle:
       // As many sides as tell it from a circle at its size: there are hundreds in a picture.
@@ -117,6 +117,19 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
   }
 }
 
+void draw_legend_row(ImDrawList& list,
+                     const ImVec2& at,
+                     const LegendRow& row,
+                     float sign_px,
+                     float text_px,
+                     std::uint32_t text_rgb) {
+  const ImFont* f = font(Font::small);
+  const bool sign = row.sign != Sign::none;
+  if (sign) draw_sign(list, row.sign, ImVec2(at.x + sign_px, at.y + f->FontSize / 2), row.rgb);
+  const ImVec2 text(at.x + (sign ? text_px : 0), at.y);
+  list.AddText(f, f->FontSize, text, imgui_color(text_rgb), row.text.c_str());
+}
+
 ScreenRect draw_legend(ImDrawList& list,
                        const ScreenRect& rect,
                        Corner corner,
@@ -138,19 +151,13 @@ ScreenRect draw_legend(ImDrawList& list,
   const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
   const ImVec2 min(std::round(right ? high.x - margin - size.x : low.x + margin),
                    std::round(bottom ? high.y - margin - size.y : low.y + margin));
-  draw_ground(list, min, ImVec2(min.x + size.x, min.y + size.y), palette::kBorder);
+  draw_ground(list, min, ImVec2(min.x + size.x, min.y + size.y), color_of(Role::border));
   ImVec2 at(min.x + padding, min.y + padding);
-  const auto write = [&list](Font which, const ImVec2& where, const std::string& text) {
-    list.AddText(
-        font(which), font(which)->FontSize, where, imgui_color(palette::kText), text.c_str());
-  };
-  if (!heading.empty()) write(Font::bold, at, heading);
+  const ImFont* bold = font(Font::bold);
+  list.AddText(bold, bold->FontSize, at, imgui_color(Role::text), heading.c_str());
   at.y += top;
   for (const LegendRow& row : rows) {
-    const bool sign = row.sign != Sign::none;
-    const float half = font(Font::small)->FontSize / 2;
-    if (sign) draw_sign(list, row.sign, ImVec2(at.x + 7 * s, at.y + half), row.rgb);
-    write(Font::small, ImVec2(at.x + (sign ? sign_width : 0), at.y), row.text);
+    draw_legend_row(list, at, row, 7 * s, sign_width);
     at.y += line;
   }
   return {{min.x, min.y}, {size.x, size.y}};
@@ -174,18 +181,10 @@ void draw_legend_strip(ImDrawList& list,
     at.x += width + gap;
   }
   const ImVec2 corner(low.x, std::round(high.y - at.y - f->FontSize - padding));
-  list.AddRectFilled(corner, high, imgui_color(palette::kBackground, kGround));
+  list.AddRectFilled(corner, high, imgui_color(Role::background, kGround));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImVec2 place(corner.x + places[i].x, corner.y + places[i].y);
-    const bool sign = rows[i].sign != Sign::none;
-    if (sign)
-      draw_sign(
-          list, rows[i].sign, ImVec2(place.x + 6 * s, place.y + f->FontSize / 2), rows[i].rgb);
-    list.AddText(f,
-                 f->FontSize,
-                 ImVec2(place.x + (sign ? sign_width : 0), place.y),
-                 imgui_color(palette::kText),
-                 rows[i].text.c_str());
+    draw_legend_row(list, place, rows[i], 6 * s, sign_width);
   }
 }
 
@@ -212,7 +211,7 @@ void draw_badge(ImDrawList& list,
   list.AddText(regular,
                regular->FontSize,
                ImVec2(at.x, at.y + title.height + gap),
-               imgui_color(palette::kText),
+               imgui_color(Role::text),
                lines.c_str());
 }
 

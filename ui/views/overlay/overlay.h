@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/views/picture/image_geometry.h"
+#include "ui/context/theme.h"
+#include "ui/look/rect.h"
 
 #include <cstdint>
 #include <string>
@@ -31,6 +32,15 @@ float overlay_scale();
 
 /// One sign around `center`, with a dark rim that sets it off from any picture.
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& center, std::uint32_t rgb);
+
+/// A row's sign, its center `sign_px` right of `at`, and its text, the upper left corner `text_px`
+/// right of it; a row without a sign begins at once.
+void draw_legend_row(ImDrawList& list,
+                     const ImVec2& at,
+                     const LegendRow& row,
+                     float sign_px,
+                     float text_px,
+                     std::uint32_t text_rgb = color_of(Role::text));
 
 /// A heading (may be empty) and rows on a dark, translucent ground in a corner of the rectangle.
 /// Returns what it covers.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 
 #include <cstdint>
 #include <initializer_list>
@@ -20,7 +20,7 @@ void write_text(ImDrawList& list,
                 Font which,
                 const Eigen::Vector2d& at,
                 const std::string& text,
-                std::uint32_t rgb = palette::kText);
+                std::uint32_t rgb = color_of(Role::text));
 
 /// [px]
 double text_width(Font which, const std::string& text);

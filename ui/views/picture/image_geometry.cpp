@@ -17,18 +17,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kPiecesOfAnEdge = 24;
-constexpr double kMostZoom = 64;
 constexpr double kNear = 1e-3;  // of the cube's side: what is nearer to the camera is cut off
 
 /// Faces as corners in turn, each bit of a corner's index being one axis.
 constexpr std::array<std::array<int, 4>, 6> kFaces = {
     {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
-
-Vector2d size_of(const Camera& camera) { return Vector2d(camera.width, camera.height); }
-
-double fitting_scale(const Camera& camera, const ScreenRect& rect) {
-  return std::max(rect.size.cwiseQuotient(size_of(camera)).minCoeff(), 1e-6);
-}
 
 /// The longest stretch of the segment that the camera sees.
 std::vector<Vector2d> segment_in_picture(const Camera& camera,
@@ -79,48 +72,6 @@ CubeFace face_in_picture(const Camera& camera,
 }
 
 }  // namespace
-
-PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom) {
-  const double scale = fitting_scale(camera, rect) * zoom.factor;
-  const Vector2d corner =
-      rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
-  return {Vector2d(std::round(corner.x()), std::round(corner.y())), scale};
-}
-
-Vector2d to_screen(const PictureMapping& mapping, const Vector2d& picture_px) {
-  return mapping.origin + mapping.scale * (picture_px + Vector2d::Constant(0.5));
-}
-
-Vector2d to_picture(const PictureMapping& mapping, const Vector2d& screen_px) {
-  return (screen_px - mapping.origin) / mapping.scale - Vector2d::Constant(0.5);
-}
-
-PictureZoom zoom_about(const PictureZoom& zoom,
-                       const Camera& camera,
-                       const ScreenRect& rect,
-                       const Vector2d& pointer,
-                       double by) {
-  PictureZoom result = zoom;
-  result.factor = std::clamp(zoom.factor * by, 1.0, kMostZoom);
-  // center + (pointer - middle) / (scale size) is the same point before and after.
-  const double fit = fitting_scale(camera, rect);
-  const Vector2d from_middle =
-      (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
-  result.center += from_middle * (1 / zoom.factor - 1 / result.factor);
-  return pan(result, camera, rect, Vector2d::Zero());
-}
-
-PictureZoom pan(const PictureZoom& zoom,
-                const Camera& camera,
-                const ScreenRect& rect,
-                const Vector2d& by) {
-  PictureZoom result = zoom;
-  const double scale = fitting_scale(camera, rect) * zoom.factor;
-  result.center -= by.cwiseQuotient(scale * size_of(camera));
-  result.center = result.center.cwiseMax(0.0).cwiseMin(1.0);
-  if (result.factor <= 1) result.center = Vector2d::Constant(0.5);
-  return result;
-}
 
 CubePicture cube_in_picture(const Camera& camera,
                             const Pose& pose,

@@ -4,9 +4,10 @@
 
 #include "engine/initializers/methods.h"
 #include "engine/window/tracks.h"
+#include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
-#include "ui/look/palette.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/picture_texture.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ void draw_surroundings(ImDrawList& list,
                        const ScreenRect& rect,
                        const ImVec2& picture_low,
                        const ImVec2& picture_high) {
-  const ImU32 color = imgui_color(palette::kBackground);
+  const ImU32 color = imgui_color(Role::background);
   const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
   // The picture's last pixels are whole ones only where its scale is.
   const float right = std::clamp(std::floor(picture_high.x), low.x, high.x);
@@ -83,7 +84,7 @@ void draw_picture(ImDrawList& list,
     mark_content(list, picture->revision());
     list.AddImage(picture->id(), low, high);
   } else {
-    list.AddRectFilled(low, high, imgui_color(palette::kRaised));
+    list.AddRectFilled(low, high, imgui_color(Role::raised));
   }
 }
 
@@ -93,7 +94,7 @@ void draw_tails(const Canvas& canvas) {
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
     const bool inlier = canvas.inspection.window->inlier[canvas.frame][track];
-    const std::uint32_t rgb = inlier ? palette::kInlier : palette::kOutlier;
+    const std::uint32_t rgb = inlier ? color_of(Role::inlier) : color_of(Role::outlier);
     for (int i = oldest; i < canvas.frame; ++i) {
       const double age = static_cast<double>(canvas.frame - i) / canvas.options.tail_frames;
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
@@ -112,7 +113,7 @@ void draw_tracks(const Canvas& canvas) {
     draw_sign(canvas.list,
               inlier ? Sign::circle : Sign::cross,
               canvas.at(tracks.raw_px[canvas.frame].col(track)),
-              inlier ? palette::kInlier : palette::kOutlier);
+              inlier ? color_of(Role::inlier) : color_of(Role::outlier));
   }
 }
 
@@ -121,8 +122,8 @@ void draw_residuals(const Canvas& canvas) {
     const Vector2d tip = residual.observed_px + canvas.options.residual_magnification *
                                                     (residual.predicted_px - residual.observed_px);
     const ImVec2 from = canvas.at(residual.observed_px), to = canvas.at(tip);
-    canvas.list.AddLine(from, to, imgui_color(palette::kBackground, 0.5), 3.4F * canvas.scale);
-    canvas.list.AddLine(from, to, imgui_color(palette::kResidual), 1.6F * canvas.scale);
+    canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * canvas.scale);
+    canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * canvas.scale);
   }
 }
 
@@ -150,26 +151,26 @@ void draw_estimated_cube(const Canvas& canvas, const CubePicture& cube) {
   const auto draw_edges = [&](bool hidden) {
     for (const CubeEdge& edge : cube.edges) {
       if (edge.hidden != hidden) continue;
-      const std::uint32_t rgb = edge.base ? palette::kCubeBase : palette::kCubeEdge;
+      const std::uint32_t rgb = edge.base ? color_of(Role::cube_base) : color_of(Role::cube_edge);
       const std::vector<ImVec2> points = canvas.at(edge.raw_px);
       const float width = (edge.base ? 3.0F : 2.2F) * (hidden ? 0.6F : 1.0F);
-      if (!hidden) canvas.polyline(points, imgui_color(palette::kBackground, 0.5), width + 2.2F);
+      if (!hidden) canvas.polyline(points, imgui_color(Role::background, 0.5), width + 2.2F);
       canvas.polyline(points, imgui_color(rgb, hidden ? 0.55 : 1), width);
     }
   };
   for (const CubeFace& face : cube.faces)
-    if (face.base) fill_face(canvas, face, imgui_color(palette::kCubeBase, 0.22));
+    if (face.base) fill_face(canvas, face, imgui_color(Role::cube_base, 0.22));
   draw_edges(true);
   for (const CubeFace& face : cube.faces)
-    if (face.facing && !face.base) fill_face(canvas, face, imgui_color(palette::kCubeFace, 0.2));
+    if (face.facing && !face.base) fill_face(canvas, face, imgui_color(Role::cube_face, 0.2));
   draw_edges(false);
 }
 
 void draw_true_cube(const Canvas& canvas, const CubePicture& cube) {
   for (const CubeEdge& edge : cube.edges) {
     const std::vector<ImVec2> points = canvas.at(edge.raw_px);
-    if (!edge.hidden) canvas.polyline(points, imgui_color(palette::kBackground, 0.45), 3);
-    canvas.polyline(points, imgui_color(palette::kTruth, edge.hidden ? 0.4 : 1), 1.5F);
+    if (!edge.hidden) canvas.polyline(points, imgui_color(Role::background, 0.45), 3);
+    canvas.polyline(points, imgui_color(Role::truth, edge.hidden ? 0.4 : 1), 1.5F);
   }
 }
 
@@ -186,17 +187,17 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
     for (int track = 0; track < inspection.tracks->track_count(); ++track)
       if (inspection.tracks->seen(canvas.frame, track))
         ++(inspection.window->inlier[canvas.frame][track] ? inliers : outliers);
-    rows.push_back({Sign::circle, palette::kInlier, counted(inliers, "inlier")});
-    rows.push_back({Sign::cross, palette::kOutlier, counted(outliers, "outlier")});
+    rows.push_back({Sign::circle, color_of(Role::inlier), counted(inliers, "inlier")});
+    rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
   }
   if (inspection.initialization->ok && options.residuals)
     rows.push_back({Sign::line,
-                    palette::kResidual,
+                    color_of(Role::residual),
                     fmt::format("residuals × {:g}", options.residual_magnification)});
   if (options.cube && inspection.cube)
-    rows.push_back({Sign::square, palette::kCubeBase, "cube on the estimated plane"});
+    rows.push_back({Sign::square, color_of(Role::cube_base), "cube on the estimated plane"});
   if (options.cube && options.truth && canvas.true_cube())
-    rows.push_back({Sign::square, palette::kTruth, "true cube"});
+    rows.push_back({Sign::square, color_of(Role::truth), "true cube"});
   return rows;
 }
 
@@ -250,7 +251,8 @@ void draw_image_view(ImDrawList& list,
   }
   if (options.legend) draw_legend(list, rect, Corner::top_left, heading(inspection, frame), rows);
   if (inside && !inspection.initialization->ok)
-    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
+    draw_badge(
+        list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   list.PopClipRect();
 }
 

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/views/picture/image_geometry.h"
+#include "ui/look/picture_zoom.h"
+#include "ui/look/rect.h"
 
 #include <memory>
 

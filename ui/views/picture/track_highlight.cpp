@@ -3,7 +3,7 @@
 #include "ui/views/picture/track_highlight.h"
 
 #include "engine/window/tracks.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Nearest {
 void draw_ring(ImDrawList& list, const Vector2d& at, double radius, std::uint32_t rgb) {
   const float s = overlay_scale();
   const auto r = static_cast<float>(radius) * s;
-  list.AddCircle(to_imgui(at), r, imgui_color(palette::kBackground, 0.8), 32, 4.5F * s);
+  list.AddCircle(to_imgui(at), r, imgui_color(Role::background, 0.8), 32, 4.5F * s);
   list.AddCircle(to_imgui(at), r, imgui_color(rgb), 32, 2.2F * s);
 }
 
@@ -49,9 +49,8 @@ void draw_way(ImDrawList& list,
       points.push_back(to_imgui(to_screen(mapping, tracks.raw_px[i].col(column))));
   const auto count = static_cast<int>(points.size());
   const float s = overlay_scale();
-  list.AddPolyline(
-      points.data(), count, imgui_color(palette::kBackground, 0.6 * alpha), 0, 4.2F * s);
-  list.AddPolyline(points.data(), count, imgui_color(palette::kSelected, alpha), 0, 2 * s);
+  list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.6 * alpha), 0, 4.2F * s);
+  list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
 }
 
 const MapPoint* point_of(const Inspection& inspection, int column) {
@@ -127,8 +126,8 @@ void draw_highlight_in_picture(ImDrawList& list,
       draw_ring(list, to_screen(mapping, tracks.raw_px[frame_in_window].col(column)), radius, rgb);
   };
   for (const int column : highlight.picked)
-    ring(column, column == highlight.focus ? 10 : 8, palette::kSelected);
-  if (highlight.hovered) ring(*highlight.hovered, 11, palette::kPointedAt);
+    ring(column, column == highlight.focus ? 10 : 8, color_of(Role::selected));
+  if (highlight.hovered) ring(*highlight.hovered, 11, color_of(Role::pointed_at));
   list.PopClipRect();
 }
 
@@ -151,11 +150,10 @@ void draw_highlight_in_scene(ImDrawList& list,
       if (!center) continue;
       const bool now = i == frame_in_window;
       const bool inlier = inspection.window->inlier[i][column];
-      list.AddLine(
-          to_imgui(point),
-          to_imgui(*center),
-          imgui_color(inlier ? palette::kInlier : palette::kOutlier, now ? alpha : 0.35 * alpha),
-          (now ? 2 : 1) * s);
+      list.AddLine(to_imgui(point),
+                   to_imgui(*center),
+                   imgui_color(inlier ? Role::inlier : Role::outlier, now ? alpha : 0.35 * alpha),
+                   (now ? 2 : 1) * s);
     }
   };
   const auto draw_point = [&](int column, double radius, std::uint32_t rgb, bool rays) {
@@ -167,13 +165,15 @@ void draw_highlight_in_scene(ImDrawList& list,
   };
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   for (const int column : highlight.picked)
-    draw_point(
-        column, column == highlight.focus ? 8 : 6, palette::kSelected, column == highlight.focus);
-  if (highlight.hovered) draw_point(*highlight.hovered, 9, palette::kPointedAt, true);
+    draw_point(column,
+               column == highlight.focus ? 8 : 6,
+               color_of(Role::selected),
+               column == highlight.focus);
+  if (highlight.hovered) draw_point(*highlight.hovered, 9, color_of(Role::pointed_at), true);
   const int cameras = static_cast<int>(result.cameras.size());
   if (highlight.camera && *highlight.camera >= 0 && *highlight.camera < cameras)
     if (const auto at = on_screen(result.cameras[*highlight.camera].p_wc))
-      draw_ring(list, *at, 9, palette::kPointedAt);
+      draw_ring(list, *at, 9, color_of(Role::pointed_at));
   list.PopClipRect();
 }
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/scene/orbit_camera.h"
+#include "ui/look/orbit_camera.h"
+#include "ui/look/picture_zoom.h"
+#include "ui/look/rect.h"
 
 #include <cstdint>
 #include <optional>

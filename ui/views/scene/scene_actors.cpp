@@ -25,7 +25,6 @@ vtkIdType Shapes::add(const Vector3d& point) {
 }
 
 void Shapes::color(std::uint32_t rgb, double alpha) {
-  rgb = themed(rgb);
   const auto byte = [](std::uint32_t value) { return static_cast<unsigned char>(value & 0xFF); };
   const std::array<unsigned char, 4> rgba = {
       byte(rgb >> 16), byte(rgb >> 8), byte(rgb), byte(std::lround(255 * alpha))};

@@ -3,7 +3,7 @@
 #include "ui/views/scene/scene_moment.h"
 
 #include "engine/initializers/methods.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/uncertainty_geometry.h"
@@ -63,7 +63,7 @@ void draw_true_camera(const Projection& projection,
   const auto pose = true_camera(inspection, *T_est_true, frame_in_window);
   if (!pose) return;
   const double depth = 0.75 * frustum_depth(inspection);
-  projection.frustum(frustum(inspection.recording->camera, *pose, depth), palette::kTruth, 2);
+  projection.frustum(frustum(inspection.recording->camera, *pose, depth), color_of(Role::truth), 2);
 }
 
 void draw_uncertainty(const Projection& projection,
@@ -75,7 +75,7 @@ void draw_uncertainty(const Projection& projection,
   if (frame_in_window == 0 || frame_in_window >= std::ssize(covariances)) return;
   const auto ellipsoid = confidence_ellipsoid(
       estimate.cameras[frame_in_window].p_wc, covariances[frame_in_window], enlarged);
-  for (const auto& line : ellipsoid) projection.closed(line, palette::kUncertain, 1.2F);
+  for (const auto& line : ellipsoid) projection.closed(line, color_of(Role::uncertain), 1.2F);
 }
 
 /// The frame's camera as it is drawn: which edge of its picture is up is marked. The reference
@@ -101,7 +101,8 @@ MarkedFrustum marked_frustum(const Inspection& inspection, int frame_in_window) 
                                frustum_depth(inspection));
   return {corners,
           {corners[1], corners[2], corners[5]},
-          frame_in_window == 0 ? palette::kReference : mixed_rgb(method, palette::kText, 0.35)};
+          frame_in_window == 0 ? color_of(Role::reference)
+                               : mixed_rgb(method, color_of(Role::text), 0.35)};
 }
 
 }  // namespace

@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/methods.h"
 #include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
-#include "ui/look/palette.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/picture_texture.h"
+#include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_moment.h"
 #include "ui/views/scene/scene_view.h"
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -33,10 +35,12 @@ void draw_label(ImDrawList& list, const Vector2d& at, std::uint32_t rgb, const c
       list.AddText(f,
                    f->FontSize,
                    ImVec2(corner.x + dx, corner.y + dy),
-                   imgui_color(palette::kBackground, 0.7),
+                   imgui_color(Role::background, 0.7),
                    text);
   list.AddText(f, f->FontSize, corner, imgui_color(rgb), text);
 }
+
+constexpr std::array kAxes = {Role::axis_x, Role::axis_y, Role::axis_z};
 
 /// The world's axes, at the reference camera.
 void draw_axes(ImDrawList& list,
@@ -52,7 +56,7 @@ void draw_axes(ImDrawList& list,
   for (int axis = 0; axis < 3 && origin; ++axis) {
     const auto tip = on_screen(length * Vector3d::Unit(axis));
     if (!tip) continue;
-    const std::uint32_t rgb = palette::kAxes[axis];
+    const std::uint32_t rgb = color_of(kAxes[axis]);
     list.AddLine(to_imgui(*origin), to_imgui(*tip), imgui_color(rgb), 2.4F * overlay_scale());
     const Vector2d along =
         (*tip - *origin).norm() > 1 ? Vector2d((*tip - *origin).normalized()) : Vector2d(0, 0);
@@ -69,24 +73,24 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
   if (inspection.initialization->ok) {
     rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});
     if (frame_in_window > 0)
-      rows.push_back({Sign::frustum, palette::kReference, "reference frame"});
-    rows.push_back({Sign::square, palette::kPlane, "estimated plane"});
-    if (options.points)
-      rows.push_back({Sign::dot,
-                      palette::kPoint,
-                      fmt::format("{} map points", inspection.initialization->points.size())});
-    if (options.cube && inspection.cube) rows.push_back({Sign::square, palette::kCubeBase, "cube"});
+      rows.push_back({Sign::frustum, color_of(Role::reference), "reference frame"});
+    rows.push_back({Sign::square, color_of(Role::plane), "estimated plane"});
+    rows.push_back({Sign::dot,
+                    color_of(Role::map_point),
+                    fmt::format("{} map points", inspection.initialization->points.size())});
+    if (options.cube && inspection.cube)
+      rows.push_back({Sign::square, color_of(Role::cube_base), "cube"});
   }
   if (shows_uncertainty(inspection, options)) {
     const int times = options.uncertainty;
     rows.push_back({Sign::circle,
-                    palette::kUncertain,
+                    color_of(Role::uncertain),
                     "95 % of centers and normal" +
                         (times > 1 ? fmt::format(", enlarged {}\u00d7", times) : "")});
   }
   if (options.truth && estimate_from_truth(inspection))
     rows.push_back({Sign::frustum,
-                    palette::kTruth,
+                    color_of(Role::truth),
                     inspection.initialization->ok && inspection.truth->plane
                         ? "true cameras and plane"
                         : "true cameras"});
@@ -117,7 +121,7 @@ void draw_scale_bar(ImDrawList& list,
   const double length = nice_length(140 * s / pixels);
   const auto width = static_cast<float>(length * pixels);
   const ImVec2 end = to_imgui(rect.min + Vector2d(rect.size.x() - 16 * s, 36 * s));
-  const ImU32 color = imgui_color(palette::kText);
+  const ImU32 color = imgui_color(Role::text);
   const ImVec2 start(end.x - width, end.y);
   list.AddLine(start, end, color, 2 * s);
   for (const float x : {start.x, end.x})
@@ -160,7 +164,8 @@ void draw_scene_view(ImDrawList& list,
     draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);
   if (!inspection.initialization->ok)
-    draw_badge(list, rect, palette::kWarning, "not initialized", inspection.initialization->reason);
+    draw_badge(
+        list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   list.PopClipRect();
 }
 

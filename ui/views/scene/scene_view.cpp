@@ -3,10 +3,11 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/initializers/methods.h"
+#include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
-#include "ui/look/palette.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_view.h"
+#include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/scene_actors.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/uncertainty_geometry.h"
@@ -42,11 +43,11 @@ void add_frustum(Shapes& shapes, const std::array<Vector3d, 6>& corners, std::ui
 /// Its picture as a face, and which edge of it is up.
 void add_reference(const Stage& stage, const std::array<Vector3d, 6>& corners) {
   Shapes lines, face;
-  add_frustum(lines, corners, palette::kReference);
+  add_frustum(lines, corners, color_of(Role::reference));
   const std::array<Vector3d, 3> mark = {corners[1], corners[2], corners[5]};
-  lines.lines(mark, true, palette::kReference);
-  face.face(std::span(corners).subspan(1, 4), palette::kReference, 0.12);
-  face.face(mark, palette::kReference, 0.24);
+  lines.lines(mark, true, color_of(Role::reference));
+  face.face(std::span(corners).subspan(1, 4), color_of(Role::reference), 0.12);
+  face.face(mark, color_of(Role::reference), 0.24);
   stage.add(lines, 1.8);
   stage.add(face, 1);
 }
@@ -66,9 +67,9 @@ void add_cameras(const Stage& stage) {
     if (i % stride == 0 && i != 0)
       add_frustum(frusta,
                   frustum(camera, estimate.cameras[i], depth),
-                  mixed_rgb(palette::kSceneBottom, rgb, 0.75));
+                  mixed_rgb(color_of(Role::scene_bottom), rgb, 0.75));
   }
-  path.lines(centers, false, mixed_rgb(rgb, palette::kText, 0.35));
+  path.lines(centers, false, mixed_rgb(rgb, color_of(Role::text), 0.35));
   stage.add(frusta, 1.2);
   stage.add(path, 2.6);
   add_reference(stage, frustum(camera, estimate.cameras[0], depth));
@@ -78,7 +79,7 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
   const Inspection& inspection = stage.inspection;
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
-  const std::uint32_t dim = mixed_rgb(palette::kSceneBottom, palette::kTruth, 0.6);
+  const std::uint32_t dim = mixed_rgb(color_of(Role::scene_bottom), color_of(Role::truth), 0.6);
   const double depth = 0.75 * frustum_depth(inspection);
   const int stride = frustum_stride(inspection);
   Shapes frusta, path;
@@ -90,13 +91,13 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
     if (i % stride == 0)
       add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dim);
   }
-  path.lines(centers, false, palette::kTruth);
+  path.lines(centers, false, color_of(Role::truth));
   stage.add(frusta, 1);
   stage.add(path, 1.6);
   if (!grid) return;
   if (const auto border = true_plane_border(inspection, *T_est_true, *grid)) {
     Shapes plane;
-    plane.lines(*border, true, palette::kTruth);
+    plane.lines(*border, true, color_of(Role::truth));
     stage.add(plane, 1.8);
   }
 }
@@ -104,19 +105,19 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
 /// The lines lie on the face; the face moves a hair away from the eye.
 void add_plane(const Stage& stage, const PlaneGrid& grid, const OrbitCamera& camera) {
   Shapes lines, border, face;
-  const std::uint32_t rgb = mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.42);
+  const std::uint32_t rgb = mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.42);
   const auto [i0, j0] = grid.low;
   const auto [i1, j1] = grid.high;
   for (int i = i0 + 1; i < i1; ++i) lines.line(grid.at(i, j0), grid.at(i, j1), rgb);
   for (int j = j0 + 1; j < j1; ++j) lines.line(grid.at(i0, j), grid.at(i1, j), rgb);
   const std::array<Vector3d, 4> corners = {
       grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
-  border.lines(corners, true, mixed_rgb(palette::kSceneBottom, palette::kPlane, 0.8));
+  border.lines(corners, true, mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.8));
   const bool above = grid.normal.dot(eye(camera) - grid.origin) > 0;
   const Vector3d away = (above ? -0.02 : 0.02) * grid.cell * grid.normal;
   std::array<Vector3d, 4> behind;
   for (int k = 0; k < 4; ++k) behind[k] = corners[k] + away;
-  face.face(behind, palette::kPlane, 0.1);
+  face.face(behind, color_of(Role::plane), 0.1);
   stage.add(face, 1);
   stage.add(lines, 1.1);
   stage.add(border, 1.8);
@@ -129,7 +130,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
     const double i = grid.x.dot(from) / grid.cell, j = grid.y.dot(from) / grid.cell;
     // Single wrong points far away are not the map.
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
-      points.point(point.position, palette::kPoint);
+      points.point(point.position, color_of(Role::map_point));
   }
   stage.add(points, 5);
 }
@@ -144,16 +145,16 @@ void add_cube(const Stage& stage) {
       const int b = a | axis;
       if (b == a) continue;
       if (b < 4)
-        base.line(corners[a], corners[b], palette::kCubeBase);
+        base.line(corners[a], corners[b], color_of(Role::cube_base));
       else
-        edges.line(corners[a], corners[b], palette::kCubeEdge);
+        edges.line(corners[a], corners[b], color_of(Role::cube_edge));
     }
   const std::array<std::array<int, 4>, 5> sides = {
       {{4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
   for (const auto& side : sides) {
     const std::array<Vector3d, 4> face = {
         corners[side[0]], corners[side[1]], corners[side[2]], corners[side[3]]};
-    faces.face(face, palette::kCubeFace, 0.14);
+    faces.face(face, color_of(Role::cube_face), 0.14);
   }
   stage.add(faces, 1);
   stage.add(edges, 1.8);
@@ -171,16 +172,16 @@ void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   for (int i = stride; i < static_cast<int>(count); i += stride) {
     const auto ellipsoid =
         confidence_ellipsoid(estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged);
-    for (const auto& line : ellipsoid) lines.lines(line, true, palette::kUncertain);
+    for (const auto& line : ellipsoid) lines.lines(line, true, color_of(Role::uncertain));
   }
   const NormalArrow arrow = normal_arrow(stage.inspection, grid);
   const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
-  arrow_line.line(arrow.base, arrow.tip, palette::kPlane);
-  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, palette::kPlane);
-  lines.lines(rim, true, palette::kUncertain);
+  arrow_line.line(arrow.base, arrow.tip, color_of(Role::plane));
+  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, color_of(Role::plane));
+  lines.lines(rim, true, color_of(Role::uncertain));
   for (std::size_t k = 0; k < rim.size(); ++k) {
     const std::array<Vector3d, 3> side = {arrow.base, rim[k], rim[(k + 1) % rim.size()]};
-    face.face(side, palette::kUncertain, 0.1);
+    face.face(side, color_of(Role::uncertain), 0.1);
   }
   stage.add(face, 1);
   stage.add(lines, 1.2);
@@ -196,7 +197,7 @@ void build(const Stage& stage, const OrbitCamera& camera) {
   if (stage.options.truth) add_truth(stage, grid);
   if (!grid) return;
   add_plane(stage, *grid, camera);
-  if (stage.options.points) add_points(stage, *grid);
+  add_points(stage, *grid);
   add_cameras(stage);
   if (stage.options.cube && inspection.cube) add_cube(stage);
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
@@ -209,7 +210,7 @@ bool same(const OrbitCamera& a, const OrbitCamera& b) {
 }
 
 void set_background(vtkRenderer& renderer) {
-  const std::uint32_t bottom = themed(palette::kSceneBottom), top = themed(palette::kSceneTop);
+  const std::uint32_t bottom = color_of(Role::scene_bottom), top = color_of(Role::scene_top);
   renderer.SetBackground(red(bottom), green(bottom), blue(bottom));
   renderer.SetBackground2(red(top), green(top), blue(top));
 }

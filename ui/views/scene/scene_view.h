@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/scene/orbit_camera.h"
+#include "ui/look/orbit_camera.h"
+#include "ui/look/rect.h"
 
 #include <memory>
 
@@ -17,7 +17,6 @@ struct SceneViewOptions {
   bool cube = true;
   double cube_side = 0;  ///< 0: `default_cube_side` [unit of the estimate]
   bool truth = true;     ///< true cameras and plane, where they are known
-  bool points = true;    ///< the map
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
   bool legend = true;

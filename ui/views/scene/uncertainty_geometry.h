@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/plane_grid.h"
 
 #include <array>
 #include <vector>

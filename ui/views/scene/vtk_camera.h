@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/views/scene/orbit_camera.h"
+#include "ui/look/orbit_camera.h"
 
 class vtkCamera;
 
 namespace gpo {
 
+/// Makes VTK see what the orbit camera sees.
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
 }  // namespace gpo

@@ -5,7 +5,7 @@
 #include "tests/ui/gl_test.h"
 #include "ui/context/framebuffer.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 
 #include <cmath>
 #include <filesystem>
@@ -117,7 +117,7 @@ Drawn draw(const Chart& chart, float scale) {
                              {{20, 10}, {size.width - 40.0, size.height - 20.0}},
                              view,
                              chart);
-  draw_chart_cursor(*ImGui::GetBackgroundDrawList(), drawn.to, 7, palette::kAccent);
+  draw_chart_cursor(*ImGui::GetBackgroundDrawList(), drawn.to, 7, color_of(Role::accent));
   gui.end_frame();
   drawn.picture = context.read_bgr();
   return drawn;

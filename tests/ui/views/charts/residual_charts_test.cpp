@@ -36,6 +36,18 @@ TEST(ResidualCharts, HistogramHoldsAllResidualsOfTheWindowAndOfTheFrame) {
   EXPECT_EQ(residual_histogram(residuals, inspection, start - 1).curves.size(), 1U);
 }
 
+TEST(ResidualCharts, LastBinHoldsWhatIsBeyondHoweverFar) {
+  const Inspection inspection = made_inspection();
+  WindowResiduals residuals(3, std::vector<double>(300, 0.5));
+  residuals[1].front() = 1e12;
+  residuals[1].back() = INFINITY;
+  const int frame = inspection.window->start + 1;
+  const Chart chart = residual_histogram(residuals, inspection, frame);
+  ASSERT_EQ(chart.curves.size(), 2U);
+  for (const Curve& curve : chart.curves) EXPECT_NEAR(sum_of_bins(curve), 100, 1e-9) << curve.name;
+  EXPECT_NEAR(chart.curves[1].y.back(), 100 * 2 / 300.0, 1e-9);
+}
+
 TEST(ResidualCharts, RmsIsThatOfTheEngineAndTheTrackIsItsOwn) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   const WindowResiduals residuals = window_residuals(inspection);

@@ -5,7 +5,7 @@
 #include "engine/experiment/configuration.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/look/palette.h"
+#include "ui/context/theme.h"
 #include "ui/views/snapshot.h"
 
 #include <filesystem>
@@ -58,8 +58,8 @@ TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
     EXPECT_GT(count_pixels(heading, color_of(configuration)), 150) << "column " << i;
     const bool ok = inspections[i]->initialization->ok;
     const cv::Mat shown = column(picture, i).rowRange(92, picture.rows - 58);
-    EXPECT_EQ(count_pixels(shown, palette::kCubeBase) > 200, ok) << "column " << i;
-    EXPECT_EQ(count_pixels(shown, palette::kWarning) > 50, !ok) << "column " << i;
+    EXPECT_EQ(count_pixels(shown, color_of(Role::cube_base)) > 200, ok) << "column " << i;
+    EXPECT_EQ(count_pixels(shown, color_of(Role::warning)) > 50, !ok) << "column " << i;
   }
 }
 
@@ -97,7 +97,7 @@ TEST_F(CompareView, MoreThanFourWrapIntoRows) {
   keep("compare_seven", picture);
   // The eighth place is empty.
   EXPECT_EQ(count_pixels(picture(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)),
-                         palette::kPanel),
+                         color_of(Role::panel)),
             490 * 400);
 }
 
@@ -111,8 +111,8 @@ TEST_F(CompareView, NineStandInThreeRows) {
   keep("compare_nine", picture);
   const cv::Mat first = picture(cv::Rect(12, 38, 480, 54));
   const cv::Mat last = picture(cv::Rect(12 + 2 * 492, 38 + 2 * (picture.rows - 38) / 3, 480, 54));
-  EXPECT_GT(count_pixels(first, palette::kGood), 30);  // ready
-  EXPECT_GT(count_pixels(last, palette::kBad), 8);     // degenerate
+  EXPECT_GT(count_pixels(first, color_of(Role::good)), 30);  // ready
+  EXPECT_GT(count_pixels(last, color_of(Role::bad)), 8);     // degenerate
 }
 
 TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {

@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 
 const Camera kCamera{
     640, 480, 500, 510, 322, 236, Distortion::radial_tangential, {-.3, .1, .001, -.002, .01}};
-const ScreenRect kRect{{100, 50}, {1280, 480}};
 
 /// OpenCV's own projection, raw pixels.
 std::vector<Vector2d> project_with_opencv(const Camera& camera,
@@ -116,40 +115,6 @@ TEST(ImageGeometry, CubeBehindTheCameraIsNotDrawnAndOneBesideItIsCutOff) {
   }
   EXPECT_GT(drawn, 0);
   EXPECT_LT(drawn, 12);
-}
-
-TEST(ImageGeometry, PictureFitsAndIsCentered) {
-  const PictureMapping mapping = map_picture(kCamera, kRect, {});
-  EXPECT_DOUBLE_EQ(mapping.scale, 1);
-  EXPECT_EQ(mapping.origin, Vector2d(100 + 320, 50));
-}
-
-TEST(ImageGeometry, CentersOfPixelsAreHalfAPixelIn) {
-  const PictureMapping mapping{{10, 20}, 4};
-  EXPECT_EQ(to_screen(mapping, {0, 0}), Vector2d(12, 22));
-  EXPECT_EQ(to_screen(mapping, {-0.5, -0.5}), Vector2d(10, 20));
-  EXPECT_LT((to_picture(mapping, to_screen(mapping, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(),
-            1e-12);
-}
-
-TEST(ImageGeometry, ZoomKeepsWhatIsUnderThePointer) {
-  PictureZoom zoom;
-  const Vector2d pointer(700, 300);
-  const Vector2d before = to_picture(map_picture(kCamera, kRect, zoom), pointer);
-  for (int i = 0; i < 5; ++i) zoom = zoom_about(zoom, kCamera, kRect, pointer, 1.3);
-  const PictureMapping mapping = map_picture(kCamera, kRect, zoom);
-  // The picture's corner is on a whole pixel of the screen.
-  EXPECT_LT((to_picture(mapping, pointer) - before).norm(), 1 / mapping.scale);
-  EXPECT_NEAR(zoom.factor, std::pow(1.3, 5), 1e-9);
-  EXPECT_EQ(zoom_about(zoom, kCamera, kRect, pointer, 1e-9).factor, 1);
-}
-
-TEST(ImageGeometry, PanFollowsThePointer) {
-  PictureZoom zoom{4, {0.5, 0.5}};
-  const Vector2d before = to_screen(map_picture(kCamera, kRect, zoom), {320, 240});
-  zoom = pan(zoom, kCamera, kRect, {30, -12});
-  const Vector2d after = to_screen(map_picture(kCamera, kRect, zoom), {320, 240});
-  EXPECT_EQ(after - before, Vector2d(30, -12));
 }
 
 TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {

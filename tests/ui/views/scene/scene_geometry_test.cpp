@@ -4,6 +4,7 @@
 
 #include "engine/truth/truth.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/views/scene/plane_grid.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/scene/orbit_camera.h"
+#include "ui/look/orbit_camera.h"
 
 #include "ui/views/scene/vtk_camera.h"
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/verdict_look.h"
+#include "ui/views/overlay/verdict_look.h"
 
 #include <gmock/gmock.h>
 

@@ -1,16 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/verdict_look.h"
+#include "ui/views/overlay/verdict_look.h"
 
+#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/look/palette.h"
 
 namespace gpo {
 
 ReadinessLook look_of(Readiness readiness) {
-  if (readiness == Readiness::ready) return {Sign::disc, palette::kGood};
-  if (readiness == Readiness::weak) return {Sign::triangle, palette::kWarning};
-  return {Sign::cross, palette::kBad};
+  if (readiness == Readiness::ready) return {Sign::disc, color_of(Role::good)};
+  if (readiness == Readiness::weak) return {Sign::triangle, color_of(Role::warning)};
+  return {Sign::cross, color_of(Role::bad)};
 }
 
 std::string verdict_text(const Verdict& verdict) {

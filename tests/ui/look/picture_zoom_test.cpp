@@ -1,0 +1,52 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/look/picture_zoom.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+const Camera kZoomedCamera{640, 480, 500, 510, 322, 236, Distortion::none, {}};
+const ScreenRect kZoomedRect{{100, 50}, {1280, 480}};
+
+TEST(PictureZoom, PictureFitsAndIsCentered) {
+  const PictureMapping mapping = map_picture(kZoomedCamera, kZoomedRect, {});
+  EXPECT_DOUBLE_EQ(mapping.scale, 1);
+  EXPECT_EQ(mapping.origin, Vector2d(100 + 320, 50));
+}
+
+TEST(PictureZoom, CentersOfPixelsAreHalfAPixelIn) {
+  const PictureMapping mapping{{10, 20}, 4};
+  EXPECT_EQ(to_screen(mapping, {0, 0}), Vector2d(12, 22));
+  EXPECT_EQ(to_screen(mapping, {-0.5, -0.5}), Vector2d(10, 20));
+  EXPECT_LT((to_picture(mapping, to_screen(mapping, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(),
+            1e-12);
+}
+
+TEST(PictureZoom, ZoomKeepsWhatIsUnderThePointer) {
+  PictureZoom zoom;
+  const Vector2d pointer(700, 300);
+  const Vector2d before = to_picture(map_picture(kZoomedCamera, kZoomedRect, zoom), pointer);
+  for (int i = 0; i < 5; ++i) zoom = zoom_about(zoom, kZoomedCamera, kZoomedRect, pointer, 1.3);
+  const PictureMapping mapping = map_picture(kZoomedCamera, kZoomedRect, zoom);
+  // The picture's corner is on a whole pixel of the screen.
+  EXPECT_LT((to_picture(mapping, pointer) - before).norm(), 1 / mapping.scale);
+  EXPECT_NEAR(zoom.factor, std::pow(1.3, 5), 1e-9);
+  EXPECT_EQ(zoom_about(zoom, kZoomedCamera, kZoomedRect, pointer, 1e-9).factor, 1);
+}
+
+TEST(PictureZoom, PanFollowsThePointer) {
+  PictureZoom zoom{4, {0.5, 0.5}};
+  const Vector2d before = to_screen(map_picture(kZoomedCamera, kZoomedRect, zoom), {320, 240});
+  zoom = pan(zoom, kZoomedCamera, kZoomedRect, {30, -12});
+  const Vector2d after = to_screen(map_picture(kZoomedCamera, kZoomedRect, zoom), {320, 240});
+  EXPECT_EQ(after - before, Vector2d(30, -12));
+}
+
+}  // namespace
+}  // namespace gpo
