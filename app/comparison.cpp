@@ -19,7 +19,7 @@ namespace {
 /// Descending.
 std::vector<int> lengths_of(const ComparisonRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
-  std::vector<int> lengths = numbers_in(parse_ranges(text, "--lengths"), request.window.frames);
+  std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
   if (lengths.empty() || lengths.front() < 2) {
     throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
                                  text,

@@ -149,8 +149,8 @@ void check_usage(const EvaluateArguments& arguments) {
 
 int run(const EvaluateArguments& arguments) {
   const ExperimentRequest request{parse_configurations(arguments.methods),
-                                  parse_ranges(arguments.lengths, "--lengths"),
-                                  parse_ranges(arguments.starts, "--starts"),
+                                  parse_ranges(arguments.lengths, "lengths"),
+                                  parse_ranges(arguments.starts, "starts"),
                                   arguments.seed};
   const Shard shard = arguments.shard ? parse_shard(*arguments.shard) : Shard{};
   cv::setNumThreads(1);  // the times are those of one thread, whatever the jobs

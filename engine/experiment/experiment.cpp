@@ -109,17 +109,19 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
   }
   experiment.lengths = numbers_in(request.lengths, most_frames);
   if (experiment.lengths.empty() || experiment.lengths.front() < 2) {
-    throw InputError("--lengths: a window has at least 2 frames");
+    throw SettingError("lengths", "a window has at least 2 frames");
   }
   for (const auto& recording : recordings) {
     experiment.recordings.push_back(plan_recording(*recording, experiment.lengths, request.starts));
   }
   check_names(experiment.recordings);
   if (tasks_of(experiment).empty()) {
-    throw InputError(fmt::format(
-        "--lengths, --starts: no window fits, {}",
-        most_frames == 0 ? "there is no recording"
-                         : fmt::format("the longest recording has {} frames", most_frames)));
+    throw SettingError(
+        "lengths",
+        fmt::format("from these starts no window fits, {}",
+                    most_frames == 0
+                        ? "there is no recording"
+                        : fmt::format("the longest recording has {} frames", most_frames)));
   }
   return experiment;
 }
@@ -154,7 +156,8 @@ Shard parse_shard(const std::string& text) {
   const auto index = parse_count(whole.substr(0, slash));
   const auto count = parse_count(whole.substr(std::min(slash + 1, whole.size())));
   if (!index || !count || *index > *count) {
-    throw InputError(fmt::format("--shard: '{}', expected K/N with K from 1 to N, e.g. 2/8", text));
+    throw SettingError("shard",
+                       fmt::format("'{}', expected K/N with K from 1 to N, e.g. 2/8", text));
   }
   return {*index, *count};
 }

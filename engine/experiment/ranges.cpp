@@ -39,18 +39,18 @@ std::optional<Range> parse_range(const std::string& text) {
 
 }  // namespace
 
-std::vector<Range> parse_ranges(const std::string& text, const std::string& option) {
+std::vector<Range> parse_ranges(const std::string& text, const std::string& name) {
   std::vector<Range> ranges;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, ',');) {
     const auto range = parse_range(part);
     if (!range) {
-      throw InputError(fmt::format(
-          "{}: '{}', expected FIRST:LAST:STEP in whole numbers, e.g. 5:60:5", option, text));
+      throw SettingError(
+          name, fmt::format("'{}', expected FIRST:LAST:STEP in whole numbers, e.g. 5:60:5", text));
     }
     ranges.push_back(*range);
   }
-  if (ranges.empty()) throw InputError(fmt::format("{}: is empty, e.g. 5:60:5", option));
+  if (ranges.empty()) throw SettingError(name, "is empty, e.g. 5:60:5");
   return ranges;
 }
 

@@ -17,9 +17,9 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Reads `A`, `A:B`, `A:B:STEP`, and lists of these with commas; B may be `end`. `option` is named
+/// Reads `A`, `A:B`, `A:B:STEP`, and lists of these with commas; B may be `end`. `name` is named
 /// in the InputError.
-std::vector<Range> parse_ranges(const std::string& text, const std::string& option);
+std::vector<Range> parse_ranges(const std::string& text, const std::string& name);
 
 /// The numbers in all of the ranges, ascending, each once; `end` stands for `end`.
 std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);

@@ -65,11 +65,11 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
     if (window.rows) return std::move(window.rows);
     if (window.differs.empty() || !other.empty()) continue;
     const std::string& name = experiment.recordings[task.recording].name;
-    other = fmt::format("--merge: {}: is of another experiment than experiment.json ({})",
+    other = fmt::format("{}: is of another experiment than experiment.json ({})",
                         window_file(folder, name, task.start, frames).string(),
                         differ_text(window.differs));
   }
-  if (!other.empty()) throw InputError(other);
+  if (!other.empty()) throw SettingError("merge", other);
   return std::nullopt;
 }
 
@@ -168,10 +168,11 @@ std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::
         fmt::format("{} from frame {}", experiment.recordings[task.recording].name, task.start));
   }
   if (missing.empty()) return rows;
-  throw InputError(fmt::format("--merge: {} of {} windows are missing ({}); finish them first",
-                               missing_count,
-                               window_count(tasks),
-                               list_of(missing)));
+  throw SettingError("merge",
+                     fmt::format("{} of {} windows are missing ({}); finish them first",
+                                 missing_count,
+                                 window_count(tasks),
+                                 list_of(missing)));
 }
 
 Experiment merge_experiments(std::span<const fs::path> folders, const fs::path& output) {
@@ -181,10 +182,11 @@ Experiment merge_experiments(std::span<const fs::path> folders, const fs::path& 
     std::vector<std::string>& names = found.plan;
     names.insert(names.end(), found.content.begin(), found.content.end());
     if (names.empty()) continue;
-    throw InputError(fmt::format("--merge: {} and {} are of different experiments ({})",
-                                 folders.front().string(),
-                                 folder.string(),
-                                 differ_text(names)));
+    throw SettingError("merge",
+                       fmt::format("{} and {} are of different experiments ({})",
+                                   folders.front().string(),
+                                   folder.string(),
+                                   differ_text(names)));
   }
   const std::vector<Row> rows = collect_rows(experiment, folders);
   begin_experiment(output, experiment);

@@ -17,17 +17,18 @@ namespace {
 void check_window(const Recording& recording, const Settings& settings) {
   const int count = recording.frame_count();
   if (settings.frames < 2) {
-    throw InputError(fmt::format("--frames: {}, expected at least 2", settings.frames));
+    throw SettingError("frames", fmt::format("{}, expected at least 2", settings.frames));
   }
   if (settings.start < 0 || settings.start >= count) {
-    throw InputError(
-        fmt::format("--start: frame {} is not in the recording, which has frames 0 to {}",
-                    settings.start,
-                    count - 1));
+    throw SettingError("start",
+                       fmt::format("frame {} is not in the recording, which has frames 0 to {}",
+                                   settings.start,
+                                   count - 1));
   }
   if (settings.start + settings.frames > count) {
-    throw InputError(
-        fmt::format("--frames: {} frames from frame {} on do not fit, the recording has {} frames",
+    throw SettingError(
+        "frames",
+        fmt::format("{} frames from frame {} on do not fit, the recording has {} frames",
                     settings.frames,
                     settings.start,
                     count));

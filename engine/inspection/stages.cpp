@@ -38,13 +38,13 @@ RansacOptions ransac_options(const Settings& settings) {
 void check_excluded(const Tracks& tracks, const Settings& settings) {
   for (const std::int64_t id : settings.exclude) {
     if (std::ranges::find(tracks.ids, id) != tracks.ids.end()) continue;
-    throw InputError(
-        tracks.ids.empty()
-            ? fmt::format("--exclude: track {} is not in the window, which has no tracks", id)
-            : fmt::format("--exclude: track {} is not in the window, which has tracks {} to {}",
-                          id,
-                          std::ranges::min(tracks.ids),
-                          std::ranges::max(tracks.ids)));
+    throw SettingError("exclude",
+                       tracks.ids.empty()
+                           ? fmt::format("track {} is not in the window, which has no tracks", id)
+                           : fmt::format("track {} is not in the window, which has tracks {} to {}",
+                                         id,
+                                         std::ranges::min(tracks.ids),
+                                         std::ranges::max(tracks.ids)));
   }
 }
 

@@ -28,7 +28,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        const Progress& progress) {
   if (!recording.pictures) {
     throw InputError(
-        fmt::format("{}: no pictures and no tracks; expected --tracks FILE", recording.name));
+        fmt::format("{}: no pictures and no tracks; expected a file of tracks", recording.name));
   }
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();

@@ -25,8 +25,8 @@ std::shared_ptr<const Recording> recording(const std::string& name, int frames) 
 
 ExperimentRequest request(const std::string& lengths, const std::string& starts) {
   return {parse_configurations("gpo,gpo+no-ransac"),
-          parse_ranges(lengths, "--lengths"),
-          parse_ranges(starts, "--starts"),
+          parse_ranges(lengths, "lengths"),
+          parse_ranges(starts, "starts"),
           5};
 }
 
@@ -62,7 +62,7 @@ TEST(Experiment, RefusesWhatCannotBePlanned) {
   EXPECT_THAT(error_of([&] { plan_experiment(one, request("10:20:5", "0")); }),
               HasSubstr("no window fits, the longest recording has 9 frames"));
   EXPECT_THAT(error_of([&] { plan_experiment(one, request("1:5", "0")); }),
-              HasSubstr("--lengths: a window has at least 2 frames"));
+              HasSubstr("lengths: a window has at least 2 frames"));
 }
 
 TEST(Experiment, ComesBackFromJson) {
@@ -172,7 +172,7 @@ TEST(Shards, AreWrittenKOfN) {
                            "a/b",
                            "2/99999999999",
                            "4294967297/4294967298"}) {
-    EXPECT_THAT(error_of([&] { parse_shard(text); }), HasSubstr("--shard: '")) << text;
+    EXPECT_THAT(error_of([&] { parse_shard(text); }), HasSubstr("shard: '")) << text;
   }
 }
 

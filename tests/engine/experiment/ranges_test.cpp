@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::vector<int> numbers(const std::string& text, int end = 47) {
-  return numbers_in(parse_ranges(text, "--starts"), end);
+  return numbers_in(parse_ranges(text, "starts"), end);
 }
 
 TEST(Ranges, IncludeBothEnds) {
@@ -43,10 +43,10 @@ TEST(Ranges, NameTheOptionAndWhatWasFound) {
                            "5,,6",
                            "end",
                            "1:9999999"}) {
-    const std::string error = test::error_of([&] { parse_ranges(text, "--lengths"); });
-    EXPECT_THAT(error, HasSubstr(std::string("--lengths: '") + text + "'")) << text;
+    const std::string error = test::error_of([&] { parse_ranges(text, "lengths"); });
+    EXPECT_THAT(error, HasSubstr(std::string("lengths: '") + text + "'")) << text;
   }
-  EXPECT_THAT(test::error_of([] { parse_ranges("", "--lengths"); }), HasSubstr("--lengths"));
+  EXPECT_THAT(test::error_of([] { parse_ranges("", "lengths"); }), HasSubstr("lengths"));
 }
 
 }  // namespace

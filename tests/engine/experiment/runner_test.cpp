@@ -28,15 +28,15 @@ class RunnerTest : public ::testing::Test {
   Experiment plan(const std::string& lengths) const {
     return plan_experiment(recordings_,
                            {parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
-                            parse_ranges(lengths, "--lengths"),
-                            parse_ranges("0:20:10", "--starts"),
+                            parse_ranges(lengths, "lengths"),
+                            parse_ranges("0:20:10", "starts"),
                             3});
   }
   static Experiment plan_of(const std::vector<std::shared_ptr<const Recording>>& recordings) {
     return plan_experiment(recordings,
                            {parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
-                            parse_ranges("5,7", "--lengths"),
-                            parse_ranges("0:20:10", "--starts"),
+                            parse_ranges("5,7", "lengths"),
+                            parse_ranges("0:20:10", "starts"),
                             3});
   }
   std::shared_ptr<const Recording> with_focal_length(double fx) const {
