@@ -32,13 +32,15 @@ class WorkerLinkTest : public testing::Test {
     auto recording = std::make_shared<Recording>();
     recording->name = path.string();
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
-    return {recording, [this](const Settings& settings, std::stop_token stop, const Progress&) {
+    return {recording,
+            [this, recording](const Settings& settings, std::stop_token stop, const Progress&) {
               {
                 const std::lock_guard lock(mutex_);
                 starts_.push_back(settings.start);
               }
               while (hold_ && !stop.stop_requested()) std::this_thread::yield();
               auto inspection = std::make_shared<Inspection>();
+              inspection->recording = recording;
               inspection->settings = settings;
               return inspection;
             }};
