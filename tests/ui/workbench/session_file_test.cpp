@@ -100,7 +100,7 @@ constexpr const char* kOldSession = R"({
   "view": {"tracks": true, "tails": false, "residuals": true, "cube": false, "truth": true,
            "uncertainty": 10},
   "panes": {"side": "normals", "compare": true, "drawer": "timing"},
-  "compared": ["gpo", "ba+no-ransac"],
+  "compared": ["ba", "gpo+no-ransac"],
   "hidden_curves": ["pba"],
   "compare_zoom": {"factor": 2.0, "center": [0.25, 0.75]},
   "cube_side": 0.5,
