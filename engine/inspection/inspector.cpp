@@ -67,11 +67,8 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
           *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
-      return place_cube(plane,
-                        reference,
-                        *inspection.recording,
-                        *inspection.window,
-                        stages.board_corners.value);
+      return place_cube(
+          plane, reference, *inspection.recording, *inspection.window, stages.board_corners.value);
     };
     inspection.cube = place(inspection.initialization->plane, Pose{});
     const WindowTruth* truth = inspection.truth.get();
