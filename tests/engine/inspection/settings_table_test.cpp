@@ -17,9 +17,9 @@ namespace {
 using test::error_of;
 using testing::HasSubstr;
 
-/// A value that is not the default.
-std::string other_value(const Setting& setting) {
-  const SettingValue normal = setting.get(Settings{});
+/// A value that is not what the setting comes to in `base`.
+std::string other_value(const Setting& setting, const Settings& base = {}) {
+  const SettingValue normal = setting.used != nullptr ? setting.used(base) : setting.get(base);
   switch (setting.kind) {
     case SettingKind::on_off:
       return value_text(normal) == "on" ? "off" : "on";
@@ -157,7 +157,7 @@ TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
   for (const Setting& setting : settings_table()) {
     if (setting.key == "method") continue;  // chooses RANSAC and inliers, too
     const Settings base{.method = "gpo_joint"};
-    const Settings changed = with_setting(base, setting.key, other_value(setting));
+    const Settings changed = with_setting(base, setting.key, other_value(setting, base));
     for (const SettingStage stage : {tracks, inliers, rotations, initialization})
       EXPECT_EQ(acting_until(stage, changed) != acting_until(stage, base), setting.stage <= stage)
           << setting.key;
