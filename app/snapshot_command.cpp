@@ -10,8 +10,8 @@
 #include "engine/files/output_file.h"
 #include "ui/views/charts/figure_view.h"
 #include "ui/views/picture_compare.h"
-#include "ui/views/picture_size.h"
 #include "ui/views/snapshot.h"
+#include "ui/workbench/picture_size.h"
 #include "ui/workbench_window.h"
 
 #include <array>

@@ -5,8 +5,8 @@
 #include "engine/files/output_file.h"
 #include "engine/inspection/camera_path.h"
 #include "engine/inspection/report.h"
-#include "ui/views/picture_size.h"
 #include "ui/workbench/actions/tables.h"
+#include "ui/workbench/picture_size.h"
 #include "ui/workbench/recent_files.h"
 #include "ui/workbench/session_file.h"
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/picture_size.h"
+#include "ui/workbench/picture_size.h"
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
