@@ -34,7 +34,9 @@ std::vector<const Setting*> comparable_settings() {
   std::vector<const Setting*> comparable;
   for (const Setting& setting : settings_table())
     if (!setting.words.empty()) comparable.push_back(&setting);
-  std::ranges::stable_partition(comparable, &Setting::leads);
+  // Clang 14 cannot read what the one of std::ranges returns.
+  std::stable_partition(
+      comparable.begin(), comparable.end(), [](const Setting* setting) { return setting->leads; });
   return comparable;
 }
 

@@ -46,6 +46,8 @@ struct SettingColumn {
   S& settings;
   const Setting& setting;
 };
+template <class S>
+SettingColumn(S&, const Setting&) -> SettingColumn<S>;  // clang 14 makes none for aggregates
 
 template <class T>
 concept OfASetting = requires(T column) {

@@ -22,7 +22,7 @@ constexpr int kSample = 60;
 constexpr double kFrameGap = 1.5;  // median periods
 constexpr double kGyroGap = 5;
 
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 /// `label(i)` names sample i.
 template <class Label>
@@ -35,7 +35,7 @@ std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
   for (std::size_t i = 1; i < times.size(); ++i) {
     const auto length = times[i] - times[i - 1];
     if (static_cast<double>(length) > longest) {
-      found.push_back({label(i - 1), seconds(times[i - 1] - origin), seconds(length)});
+      found.push_back({label(i - 1), in_seconds(times[i - 1] - origin), in_seconds(length)});
     }
   }
   return found;
@@ -213,7 +213,7 @@ RecordingInfo describe(const Recording& recording) {
   info.layout = recording.layout;
   info.pictures = recording.pictures != nullptr;
   info.frames = recording.frame_count();
-  info.duration_s = seconds(times.back() - times.front());
+  info.duration_s = in_seconds(times.back() - times.front());
   info.rate_hz = gpo::rate_hz(times);
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
   info.camera = recording.camera;
