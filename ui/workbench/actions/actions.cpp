@@ -61,9 +61,9 @@ const Action* find_action(const std::string& name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-const Action& action_named(const std::string& name) {
-  if (const Action* action = find_action(name)) return *action;
-  throw std::logic_error("no action is called " + name);
+const Action& action_named(std::string_view name) {
+  if (const Action* action = find_action(std::string(name))) return *action;
+  throw std::logic_error("no action is called " + std::string(name));
 }
 
 const Action* action_of_key(int glfw_key, bool shift, bool control) {

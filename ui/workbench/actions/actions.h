@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gpo {
@@ -17,7 +18,7 @@ std::span<const Action> actions();
 /// Null where no action has that name.
 const Action* find_action(const std::string& name);
 /// The action with a name that stands in the program. Throws std::logic_error where none has it.
-const Action& action_named(const std::string& name);
+const Action& action_named(std::string_view name);
 
 /// The action of a key without Alt or Super; null where it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
