@@ -23,7 +23,7 @@ enum class Termination { none, convergence, no_convergence, failure };
 
 template <>
 struct ChoiceKeys<Termination> {
-  static constexpr const char* option = "termination";
+  static constexpr const char* name = "termination";
   static constexpr std::array keys{"none", "convergence", "no_convergence", "failure"};
 };
 

@@ -46,7 +46,7 @@ Inspection inspected() {
   auto result = std::make_shared<Initialization>();
   result->ok = true;
   result->rms_px = 0.4321;
-  result->solver = {9, 100, 20, 89, 8700, "convergence", 1.23};
+  result->solver = {9, 100, 20, 89, 8700, Termination::convergence, 1.23};
   inspection.initialization = result;
   inspection.truth = std::make_shared<const WindowTruth>();
   Evaluation evaluation;
