@@ -3,9 +3,11 @@
 #include "engine/inspection/stages.h"
 
 #include "engine/base/error.h"
+#include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/make_window.h"
 #include "engine/initializers/certainty/growth.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/setting_values.h"
 #include "engine/inspection/window_rotations.h"
 #include "engine/inspection/window_truth.h"
 
@@ -33,6 +35,14 @@ RansacOptions ransac_options(const Settings& settings) {
   options.threshold_px = settings.ransac_threshold_px;
   options.seed = settings.seed;
   return options;
+}
+
+/// The settings that act until the stage; RANSAC as it is used here, alike for methods that take
+/// all tracks in the end and those that never do.
+Settings rejecting(SettingStage stage, const Settings& settings) {
+  Settings acting = acting_until(stage, settings);
+  acting.ransac = ransac_options(settings).enabled;
+  return acting;
 }
 
 void check_excluded(const Tracks& tracks, const Settings& settings) {
@@ -84,7 +94,7 @@ bool Stages::update_tracks(const Settings& settings,
                      *recording, settings.start, frames, settings.tracking, stop, progress)
                : std::optional(chosen_tracks(*recording, settings.start, frames));
   });
-  return done && tracks.update({span, settings.tracking}, [&]() {
+  return done && tracks.update(acting_until(SettingStage::tracks, settings), [&]() {
     return std::optional(beginning(kept.value.tracks, settings.frames));
   });
 }
@@ -110,11 +120,9 @@ bool Stages::update_window(const Settings& settings,
                            RotationSource source,
                            const std::stop_token& stop) {
   check_excluded(*tracks.value, settings);
-  const TrackedSpan span(Span(settings.start, settings.frames), settings.tracking);
   const RansacOptions ransac = ransac_options(settings);
   const Inliers inliers = inliers_used(settings);
-  const Rejected rejected(span, settings.exclude, ransac, inliers);
-  outliers.update(rejected, [&]() {
+  outliers.update(rejecting(SettingStage::inliers, settings), [&]() {
     return std::optional(
         std::make_shared<const Window>(make_window(without(*tracks.value, settings.exclude),
                                                    recording->camera,
@@ -122,7 +130,9 @@ bool Stages::update_window(const Settings& settings,
                                                    ransac,
                                                    inliers)));
   });
-  return rotations.update({rejected, source}, [&]() -> std::optional<Rotations> {
+  Settings turning = rejecting(SettingStage::rotations, settings);
+  turning.rotations = source;
+  return rotations.update(turning, [&]() -> std::optional<Rotations> {
     Rotations computed =
         window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
     return computed.stopped ? std::nullopt : std::optional(std::move(computed));

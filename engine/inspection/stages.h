@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/rotations.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/kept.h"
@@ -10,7 +9,6 @@
 #include "engine/inspection/window_tracks.h"
 
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <tuple>
 #include <vector>
@@ -20,22 +18,20 @@
 namespace gpo {
 
 using Span = std::tuple<int, int>;  // start, frames
-using TrackedSpan = std::tuple<Span, Tracking>;
-using Excluded = std::vector<std::int64_t>;
-using Rejected = std::tuple<TrackedSpan, Excluded, RansacOptions, Inliers>;
 
 /// What an inspector keeps between two inspections, and how it is brought up to date; each `update`
-/// is false where it was stopped.
+/// is false where it was stopped. The key of a stage is the settings that act until then
+/// (`acting_until`), so that a setting's row decides which stages it makes anew.
 struct Stages {
   std::shared_ptr<const Recording> recording;
   std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
   Kept<Span, std::shared_ptr<const WindowTruth>> longest_truth;
-  Kept<TrackedSpan, std::shared_ptr<const Tracks>> tracks;
+  Kept<Settings, std::shared_ptr<const Tracks>> tracks;
   Kept<Span, std::shared_ptr<const WindowTruth>> truth;
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
-  Kept<Rejected, std::shared_ptr<const Window>> outliers;
-  Kept<std::tuple<Rejected, RotationSource>, Rotations> rotations;
-  Kept<std::tuple<Rejected, RotationSource>, std::vector<Verdict>> growth;
+  Kept<Settings, std::shared_ptr<const Window>> outliers;
+  Kept<Settings, Rotations> rotations;
+  Kept<Settings, std::vector<Verdict>> growth;
 
   bool update_tracks(const Settings& settings,
                      const std::stop_token& stop,

@@ -53,7 +53,8 @@ void PictureFetcher::run(const std::stop_token& stop) {
     int frame = 0;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return !wanted_.empty(); })) return;
+      wake_.wait(lock, stop, [this] { return !wanted_.empty(); });
+      if (stop.stop_requested()) return;  // whatever was still asked for
       pictures = pictures_;
       frame = wanted_.front();
       wanted_.pop_front();
