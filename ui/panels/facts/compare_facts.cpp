@@ -128,7 +128,11 @@ ComparedNumber number(const Reading& reading,
   ComparedNumber number;
   const Value value = value_of(reading, inspection, timings);
   number.text = value ? reading.text(*value) : "\u2013";
-  if (!value) number.why_not = why_not_known(reading, inspection, timings);
+  // Not assigned as it is returned: GCC 14 sees a copy out of bounds in that.
+  if (!value) {
+    const std::string why_not = why_not_known(reading, inspection, timings);
+    number.why_not = why_not;
+  }
   const Value reference = first ? value_of(reading, *first, timings) : std::nullopt;
   if (!value || !reference) return number;
   number.difference = difference(*value, *reference, reading.text);
