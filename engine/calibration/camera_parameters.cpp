@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/camera_parameters.h"
 
+#include <array>
+#include <span>
+
 namespace gpo {
 
 std::vector<std::string> parameter_names(const Camera& camera) {
-  std::vector<std::string> names = {"fx", "fy", "cx", "cy", "k1", "k2"};
-  if (camera.distortion == Distortion::equidistant) {
-    names.insert(names.end(), {"k3", "k4"});
-  } else {
-    names.insert(names.end(), {"p1", "p2", "k3", "k4", "k5", "k6"});
-  }
-  names.resize(4 + camera.coefficients.size());
-  return names;
+  static constexpr std::array equidistant{"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"};
+  static constexpr std::array radial_tangential{
+      "fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  const std::span<const char* const> all = camera.distortion == Distortion::equidistant
+                                               ? std::span<const char* const>(equidistant)
+                                               : std::span<const char* const>(radial_tangential);
+  const auto own = all.first(4 + camera.coefficients.size());
+  return {own.begin(), own.end()};
 }
 
 std::vector<double> parameters(const Camera& camera) {
