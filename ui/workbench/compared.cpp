@@ -13,7 +13,7 @@ namespace gpo {
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
-  Compared one{configuration_of(settings), settings, nullptr, ""};
+  Compared one{called_among_compared(state, settings), settings, nullptr, ""};
   if (const Surveyed* found = find_surveyed(state.surveyed.get(), one.settings)) {
     one.inspection = found->inspection;
     one.error = found->error;
@@ -26,7 +26,7 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
 }
 
 Compared current_result(const WorkbenchState& state) {
-  Compared one{configuration_of(state.settings), state.settings, nullptr, ""};
+  Compared one{called_among_compared(state, state.settings), state.settings, nullptr, ""};
   if (state.inspection && state.inspection->settings == state.settings)
     one.inspection = state.inspection;
   return one;
@@ -71,10 +71,10 @@ std::vector<Configuration> compared_list(const WorkbenchState& state) {
 
 /// Of the first compared configuration that comes to other settings than the current ones.
 std::optional<std::size_t> first_other(const WorkbenchState& state) {
-  const Configuration current = configuration_of(state.settings);
+  const Configuration current = called_among_compared(state, state.settings);
   const std::vector<Settings> all = compared_settings(state, state.settings);
   const auto other = std::ranges::find_if(
-      all, [&](const Settings& one) { return configuration_of(one) != current; });
+      all, [&](const Settings& one) { return called_among_compared(state, one) != current; });
   if (other == all.end()) return std::nullopt;
   return other - all.begin();
 }
@@ -83,6 +83,10 @@ std::optional<std::size_t> first_other(const WorkbenchState& state) {
 
 Settings compared_base(const WorkbenchState& state) {
   return base_of(compared_list(state), state.settings);
+}
+
+Configuration called_among_compared(const WorkbenchState& state, const Settings& settings) {
+  return configuration_of(settings, compared_base(state));
 }
 
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {

@@ -14,8 +14,7 @@ namespace gpo {
 
 /// One of the compared configurations in the current window, and what is known of it.
 struct Compared {
-  Configuration
-      configuration;  ///< of `settings`: what is named, and what the window's settings add
+  Configuration configuration;  ///< what it is called, see `called_among_compared`
   Settings settings;
   std::shared_ptr<const Inspection> inspection;  ///< null: not there, yet
   std::string error;  ///< why there will be none, one line; empty: it is being computed
@@ -24,6 +23,10 @@ struct Compared {
 /// What the compared configurations differ from: the current settings, but what any of them names
 /// is by default.
 Settings compared_base(const WorkbenchState& state);
+
+/// What settings are called and colored as beside the compared ones: how they differ from
+/// `compared_base`. What all have in common stands in the settings panel.
+Configuration called_among_compared(const WorkbenchState& state, const Settings& settings);
 
 /// The settings of every configuration of `state.compared`, in that order, in a window: what none
 /// of them names is as the window has it.

@@ -13,7 +13,7 @@ std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   if (!state.inspection) return shown;
   const Settings& s = state.inspection->settings;
   const auto named = [&](const Settings& settings, bool current) {
-    const Configuration one = configuration_of(settings);
+    const Configuration one = called_among_compared(state, settings);
     return ShownResult{title_of(one), color_of(one), nullptr, current};
   };
   shown.push_back(named(s, true));

@@ -145,7 +145,7 @@ void table_drawer(const PanelInput& input,
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {9 * s, 3 * s});
   if (ImGui::BeginTable("compared", columns, flags, {place.width - 12 * s, place.height - 6 * s})) {
     header(rows);
-    const Configuration current = configuration_of(input.state.settings);
+    const Configuration current = called_among_compared(input.state, input.state.settings);
     for (std::size_t i = 0; i < rows.size(); ++i)
       draw_row(rows[i], results[i], rows[i].configuration == current, commands);
     ImGui::EndTable();

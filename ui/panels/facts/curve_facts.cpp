@@ -31,7 +31,8 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
       const Surveyed* found = find_surveyed(state.surveyed.get(), settings);
       if (found == nullptr) continue;
       ++facts.done;
-      if (found->inspection) samples.push_back({configuration_of(settings), found->inspection});
+      if (found->inspection)
+        samples.push_back({called_among_compared(state, settings), found->inspection});
     }
   }
   return samples;
@@ -68,12 +69,15 @@ Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configur
 CurveFacts facts_of_survey(const WorkbenchState& state) {
   CurveFacts facts;
   for (const Settings& settings : compared_settings(state, state.settings))
-    facts.configurations.push_back(configuration_of(settings));
+    facts.configurations.push_back(called_among_compared(state, settings));
   if (!state.recording) return facts;
   const std::vector<Sample> samples = samples_of(state, facts);
   if (samples.empty()) return facts;
   std::vector<Row> rows;
-  for (const Sample& sample : samples) rows.push_back(make_row(*sample.inspection));
+  for (const Sample& sample : samples) {
+    rows.push_back(make_row(*sample.inspection));
+    rows.back().configuration = key_of(sample.configuration);
+  }
   const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
   if (plan.configurations.empty()) return facts;
   const bool truth = std::ranges::any_of(

@@ -72,7 +72,7 @@ void chip(const std::string& key,
 Configuration current(const WorkbenchState& state, std::optional<bool> ransac) {
   Settings settings = state.settings;
   if (ransac) settings.ransac = ransac;
-  return configuration_of(settings, compared_base(state));
+  return called_among_compared(state, settings);
 }
 
 void entry(const PanelInput& input,
@@ -121,7 +121,7 @@ float compare_chips(const PanelInput& input, const Rectangle& place, Commands& c
   float x = place.x + kGap * s, y = place.y + kGap * s;
   const std::vector<Settings> settings = compared_settings(input.state, input.state.settings);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Configuration one = configuration_of(settings[i]);
+    const Configuration one = called_among_compared(input.state, settings[i]);
     const float width =
         std::round(ImGui::CalcTextSize(title_of(one).c_str()).x + (12 + kHeight) * s);
     place_next(x, y, width, place, s);

@@ -59,7 +59,8 @@ void choose_by_heading(const PanelInput& input,
                        Commands& commands) {
   button("heading " + name, place.heading);
   if (ImGui::IsItemClicked()) push(commands, ChangeSettings{one.settings});
-  const bool current = configuration_of(input.state.settings) == one.configuration;
+  const bool current =
+      called_among_compared(input.state, input.state.settings) == one.configuration;
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (ImGui::IsItemHovered() && !current) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
