@@ -61,7 +61,12 @@ void report(Common& common, int more_frames) {
   const std::lock_guard lock(common.mutex);
   if (common.error) throw std::runtime_error("another recording failed");
   common.done += more_frames;
-  if (common.progress) common.progress(common.done, common.frames);
+  try {
+    if (common.progress) common.progress(common.done, common.frames);
+  } catch (...) {
+    common.error = std::current_exception();  // before any other gets on with its own
+    throw;
+  }
 }
 
 void make(const Missing& missing, Common& common, int threads) {
