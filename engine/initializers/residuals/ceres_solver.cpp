@@ -5,6 +5,7 @@
 #include "engine/initializers/residuals/transfer.h"
 
 #include <utility>
+#include <vector>
 
 namespace gpo {
 namespace {
@@ -12,17 +13,30 @@ namespace {
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
+/// What of the program is free, as it is now, block by block.
+Eigen::VectorXd unknowns_of(const ceres::Problem& problem) {
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  std::vector<double> values;
+  for (const double* block : blocks) {
+    if (problem.IsParameterBlockConstant(block)) continue;
+    values.insert(values.end(), block, block + problem.ParameterBlockSize(block));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 /// Follows the iterations and ends them where asked to.
 class Follower : public ceres::IterationCallback {
  public:
-  Follower(const Watch& watch, const ReadNormal& normal) : watch_(watch), normal_(normal) {}
+  Follower(const ceres::Problem& problem, const Watch& watch, const ReadNormal& normal)
+      : problem_(problem), start_(unknowns_of(problem)), watch_(watch), normal_(normal) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     // Of a refused step, Ceres tells the cost where it would have led.
     const bool moved = iteration.step_is_successful || trace_.empty();
     SolverStep step =
         moved ? SolverStep{iteration.cost, iteration.gradient_max_norm, 0, {}} : trace_.back();
-    step.step = moved && !trace_.empty() ? iteration.step_norm : 0;
+    step.step = moved && !trace_.empty() ? length_of(iteration) : 0;
     if (normal_) step.normal = normal_();
     trace_.push_back(step);
     watch_.tell(static_cast<int>(trace_.size()) - 1, step.cost);
@@ -32,6 +46,14 @@ class Follower : public ceres::IterationCallback {
   std::vector<SolverStep> trace() && { return std::move(trace_); }
 
  private:
+  /// Of a step that was taken. Ceres 2.2 does not tell that of the first one.
+  double length_of(const ceres::IterationSummary& iteration) const {
+    if (iteration.step_norm > 0) return iteration.step_norm;
+    return (unknowns_of(problem_) - start_).norm();
+  }
+
+  const ceres::Problem& problem_;
+  const Eigen::VectorXd start_;
   const Watch& watch_;
   const ReadNormal& normal_;
   std::vector<SolverStep> trace_;
@@ -87,7 +109,7 @@ SolverReport solve_by_schur(ceres::Problem& problem,
                             const SolverTolerances& tolerances,
                             const Watch& watch,
                             const ReadNormal& normal) {
-  Follower follower(watch, normal);
+  Follower follower(problem, watch, normal);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -99,7 +121,7 @@ SolverReport solve_by_schur(ceres::Problem& problem,
   options.num_threads = 1;  // more would cost the bit-for-bit repeatability
   options.logging_type = ceres::SILENT;
   options.callbacks.push_back(&follower);
-  options.update_state_every_iteration = static_cast<bool>(normal);
+  options.update_state_every_iteration = true;  // the follower reads it
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return report_of(summary, std::move(follower).trace());

@@ -20,6 +20,9 @@ namespace {
 constexpr std::uint32_t kRed = 0xFF0000;
 constexpr int kWidth = 400, kHeight = 200;
 constexpr double kTop = 24;
+/// OpenGL rounds a point to whole pixels: Mesa 22 covers one column more than its size, Mesa 25
+/// leaves out the one on the left.
+constexpr double kMostOff_px = 1.35;
 
 class ChartViewTest : public DrawingTest {};
 
@@ -52,7 +55,7 @@ TEST_F(ChartViewTest, APointIsDrawnWhereTheMappingSays) {
     const unsigned texture = view.render(chart, kWidth, kHeight, 1, kTop);
     const cv::Mat picture = read_texture(texture, kWidth, kHeight);
     keep(logarithmic ? "chart-log" : "chart", picture);
-    EXPECT_LT((middle_of_red(picture) - view.mapping().px(7, 30)).norm(), 0.8);
+    EXPECT_LT((middle_of_red(picture) - view.mapping().px(7, 30)).norm(), kMostOff_px);
   }
 }
 
@@ -128,7 +131,7 @@ TEST_F(ChartViewTest, TheMappingOfTheScreenKnowsWhereTheChartStands) {
     Chart chart = chart_of({2, 7, 9}, {NAN, 30, NAN});
     const Drawn drawn = draw(chart, scale);
     keep("chart-drawn", drawn.picture);
-    EXPECT_LT((middle_of_red(drawn.picture) - drawn.to.px(7, 30)).norm(), 1.2 * scale);
+    EXPECT_LT((middle_of_red(drawn.picture) - drawn.to.px(7, 30)).norm(), kMostOff_px * scale);
   }
 }
 
