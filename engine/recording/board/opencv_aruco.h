@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/version.hpp>
 
-// OpenCV's ArUco markers: the module `aruco` until 4.6, a part of `objdetect` with another interface
-// since 4.7. Where the two differ stands here and in opencv_aruco.cpp; which library is linked, in
-// the CMakeLists.txt at the top.
+// OpenCV's ArUco markers: the module `aruco` until 4.6, a part of `objdetect` with another
+// interface since 4.7. Where the two differ stands here and in opencv_aruco.cpp; which library is
+// linked, in the CMakeLists.txt at the top.
 #define GPO_ARUCO_IN_OBJDETECT (CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)
 #if GPO_ARUCO_IN_OBJDETECT
 #include <opencv2/objdetect/aruco_dictionary.hpp>
