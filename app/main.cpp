@@ -198,7 +198,7 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
   command->add_option("--output", arguments.output, "camera.yaml to write")->required();
 }
 
-struct Arguments {
+struct AllArguments {
   CalibrateArguments calibrate;
   EvaluateArguments evaluate;
   InfoArguments info;
@@ -211,7 +211,7 @@ struct Arguments {
   ViewArguments view;
 };
 
-void declare(CLI::App& app, Arguments& arguments) {
+void declare(CLI::App& app, AllArguments& arguments) {
   app.require_subcommand(0, 1);
   CLI::App* view = app.add_subcommand("view", "The window; the default");
   view->add_option(
@@ -238,7 +238,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->required();
 }
 
-int dispatch(const CLI::App& app, const Arguments& arguments) {
+int dispatch(const CLI::App& app, const AllArguments& arguments) {
   if (app.got_subcommand("info")) return info_command(arguments.info);
   if (app.got_subcommand("convert"))
     return convert_command(arguments.convert_recording, arguments.convert_output);
@@ -290,7 +290,7 @@ void quiet_libraries() {
 int main_with_errors(int argc, char** argv) {
   CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
                "gpo-inspector");
-  Arguments arguments;
+  AllArguments arguments;
   try {
     quiet_libraries();
     declare(app, arguments);

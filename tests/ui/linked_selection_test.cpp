@@ -13,6 +13,7 @@
 #include "ui/workbench/layout.h"
 #include "ui/workbench_window.h"
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <imgui.h>
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 namespace {
 

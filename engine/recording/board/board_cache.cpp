@@ -76,7 +76,7 @@ std::string head_of(const fs::path& file) {
   return fmt::format("{}{}\n", kMagic, file.filename().string());
 }
 
-std::string text_of(const Camera& camera) {
+std::string key_of(const Camera& camera) {
   return fmt::format("{}x{} {} {} {} {} {} {}\n",
                      camera.width,
                      camera.height,
@@ -88,7 +88,7 @@ std::string text_of(const Camera& camera) {
                      fmt::join(camera.coefficients, " "));
 }
 
-std::string text_of(const Board& board) {
+std::string key_of(const Board& board) {
   return fmt::format("{}x{} {} {} {}\n",
                      board.columns,
                      board.rows,
@@ -102,8 +102,8 @@ std::string text_of(const Board& board) {
 std::optional<fs::path> board_cache_file(const Recording& recording) {
   if (recording.cache_folder.empty() || recording.picture_files.empty() || !recording.board)
     return std::nullopt;
-  std::string key = fmt::format("{} {}\n", kAlgorithm, CV_VERSION) + text_of(recording.camera) +
-                    text_of(*recording.board);
+  std::string key = fmt::format("{} {}\n", kAlgorithm, CV_VERSION) + key_of(recording.camera) +
+                    key_of(*recording.board);
   for (const fs::path& file : recording.picture_files) {
     std::error_code no_size;
     std::error_code no_time;

@@ -21,7 +21,6 @@ namespace {
 using Eigen::Vector2d;
 using Path = std::vector<Vector2d>;
 
-constexpr double kBandOpacity = 0.18;
 /// Where more bands lie over each other, they are outlines.
 constexpr int kMostFilledBands = 3;
 constexpr double kOutlinedOpacity = 0.05, kOutlineOpacity = 0.6, kOutlineWidth = 0.8;

@@ -279,7 +279,7 @@ std::string chart_values_at(const Chart& chart, double x) {
   if (!nearest) return values;
   for (const Curve& curve : chart.curves) {
     // Where a curve steps there are two points at one x: the one on the side that is asked for.
-    const auto [first, end] = std::ranges::equal_range(curve.x, *nearest);
+    const auto [first, end] = std::equal_range(curve.x.begin(), curve.x.end(), *nearest);
     if (first == end) continue;
     const auto at = x < *nearest ? first : std::prev(end);
     const double y = curve.y[at - curve.x.begin()];

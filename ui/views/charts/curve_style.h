@@ -13,6 +13,7 @@ namespace gpo {
 
 // Sizes at scale 1 [px].
 constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9;
+constexpr double kBandOpacity = 0.18;
 constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of dotted curves
 
 /// How the curves of one name are drawn in all charts of a figure, and explained in its legend.

@@ -31,8 +31,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kBandOpacity = 0.18;
-
 void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(rgb), blue(rgb)); }
 
 bool drawable(double value, bool logarithmic) {

@@ -88,8 +88,9 @@ std::vector<const Action*> find_actions(const std::string& text) {
   for (const Action& action : actions())
     if (has_all_words(lower_case(action.name + " " + action.title + " " + action.menu), words))
       found.push_back(&action);
-  std::ranges::stable_partition(
-      found, [&](const Action* action) { return action->name.starts_with(lower_case(text)); });
+  std::stable_partition(found.begin(), found.end(), [&](const Action* action) {
+    return action->name.starts_with(lower_case(text));
+  });
   return found;
 }
 

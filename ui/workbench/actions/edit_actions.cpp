@@ -87,8 +87,7 @@ void exclude_selected(State& state) {
   auto& out = settings.exclude;
   out.insert(out.end(), state.selection.tracks.begin(), state.selection.tracks.end());
   std::ranges::sort(out);
-  const auto repeated = std::ranges::unique(out);
-  out.erase(repeated.begin(), repeated.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   say(state, fmt::format("{} tracks are left out; Ctrl+Z takes them back", out.size()));
   change_settings(state, settings);
 }

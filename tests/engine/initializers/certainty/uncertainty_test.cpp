@@ -12,6 +12,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <gtest/gtest.h>
 
 namespace gpo::test {
