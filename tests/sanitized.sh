@@ -19,7 +19,7 @@ unreported=$PWD/tests/sanitizers
 # with sanitizers of its own, the engine alone.
 elsewhere='^(Fuzz|Readme|RunScript|Install|EngineAlone)\.'
 # What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them.
-threads='Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey'
+threads='^View\.|PicturesReader|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
@@ -36,7 +36,12 @@ run() {
   cmake --preset "$preset"
   cmake --build --preset "$preset" --parallel "$jobs" \
     --target engine_tests ui_tests monkey_tests app_tests video_tests
-  fixed_addresses ctest --preset "$preset" -j "$jobs" -E "$elsewhere" "$@"
+  local preload=
+  if [ "$preset" = asan ]; then
+    preload=$PWD/build/asan/keep_loaded.so
+    clang -shared -fPIC -o "$preload" tests/sanitizers/keep_loaded.c
+  fi
+  LD_PRELOAD=$preload fixed_addresses ctest --preset "$preset" -j "$jobs" -E "$elsewhere" "$@"
 }
 
 case ${1:-both} in

@@ -52,13 +52,7 @@ void draw_book(BoxFaces& faces, Random& random) {
     paint_shapes(picture, 40, palette, random);
   }
   draw_text(top, title, {0.1, 0.2 * tall}, 0.1, palette.back(), Face::serif, 0.8);
-  draw_text(top,
-            pick_word(random) + " " + pick_word(random) + " " + pick_word(random),
-            {0.1, 0.28 * tall},
-            0.04,
-            palette.back(),
-            Face::sans,
-            0.8);
+  draw_text(top, pick_words(3, random), {0.1, 0.28 * tall}, 0.04, palette.back(), Face::sans, 0.8);
   draw_text(top, "A. " + pick_word(random), {0.1, 0.93 * tall}, 0.04, palette.back());
 }
 

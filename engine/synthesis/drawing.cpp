@@ -86,6 +86,17 @@ std::string pick_word(Random& random) {
   return words[static_cast<std::size_t>(random.below(words.size()))];
 }
 
+std::string pick_words(int count, Random& random) {
+  std::string words = pick_word(random);
+  for (int i = 1; i < count; ++i) words = pick_word(random) + " " + words;
+  return words;
+}
+
+cv::Point2d pick_place(Random& random, double ratio) {
+  const double y = random.uniform(0, ratio);
+  return {random.uniform(), y};
+}
+
 std::string pick_title(Random& random) {
   static const std::array<const char*, 14> titles = {"HORIZON",
                                                      "ATLAS",

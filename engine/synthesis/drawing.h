@@ -34,6 +34,10 @@ void draw_text(cv::Mat& canvas,
                Face face = Face::sans,
                double max_width = 1e9);
 std::string pick_word(Random& random);
+/// The last one is drawn first.
+std::string pick_words(int count, Random& random);
+/// Anywhere on a canvas of this height by width. Its y is drawn first.
+cv::Point2d pick_place(Random& random, double ratio);
 std::string pick_title(Random& random);
 /// A column of lines of words, until `box` is full.
 void draw_paragraph(

@@ -122,7 +122,7 @@ void paint_shapes(cv::Mat canvas, int shapes, const Palette& palette, Random& ra
   canvas.setTo(palette.back());
   for (int i = 0; i < shapes; ++i) {
     const auto& color = palette[static_cast<std::size_t>(random.below(palette.size()))];
-    const cv::Point2d center(random.uniform(), random.uniform(0, ratio));
+    const cv::Point2d center = pick_place(random, ratio);
     const double r = random.uniform(0.03, 0.15);
     const double turn = random.uniform(0, 6.28);
     const int corners = 3 + random.below(3);
@@ -182,13 +182,14 @@ void paint_flowers(cv::Mat canvas, Random& random) {
     cv::fillConvexPoly(canvas, outline, color, cv::LINE_AA, kSubPixelBits);
   };
   for (int i = 0; i < 260; ++i) {
-    petal({random.uniform(), random.uniform(0, ratio)},
-          random.uniform(0.02, 0.06),
-          random.uniform(0, 6.28),
-          mixed(rgb(0x16351f), rgb(0x86b35a), random.uniform()));
+    const cv::Scalar color = mixed(rgb(0x16351f), rgb(0x86b35a), random.uniform());
+    const double angle = random.uniform(0, 6.28);
+    const double r = random.uniform(0.02, 0.06);
+    const double x = random.uniform();
+    petal({x, random.uniform(0, ratio)}, r, angle, color);
   }
   for (int i = 0; i < 26; ++i) {
-    const cv::Point2d at(random.uniform(), random.uniform(0, ratio));
+    const cv::Point2d at = pick_place(random, ratio);
     const double r = random.uniform(0.025, 0.055);
     const std::size_t which = 1 + random.below(palette.size() - 1);
     const cv::Scalar& color = palette[which];

@@ -50,7 +50,7 @@ void draw_magazine(cv::Mat& canvas, Random& random) {
   bar(canvas, 0.06, 0.62 * h, 0.5, 0.25, palette[1]);
   for (int i = 0; i < 3; ++i) {
     draw_text(canvas,
-              pick_word(random) + " " + pick_word(random) + " " + pick_word(random),
+              pick_words(3, random),
               {0.09, 0.62 * h + 0.075 + 0.07 * i},
               0.034,
               palette.back(),
@@ -201,20 +201,19 @@ void draw_map(cv::Mat& canvas, Random& random) {
   cv::polylines(canvas, river, false, rgb(0x8fc1de), canvas.cols / 18, cv::LINE_AA);
   for (int i = 0; i < 5; ++i) {
     const cv::Point a(random.below(canvas.cols), i % 2 == 0 ? 0 : canvas.rows);
-    const cv::Point b(random.below(2) * canvas.cols, random.below(canvas.rows));
+    const int y = random.below(canvas.rows);
+    const cv::Point b(random.below(2) * canvas.cols, y);
     cv::line(canvas, a, b, rgb(0xc98a2b), canvas.cols / 60, cv::LINE_AA);
     cv::line(canvas, a, b, rgb(0xfbd57e), canvas.cols / 90, cv::LINE_AA);
   }
   for (int i = 0; i < 9; ++i) {
-    draw_text(canvas,
-              pick_word(random),
-              {random.uniform(0.02, 0.8), random.uniform(0.1, 0.95) * h},
-              0.022,
-              rgb(0x4b4238),
-              Face::bold);
+    const double x = random.uniform(0.02, 0.8);
+    const double y = random.uniform(0.1, 0.95) * h;
+    draw_text(canvas, pick_word(random), {x, y}, 0.022, rgb(0x4b4238), Face::bold);
   }
   for (int i = 0; i < 7; ++i) {
-    const cv::Point at(random.below(canvas.cols), random.below(canvas.rows));
+    const int y = random.below(canvas.rows);
+    const cv::Point at(random.below(canvas.cols), y);
     cv::circle(canvas, at, canvas.cols / 55, rgb(0xb3202a), cv::FILLED, cv::LINE_AA);
     cv::circle(canvas, at, canvas.cols / 120, rgb(0xffffff), cv::FILLED, cv::LINE_AA);
   }
@@ -243,8 +242,7 @@ void draw_notebook(cv::Mat& canvas, Random& random) {
   bar(canvas, 0.16, 0.2 * h, 0.56, 0.3, palette.back());
   draw_text(canvas, "Field notes", {0.2, 0.2 * h + 0.1}, 0.05, palette.front(), Face::serif, 0.48);
   for (int i = 0; i < 3; ++i) bar(canvas, 0.2, 0.2 * h + 0.15 + 0.05 * i, 0.48, 0.005, kInk);
-  draw_text(
-      canvas, pick_word(random) + " " + pick_word(random), {0.22, 0.2 * h + 0.19}, 0.028, kInk);
+  draw_text(canvas, pick_words(2, random), {0.22, 0.2 * h + 0.19}, 0.028, kInk);
   cv::Mat sticker = part(canvas, 0.2, 0.62 * h, 0.4, 0.28 * h);
   paint_shapes(sticker, 22, pick_palette(random), random);
 }

@@ -8,6 +8,7 @@ namespace gpo {
 
 /// Small generator with the same numbers on every platform (SplitMix64), unlike the standard
 /// library's distributions. `stream` tells generators of one seed apart: a frame, a row, a print.
+/// Numbers are drawn by statements: which argument of one call comes first, compilers decide.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0);

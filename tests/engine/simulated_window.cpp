@@ -22,6 +22,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+/// The last one is drawn first. (Which argument of one call comes first, compilers decide: each
+/// would have windows of its own.)
+template <int count>
+Eigen::Vector<double, count> drawn(auto& distribution, std::mt19937_64& random) {
+  Eigen::Vector<double, count> numbers;
+  for (int k = count - 1; k >= 0; --k) numbers[k] = distribution(random);
+  return numbers;
+}
+
 Vector3d position(const SimulationOptions& options, const Vector3d& normal, double s) {
   const double angle = s * std::numbers::pi / 2;
   switch (options.motion) {
@@ -74,7 +83,7 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
     const auto at = [&](double seconds) { return rotation(wobble_rad, seconds / last_s); };
     const Vector3d rate_c =
         so3_log(at(t - kPeriod_s / 2).transpose() * at(t + kPeriod_s / 2)) / kPeriod_s;
-    const Vector3d noise(normal_noise(random), normal_noise(random), normal_noise(random));
+    const Vector3d noise = drawn<3>(normal_noise, random);
     gyroscope.timestamps_ns.push_back(kFirst_ns + std::llround(1e9 * (t + options.gyro_offset_s)));
     gyroscope.rates_rad_s.emplace_back(gyroscope.R_gyro_camera * rate_c + bias_rad_s +
                                        options.gyro_noise_rad_s * noise);
@@ -89,7 +98,7 @@ void give_gyroscope(const SimulationOptions& options,
                     Simulation& simulation) {
   std::mt19937_64 random(options.seed + 2'000'003);
   std::normal_distribution<double> normal_noise;
-  const Vector3d direction(normal_noise(random), normal_noise(random), normal_noise(random));
+  const Vector3d direction = drawn<3>(normal_noise, random);
   simulation.bias_rad_s = *options.gyro_bias_rad_s * direction.normalized();
   Window& window = simulation.window;
   Rotations rotations = sensitive_gyro_rotations(
@@ -140,8 +149,7 @@ Simulation simulate(const SimulationOptions& options) {
       Vector3d(
           std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), -std::cos(tilt)),
       1};
-  const Vector3d wobble =
-      0.1 * Vector3d(normal_noise(random), normal_noise(random), normal_noise(random));
+  const Vector3d wobble = 0.1 * drawn<3>(normal_noise, random);
   for (int i = 0; i < options.frames; ++i) {
     const double s = static_cast<double>(i) / std::max(1, options.frames - 1);
     simulation.cameras.push_back(camera_at(options, wobble, simulation.plane.normal, s));
@@ -150,7 +158,8 @@ Simulation simulate(const SimulationOptions& options) {
   for (int j = 0; j < options.points; ++j) {
     std::optional<Vector3d> point;
     while (!point || point->norm() > 4) {
-      const Eigen::Vector2d px(30 + 580 * uniform(random), 30 + 420 * uniform(random));
+      const Eigen::Vector2d px = Eigen::Vector2d(30, 30) +
+                                 Eigen::Vector2d(580, 420).cwiseProduct(drawn<2>(uniform, random));
       point = intersect(simulation.plane, Pose{}, K_inverse * px.homogeneous());
     }
     const bool on_plane = j >= options.off_plane * options.points;
@@ -159,8 +168,7 @@ Simulation simulate(const SimulationOptions& options) {
     for (int i = 0; i < options.frames; ++i) {
       const Eigen::Vector2d exact = seen_px(options, simulation, wobble, *point, i);
       const double sigma = i == 0 ? options.reference_noise_px : options.noise_px;
-      window.points_px[i].col(j) =
-          exact + sigma * Eigen::Vector2d(normal_noise(random), normal_noise(random));
+      window.points_px[i].col(j) = exact + sigma * drawn<2>(normal_noise, random);
     }
   }
   for (int i = 0; i < options.frames; ++i) {

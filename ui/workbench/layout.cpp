@@ -56,6 +56,21 @@ void put_panes(WindowLayout& layout, float scale, float gap) {
   layout.side = {side.x, side.y + tabs, side.width, side.height - tabs};
 }
 
+/// In a window smaller than its bars nothing is left of what lies between them.
+void keep_from_below_nothing(WindowLayout& layout) {
+  for (Rectangle* part : {&layout.settings,
+                          &layout.results,
+                          &layout.views,
+                          &layout.picture,
+                          &layout.side_tabs,
+                          &layout.side,
+                          &layout.drawer_tabs,
+                          &layout.drawer}) {
+    part->width = std::max(part->width, 0.0F);
+    part->height = std::max(part->height, 0.0F);
+  }
+}
+
 }  // namespace
 
 WindowLayout window_layout(float width, float height, float scale, bool drawer_open) {
@@ -82,6 +97,7 @@ WindowLayout window_layout(float width, float height, float scale, bool drawer_o
   layout.views = {column + gap, top, width - column - gap, bottom - top};
   put_drawer(layout, scale, drawer_open);
   put_panes(layout, scale, gap);
+  keep_from_below_nothing(layout);
   return layout;
 }
 

@@ -64,6 +64,21 @@ TEST(WindowLayout, PartsLieInsideAndDoNotOverlap) {
   }
 }
 
+TEST(WindowLayout, NoPartIsLessThanNothing) {
+  for (const bool drawer : {false, true}) {
+    for (const Size& size : {Size{64, 48, 1}, Size{1, 1, 1}, Size{200, 900, 2}, Size{900, 90, 2}}) {
+      SCOPED_TRACE(name(size));
+      const WindowLayout layout = window_layout(size.width, size.height, size.scale, drawer);
+      auto all = parts(layout);
+      all.insert(all.end(), {layout.views, layout.drawer});
+      for (const Rectangle& part : all) {
+        EXPECT_GE(part.width, 0);
+        EXPECT_GE(part.height, 0);
+      }
+    }
+  }
+}
+
 TEST(WindowLayout, PictureAndSceneAreTheLargest) {
   for (const Size& size : sizes()) {
     SCOPED_TRACE(name(size));

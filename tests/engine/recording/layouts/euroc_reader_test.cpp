@@ -122,7 +122,8 @@ TEST_F(EurocReader, DoesNotBridgeAGapInTheTruth) {
     rows += std::to_string(1403636579000000001 + ms * 1000000LL) + ",0,0,0,1,0,0,0\n";
   }
   write_truth(rows);
-  const auto& poses = open()->truth->poses;
+  const auto recording = open();
+  const auto& poses = recording->truth->poses;
   EXPECT_TRUE(poses[0]);   // a sample
   EXPECT_TRUE(poses[1]);   // between 90 and 110 ms
   EXPECT_FALSE(poses[2]);  // between 120 and 230 ms
