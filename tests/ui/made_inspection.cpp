@@ -93,14 +93,17 @@ void add_tracks(Inspection& inspection) {
   window->H_i1.assign(kLength, Eigen::Matrix3d::Identity());
   for (int track = 0; track < kTracks; ++track) {
     tracks->ids.push_back(track);
-    const Vector3d floor = on_floor(camera, Pose(), Vector2d(along_x(random), along_y(random)));
+    // Drawn by statements: which argument comes first, compilers decide.
+    const double y = along_y(random), x = along_x(random);
+    const Vector3d floor = on_floor(camera, Pose(), Vector2d(x, y));
     const bool outlier = track % 10 == 0;
     const double height = outlier ? 0.1 + 0.2 * unit(random) : 0;
     const int end = track % 7 == 3 ? 20 : kLength;
     for (int i = 0; i < end; ++i) {
       const Vector3d point = floor * (1 - height);
-      const Vector2d pixel = project(camera, to_camera(made_pose(kStart + i), point)) +
-                             Vector2d(noise(random), noise(random));
+      const double noise_y = noise(random), noise_x = noise(random);
+      const Vector2d pixel =
+          project(camera, to_camera(made_pose(kStart + i), point)) + Vector2d(noise_x, noise_y);
       if (pixel.minCoeff() < 0 || pixel.x() > 639 || pixel.y() > 479) break;
       tracks->raw_px[i].col(track) = pixel;
       window->points_px[i].col(track) = undistort(camera, pixel);

@@ -44,7 +44,7 @@ ColumnPlace column_at(
   const int x = index % grid.columns, y = index / grid.columns;
   const Vector2d at =
       rect.min + Vector2d(std::round(scale * kGap) + width * x, std::round(top) + height * y);
-  const double inner = width - std::round(scale * kGap);
+  const double inner = std::max(1.0, width - std::round(scale * kGap));
   const double heading = std::round(scale * kHeading), caption = std::round(scale * kCaption);
   const double picture = std::max(1.0, height - heading - caption);
   return {{at, {inner, heading}},
