@@ -56,8 +56,8 @@ void put_panes(WindowLayout& layout, float scale, float gap) {
   layout.side = {side.x, side.y + tabs, side.width, side.height - tabs};
 }
 
-/// In a window smaller than its bars nothing is left of what lies between them.
-void keep_from_below_nothing(WindowLayout& layout) {
+/// In a window smaller than its bars a pixel is left of what lies between them.
+void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   for (Rectangle* part : {&layout.settings,
                           &layout.results,
                           &layout.views,
@@ -65,9 +65,10 @@ void keep_from_below_nothing(WindowLayout& layout) {
                           &layout.side_tabs,
                           &layout.side,
                           &layout.drawer_tabs,
-                          &layout.drawer}) {
-    part->width = std::max(part->width, 0.0F);
-    part->height = std::max(part->height, 0.0F);
+                          &layout.drawer,
+                          &layout.timeline}) {
+    part->width = std::max(part->width, 1.0F);
+    if (part != &layout.drawer || drawer_open) part->height = std::max(part->height, 1.0F);
   }
 }
 
@@ -97,7 +98,7 @@ WindowLayout window_layout(float width, float height, float scale, bool drawer_o
   layout.views = {column + gap, top, width - column - gap, bottom - top};
   put_drawer(layout, scale, drawer_open);
   put_panes(layout, scale, gap);
-  keep_from_below_nothing(layout);
+  keep_a_pixel(layout, drawer_open);
   return layout;
 }
 
