@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/local_shape.h"
+#include "engine/frontend/look_search.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <optional>
 #include <vector>
@@ -16,57 +16,43 @@
 namespace gpo {
 
 struct AnchorOptions {
-  int half_patch_px = 10;          ///< half the side of a look, in the reference picture [px]
-  double blur_px = 0.55;           ///< standard deviation, of both pictures before comparing [px]
-  double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
-  double least_correlation = 0.7;  ///< zero-mean normalized, below it a track is lost [-]
-  RansacOptions ransac = {};       ///< tells the tracks on the plane; with a seed of its own
+  int half_patch_px = 10;    ///< half the side of a look, in the reference picture [px]
+  int least_alike = 5;       ///< so many neighbors at least move as a track does [-]
+  double most_unlike = 0.5;  ///< from their motion its own differs by no more than this share of
+                             ///< it, or than `search.farthest_px` [-]
+  SearchOptions search = {};
+  ShapeOptions shape = {};
 };
 
-/// A look's pixels where they are carried to, exact at 3 x 3 nodes: left, middle and right of its
-/// first, middle and last row. 2 x 9, row by row.
-using Nodes = Eigen::Matrix<double, 2, 9>;
-
-/// The places of all pixels, row by row, on the quadratics through those of the nodes; 2 x pixels.
-Eigen::Matrix2Xf places_between(const Nodes& nodes_px, int width, int height);
-
-/// What a track looks like in the reference frame: the whole pixels around its corner.
-struct Look {
-  int width = 0;         ///< [px]
-  int height = 0;        ///< [px]
-  Nodes undistorted_px;  ///< where its nodes are
-  /// One pixel a row: slopes of the brightness along x and y [gray levels / px], brightness with
-  /// the mean taken off [gray levels], 1.
-  Eigen::Matrix<float, Eigen::Dynamic, 4> model;
-  Eigen::Matrix4f normal;  ///< model^T model
-};
-
-/// The looks of a window's tracks in its reference frame, to which `hold` compares later frames.
+/// What tracks look like in the reference frame, and where and how each was seen last.
 struct Anchors {
   Camera camera;
-  Eigen::Matrix2Xd undistorted_px;  ///< 2 x tracks, the corners
-  std::vector<Look> looks;          ///< one a track
+  std::vector<Sought> looks;                ///< one a track, around its nearest whole pixel
+  Eigen::Matrix2Xd corners_px;              ///< 2 x tracks, from the looks' middles
+  std::vector<Neighborhood> neighborhoods;  ///< one a track
+  std::vector<Warp> warps;                  ///< one a track, of its look
 };
 
-/// `gray` is the reference picture, CV_8UC1; `raw_px` 2 x tracks, its corners in raw pixels.
-Anchors make_anchors(const cv::Mat& gray,
+/// `soft` is the reference picture (soft_picture.h); `raw_px` 2 x tracks, its corners in raw
+/// pixels.
+Anchors make_anchors(const cv::Mat& soft,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
                      const AnchorOptions& options = {});
 
 struct Held {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
-  std::vector<std::optional<TrackEnd>> ends;  ///< of those whose look is not found; frame 0
+  std::vector<std::optional<TrackEnd>> ends;  ///< of those that are lost here; frame 0
 };
 
-/// Takes the drift from tracks on the plane. `followed_px` is 2 x tracks, raw pixels of the picture
-/// `gray` to which frame-to-frame tracking came, NaN: lost. A track that agrees with the homography
-/// from the reference frame is searched for with its own look, carried over by that homography and
-/// the lens, whatever gain and offset the exposure has; it is lost where its look is not found. The
-/// others stay as they are.
-Held hold(const Anchors& anchors,
-          const cv::Mat& gray,
-          const Eigen::Matrix2Xd& followed_px,
+/// Finds the tracks' looks in the next soft picture, so that they do not drift. `before_px` is
+/// where the tracks were in the one before, NaN: lost, and `flow_px` by how much they have moved,
+/// roughly; both 2 x tracks, raw pixels. A track is lost where its look is not found, where it
+/// moves as hardly any of its neighbors, and where the look is an edge along which it slides.
+Held hold(Anchors& anchors,
+          const cv::Mat& soft,
+          const Eigen::Matrix2Xd& before_px,
+          const Eigen::Matrix2Xd& flow_px,
           const AnchorOptions& options = {});
 
 }  // namespace gpo

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracker.h"
 
+#include "engine/frontend/coarse_flow.h"
+
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -141,44 +144,20 @@ Followed follow(const Pyramid& from,
   return after;
 }
 
-Eigen::Index count_living(const Eigen::Matrix2Xd& places) {
-  return places.row(0).array().isFinite().count();
-}
-
-/// The picture with mean and contrast of the other one.
-cv::Mat as_bright_as(const cv::Mat& other, const cv::Mat& gray) {
-  cv::Scalar mean_other, contrast_other, mean, contrast;
-  cv::meanStdDev(other, mean_other, contrast_other);
-  cv::meanStdDev(gray, mean, contrast);
-  const double gain = contrast_other[0] / std::max(contrast[0], 1.0);
-  cv::Mat alike;
-  gray.convertTo(alike, -1, gain, mean_other[0] - gain * mean[0]);
-  return alike;
-}
-
-/// `follow` for a picture whose exposure may have jumped: KLT compares brightness as it is.
-Followed follow_exposed(const Pyramid& from,
-                        const Pyramid& to,
-                        const Eigen::Matrix2Xd& before,
-                        const TrackerOptions& options) {
-  Followed after = follow(from, to, before, options);
-  const auto enough = options.least_followed * static_cast<double>(count_living(before));
-  if (static_cast<double>(count_living(after.raw_px)) >= enough) return after;
-  const Pyramid alike = build_pyramid(as_bright_as(from.front(), to.front()), options);
-  Followed again = follow(from, alike, before, options);
-  return count_living(again.raw_px) > count_living(after.raw_px) ? again : after;
-}
-
-/// Takes the drift from the tracks that were followed.
-void hold(const Anchors& anchors,
-          const cv::Mat& gray,
-          const AnchorOptions& options,
-          Followed& followed) {
-  Held held = hold(anchors, gray, followed.raw_px, options);
-  followed.raw_px = std::move(held.raw_px);
-  for (std::size_t j = 0; j < held.ends.size(); ++j) {
-    if (held.ends[j]) followed.ends[j] = held.ends[j];
-  }
+/// Finds the looks of the living tracks in the next picture.
+Followed follow(const SoftPyramid& from,
+                const SoftPyramid& to,
+                const Eigen::Matrix2Xd& before,
+                const AnchorOptions& options,
+                Anchors& anchors) {
+  std::vector<int> living;
+  for (int j = 0; j < before.cols(); ++j)
+    if (before.col(j).allFinite()) living.push_back(j);
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
+  Held held = hold(anchors, to.front(), before, flow_px, options);
+  return {
+      std::move(held.raw_px), Eigen::VectorXd::Constant(before.cols(), kNaN), std::move(held.ends)};
 }
 
 void append(Followed followed, Tracks& tracks) {
@@ -189,6 +168,44 @@ void append(Followed followed, Tracks& tracks) {
   }
   tracks.raw_px.push_back(std::move(followed.raw_px));
   tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
+}
+
+/// Takes tracks from the picture that it was shown before, if any, to the next one.
+using Follower = std::function<Followed(const cv::Mat& gray, const Eigen::Matrix2Xd& before)>;
+
+Follower frame_to_frame_follower(const TrackerOptions& options) {
+  return [options, from = Pyramid()](const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
+    Pyramid to = build_pyramid(gray, options);
+    Followed followed = from.empty() ? Followed{} : follow(from, to, before, options);
+    from = std::move(to);
+    return followed;
+  };
+}
+
+Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
+  return [camera, options, from = SoftPyramid(), anchors = Anchors()](
+             const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
+    SoftPyramid to = soft_pyramid(gray);
+    Followed followed;
+    if (from.empty()) {
+      anchors = make_anchors(to.front(), before, camera, options);
+    } else {
+      followed = follow(from, to, before, options, anchors);
+    }
+    from = std::move(to);
+    return followed;
+  };
+}
+
+/// The corners of the reference frame.
+Tracks beginning(const cv::Mat& gray, int start, const DetectorOptions& options) {
+  Tracks tracks;
+  tracks.start = start;
+  tracks.raw_px.push_back(detect_corners(gray, options));
+  for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
+  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
+  tracks.ends.resize(tracks.track_count());
+  return tracks;
 }
 
 }  // namespace
@@ -235,29 +252,15 @@ std::optional<Tracks> track_window(const GrayPictures& gray_at,
                                    const std::stop_token& stop,
                                    const FrameProgress& progress) {
   Tracks tracks;
-  tracks.start = start;
-  const bool anchored = options.tracking == Tracking::anchored;
-  Anchors anchors;
-  Pyramid before;
+  const auto follower = options.tracking == Tracking::anchored
+                            ? anchored_follower(camera, options.anchor)
+                            : frame_to_frame_follower(options);
   for (int i = 0; i < frames; ++i) {
     if (stop.stop_requested()) return std::nullopt;
     const cv::Mat gray = gray_at(start + i);
-    Pyramid now = build_pyramid(gray, options);
-    if (i == 0) {
-      tracks.raw_px.push_back(detect_corners(gray, options.detector));
-      for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
-      tracks.forward_backward_px.emplace_back(
-          Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
-      tracks.ends.resize(tracks.track_count());
-      if (anchored) anchors = make_anchors(gray, tracks.raw_px[0], camera, options.anchor);
-    } else {
-      const Eigen::Matrix2Xd& last = tracks.raw_px.back();
-      Followed followed = anchored ? follow_exposed(before, now, last, options)
-                                   : follow(before, now, last, options);
-      if (anchored) hold(anchors, gray, options.anchor, followed);
-      append(std::move(followed), tracks);
-    }
-    before = std::move(now);
+    if (i == 0) tracks = beginning(gray, start, options.detector);
+    Followed followed = follower(gray, tracks.raw_px.back());
+    if (i > 0) append(std::move(followed), tracks);
     if (progress) progress(i + 1, frames);
   }
   return tracks;

@@ -37,9 +37,7 @@ struct TrackerOptions {
   int pyramid_levels = 4;            ///< beside the full picture [-]
   double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
   Tracking tracking = Tracking::frame_to_frame;
-  AnchorOptions anchor = {};    ///< of anchored tracking
-  double least_followed = 0.9;  ///< of the tracks; where anchored tracking follows fewer into a
-                                ///< picture, it tries again with their brightness made alike [-]
+  AnchorOptions anchor = {};  ///< of anchored tracking
 };
 
 /// A frame of the recording in gray, CV_8UC1. Throws InputError where it cannot be decoded.
@@ -48,10 +46,10 @@ using GrayPictures = std::function<cv::Mat(int frame)>;
 /// Told of what is done; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
 
-/// Corners of the reference frame followed from frame to frame by pyramidal KLT, forward and back;
-/// in anchored tracking, those on the plane are then held to their looks in the reference frame. A
-/// track is lost for good in the first frame in which it fails a check or leaves the picture.
-/// Nothing where stopped. Throws InputError for a picture that cannot be decoded.
+/// Corners of the reference frame followed from frame to frame: by pyramidal KLT, forward and back,
+/// or, in anchored tracking, by their looks in the reference frame. A track is lost for good in the
+/// first frame in which it fails a check or leaves the picture. Nothing where stopped. Throws
+/// InputError for a picture that cannot be decoded.
 std::optional<Tracks> track_window(const GrayPictures& pictures,
                                    const Camera& camera,
                                    int start,

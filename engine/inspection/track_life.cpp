@@ -115,7 +115,7 @@ std::string reason_of(const TrackEnd& end) {
     case LossReason::look_not_found:
       return "its look in the reference frame not found";
     case LossReason::look_far:
-      return fmt::format("its look found {:.1f} px from where the plane puts it, above {:.1f} px",
+      return fmt::format("its look found {:.1f} px from where it was expected, above {:.1f} px",
                          end.value,
                          end.limit);
     case LossReason::look_unlike:

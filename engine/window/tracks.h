@@ -25,7 +25,7 @@ enum class LossReason {
   no_flow,           ///< KLT gives up, there or on the way back
   forward_backward,  ///< the way there and back ends too far from where it began [px]
   look_not_found,    ///< too little of its look in the reference frame is in the picture
-  look_far,          ///< its look is found too far from where the plane's homography puts it [px]
+  look_far,          ///< its look is found too far from where it was expected [px]
   look_unlike        ///< what is found is not like its look: correlation too low [-]
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/peak.h"
 
-#include "engine/initializers/plane/plane_kernel.h"
+#include "engine/base/processor.h"
 
 namespace gpo::bench {
 namespace {

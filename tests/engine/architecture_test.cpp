@@ -34,7 +34,7 @@ const std::vector<Room> kRooms = {
     {"engine/truth", {"engine/geometry"}},
     {"engine/initializers/common", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine/initializers/residuals", {"engine/geometry", "engine/initializers/common"}},
-    {"engine/initializers/plane", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/residuals"}},
+    {"engine/initializers/plane", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/residuals"}},
     {"engine/initializers/bundle", {"engine/geometry", "engine/initializers/common", "engine/initializers/residuals"}},
     {"engine/initializers/candidates", {"engine/geometry", "engine/window", "engine/initializers/common"}},
     {"engine/initializers/certainty", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/plane"}},

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_kernel.h"
 
+#include "engine/base/processor.h"
+
 #include <cstring>
 
 namespace gpo {
@@ -194,10 +196,6 @@ FrameNormals frame_normals_avx2_fma(const FrameObservations& observations,
     accumulate_avx2_fma<false>(observations, state, sums);
   }
   return unpacked(sums);
-}
-
-bool has_avx2_fma() {
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
 }
 
 FrameNormals frame_normals(const FrameObservations& observations,

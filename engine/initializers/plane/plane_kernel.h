@@ -37,8 +37,7 @@ FrameNormals frame_normals(const FrameObservations& observations,
 FrameNormals frame_normals_baseline(const FrameObservations& observations,
                                     const FrameState& state,
                                     Rotating rotating);
-bool has_avx2_fma();
-/// Only where `has_avx2_fma`.
+/// Only where `has_avx2_fma` (engine/base/processor.h).
 FrameNormals frame_normals_avx2_fma(const FrameObservations& observations,
                                     const FrameState& state,
                                     Rotating rotating);

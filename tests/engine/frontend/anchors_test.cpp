@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/anchors.h"
 
+#include "engine/frontend/soft_picture.h"
 #include "engine/frontend/tracker.h"
 #include "engine/frontend/tracking.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
+#include "tests/engine/frontend/corner_scene.h"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -70,7 +72,7 @@ int living(const Tracks& tracks, int frame) {
   return count;
 }
 
-TEST(Anchors, TakeTheDriftFromTracksOnThePlane) {
+TEST(Anchors, TakeTheDriftFromTracks) {
   const auto recording = desk();
   const Tracks drifting = tracked(*recording, *recording->pictures, Tracking::frame_to_frame);
   const Tracks held = tracked(*recording, *recording->pictures, Tracking::anchored);
@@ -87,8 +89,8 @@ TEST(Anchors, SurviveExposureAndBlur) {
     if (i >= 10 && i < 15) cv::GaussianBlur(bgr, bgr, {}, 1.5);
   });
   const Tracks held = tracked(*recording, pictures, Tracking::anchored);
-  EXPECT_LT(median_error_px(*recording, held, 12), 0.12);
-  EXPECT_LT(median_error_px(*recording, held, kLast), 0.12);
+  EXPECT_LT(median_error_px(*recording, held, 12), 0.13);
+  EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
   const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
   EXPECT_GT(living(held, kLast), 0.85 * living(undisturbed, kLast));
 }
@@ -129,66 +131,33 @@ TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
   const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
   for (int j = 0; j < held.track_count(); ++j) {
     if (!held.seen(kLast, j) || !undisturbed.seen(kLast, j)) continue;
-    EXPECT_LT((held.raw_px[kLast].col(j) - undisturbed.raw_px[kLast].col(j)).norm(), 0.5) << j;
+    EXPECT_LT((held.raw_px[kLast].col(j) - undisturbed.raw_px[kLast].col(j)).norm(), 1) << j;
   }
 }
 
-// The quadratics between nine exact places against every pixel's own, with the recordings' lens and
-// a camera that went 15 degrees around the middle of the picture.
-TEST(Anchors, CarryPatchesToAFewThousandthsOfAPixel) {
-  const Camera camera = desk()->camera;
-  const Eigen::Matrix3d K = intrinsic_matrix(camera);
-  const Eigen::Matrix3d R(Eigen::AngleAxisd(0.26, Eigen::Vector3d(0.2, 0.9, 0.3).normalized()));
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();  // the middle; the plane is Z = 1
-  const Eigen::Vector3d center = z - R.transpose() * z;
-  const Eigen::Matrix3d H =
-      K * R * (Eigen::Matrix3d::Identity() - center * z.transpose()) * K.inverse();
-  constexpr int kHalf = 10;
-  constexpr int kSide = 2 * kHalf + 1;
-  int patches = 0;
-  for (int corner = 0; corner < 32 * 24; ++corner) {
-    const cv::Point first(20 * (corner % 32), 20 * (corner / 32));
-    const auto exact = [&](int u, int v) {
-      const Eigen::Vector2d px(first.x + u, first.y + v);
-      return distort(camera, (H * undistort(camera, px).homogeneous()).hnormalized());
-    };
-    Nodes nodes;
-    for (int k = 0; k < 9; ++k) nodes.col(k) = exact(kHalf * (k % 3), kHalf * (k / 3));
-    const Eigen::Vector2d middle = nodes.col(4);
-    if (middle.minCoeff() < 0 || middle.x() > camera.width || middle.y() > camera.height) continue;
-    ++patches;
-    const Eigen::Matrix2Xf places = places_between(nodes, kSide, kSide);
-    double worst_px = 0;
-    for (int k = 0; k < kSide * kSide; ++k) {
-      const Eigen::Vector2d error = places.col(k).cast<double>() - exact(k % kSide, k / kSide);
-      worst_px = std::max(worst_px, error.norm());
-    }
-    EXPECT_LT(worst_px, 0.005) << middle.transpose();
-  }
-  EXPECT_GT(patches, 400);
-}
-
-// A plane at rest, so that all agree with its homography, those outside of the picture, too.
+// At rest, so that all that is in the picture is found where it was.
 TEST(Anchors, WhatIsNotInThePictureIsNotFoundThere) {
   const auto recording = desk();
-  const cv::Mat gray = recording->pictures->gray(0);
+  const cv::Mat soft = soften(recording->pictures->gray(0));
   Camera camera = recording->camera;
   camera.distortion = Distortion::none;
   camera.coefficients = {};
   Eigen::Matrix2Xd corners(2, 44);
   for (int k = 0; k < 40; ++k) corners.col(k) << 60 + 60 * (k % 8), 60 + 70 * (k / 8);
-  corners.rightCols<4>() << -40, 300, gray.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
-      100, gray.rows + 60, 50, 20;
-  const Anchors anchors = make_anchors(gray, corners, camera);
-  const Held held = hold(anchors, gray, corners);
+  corners.rightCols<4>() << -40, 300, soft.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
+      100, soft.rows + 60, 50, 20;
+  Anchors anchors = make_anchors(soft, corners, camera);
+  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 44));
   int found = 0;
   for (int k = 0; k < 40; ++k) found += held.raw_px.col(k).allFinite() ? 1 : 0;
   EXPECT_GT(found, 20);
   for (int k = 40; k < 43; ++k) {
     EXPECT_FALSE(held.raw_px.col(k).allFinite()) << k;
     ASSERT_TRUE(held.ends[k]) << k;
-    EXPECT_EQ(held.ends[k]->reason, LossReason::look_not_found) << k;
+    EXPECT_EQ(held.ends[k]->reason, LossReason::left_picture) << k;
   }
+  EXPECT_FALSE(held.raw_px.col(43).allFinite());
+  EXPECT_FALSE(held.ends[43]);
 }
 
 TEST(Anchors, AreTheSameInEveryRun) {
@@ -204,19 +173,96 @@ TEST(Anchors, AreTheSameInEveryRun) {
   }
 }
 
-TEST(Anchors, LeaveTheLostLostAndTracksOffThePlaneWhereTheyWere) {
+TEST(Anchors, LeaveTheLostLostAndFindTheOthersFromARoughGuess) {
   const auto recording = desk();
   const cv::Mat gray = recording->pictures->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray);
-  Eigen::Matrix2Xd followed = corners;
-  followed.col(0).setConstant(std::nan(""));
-  for (int j = 1; j < followed.cols(); ++j) followed(0, j) += j % 5 == 0 ? 10 : 0.3;
-  const Eigen::Matrix2Xd held =
-      hold(make_anchors(gray, corners, recording->camera), gray, followed).raw_px;
-  EXPECT_FALSE(held.col(0).allFinite());
-  for (int j = 1; j < held.cols(); ++j) {
-    const Eigen::Matrix2Xd& expected = j % 5 == 0 ? followed : corners;
-    EXPECT_LT((held.col(j) - expected.col(j)).norm(), 1e-3) << j;
+  Eigen::Matrix2Xd before = corners;
+  before.col(0).setConstant(std::nan(""));
+  Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
+  for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
+  Anchors anchors = make_anchors(soften(gray), corners, recording->camera);
+  const Held held = hold(anchors, soften(gray), before, flow);
+  EXPECT_FALSE(held.raw_px.col(0).allFinite());
+  EXPECT_FALSE(held.ends[0]);
+  int found = 0;
+  for (int j = 1; j < corners.cols(); ++j) {
+    if (!held.raw_px.col(j).allFinite()) continue;
+    ++found;
+    EXPECT_LT((held.raw_px.col(j) - corners.col(j)).norm(), 0.01) << j;
+  }
+  EXPECT_GT(found, 0.98 * static_cast<double>(corners.cols() - 1));
+}
+
+// Everything looks the same a period farther.
+TEST(Anchors, OfATrackThatJumpsToALookAlikeFollowItsNeighbors) {
+  cv::Mat gray(240, 320, CV_8UC1);
+  for (int v = 0; v < gray.rows; ++v)
+    for (int u = 0; u < gray.cols; ++u)
+      gray.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(
+          128 + 50 * std::sin(u * CV_PI / 8) + 50 * std::sin(v * CV_PI / 8));
+  const Camera camera{320, 240, 300, 300, 160, 120, Distortion::none, {}};
+  Eigen::Matrix2Xd corners(2, 30);
+  for (int k = 0; k < 30; ++k) corners.col(k) << 40 + 48 * (k % 6), 40 + 40 * (k / 6);
+  Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, 30);
+  flow.col(14) << 16, 0;
+  Anchors anchors = make_anchors(soften(gray), corners, camera);
+  EXPECT_LT((hold(anchors, soften(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
+            0.01);
+  AnchorOptions alone;
+  alone.least_alike = 30;
+  Anchors others = make_anchors(soften(gray), corners, camera, alone);
+  const Held jumped = hold(others, soften(gray), corners, flow, alone);
+  EXPECT_NEAR(jumped.raw_px(0, 14) - corners(0, 14), 16, 0.1);
+}
+
+TEST(Anchors, HoldTracksOnEverySurface) {
+  const test::CornerScene scene;
+  TrackerOptions options;
+  options.tracking = Tracking::anchored;
+  const Tracks tracks = *track_window([&](int frame) { return scene.gray(frame); },
+                                      scene.camera(),
+                                      0,
+                                      test::CornerScene::kFrames,
+                                      options);
+  const int last = test::CornerScene::kFrames - 1;
+  for (const int plane : {0, 1}) {
+    std::vector<double> errors;
+    for (int j = 0; j < tracks.track_count(); ++j) {
+      const Eigen::Vector2d corner = tracks.raw_px[0].col(j);
+      // A look that shows both is neither's.
+      const bool whole = scene.plane_at(corner + Eigen::Vector2d(0, 14)) == plane &&
+                         scene.plane_at(corner - Eigen::Vector2d(0, 14)) == plane;
+      if (whole && tracks.seen(last, j))
+        errors.push_back((scene.moved(corner, last) - tracks.raw_px[last].col(j)).norm());
+    }
+    ASSERT_GT(errors.size(), 40U) << plane;
+    std::ranges::sort(errors);
+    EXPECT_LT(quantile(errors, 0.9), 0.1) << plane;
+    EXPECT_LT(median(std::move(errors)), 0.03) << plane;
+  }
+}
+
+TEST(Anchors, SurviveAnyExposureGammaAndVignette) {
+  const auto recording = desk();
+  const int before = living(tracked(*recording, *recording->pictures, Tracking::anchored), kLast);
+  for (const double gamma : {1.0, 1.4}) {
+    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+      if (i < 10) return;
+      for (int v = 0; v < bgr.rows; ++v) {
+        for (int u = 0; u < bgr.cols; ++u) {
+          const double r2 = (std::pow(u - 320, 2) + std::pow(v - 240, 2)) / (320 * 320);
+          for (int c = 0; c < 3; ++c) {
+            auto& value = bgr.at<cv::Vec3b>(v, u)[c];
+            value = cv::saturate_cast<std::uint8_t>(255 * 0.7 * (1 - 0.3 * r2) *
+                                                    std::pow(value / 255.0, gamma));
+          }
+        }
+      }
+    });
+    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    EXPECT_GE(living(held, kLast), 0.95 * before) << gamma;
+    EXPECT_LT(median_error_px(*recording, held, kLast), 0.06) << gamma;
   }
 }
 
@@ -246,17 +292,16 @@ TEST(Anchors, TellWhyALookIsNotFound) {
             0);
 }
 
-TEST(Anchors, LeaveAllAsItIsWhereThereIsNoPlane) {
+TEST(Anchors, NeedNoNeighbors) {
   const auto recording = desk();
-  const cv::Mat gray = recording->pictures->gray(0);
-  const Eigen::Matrix2Xd corners = detect_corners(gray).leftCols(3);
-  const Anchors anchors = make_anchors(gray, corners, recording->camera);
-  EXPECT_EQ(hold(anchors, gray, corners).raw_px, corners);
-  EXPECT_EQ(hold(make_anchors(gray, Eigen::Matrix2Xd(2, 0), recording->camera),
-                 gray,
-                 Eigen::Matrix2Xd(2, 0))
-                .raw_px.cols(),
-            0);
+  const cv::Mat soft = soften(recording->pictures->gray(0));
+  const Eigen::Matrix2Xd corners = detect_corners(recording->pictures->gray(0)).leftCols(3);
+  Anchors anchors = make_anchors(soft, corners, recording->camera);
+  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 3));
+  EXPECT_LT((held.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
+  const Eigen::Matrix2Xd none(2, 0);
+  Anchors empty = make_anchors(soft, none, recording->camera);
+  EXPECT_EQ(hold(empty, soft, none, none).raw_px.cols(), 0);
 }
 
 }  // namespace

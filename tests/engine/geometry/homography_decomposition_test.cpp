@@ -182,7 +182,8 @@ TEST(Decomposition, VisibleMotionsHoldTheTruth) {
 }
 
 TEST(Decomposition, CountsPointsBehindEitherCamera) {
-  const Eigen::Matrix3Xd rays = (Eigen::Matrix3Xd(3, 2) << 0, 0.5, 0, 0, 1, 1).finished();
+  Eigen::Matrix3Xd rays(3, 2);
+  rays << 0, 0.5, 0, 0, 1, 1;
   const Vector3d facing(0, 0, -1);
   const Matrix3d I = Matrix3d::Identity();
   EXPECT_EQ(points_behind({I, Vector3d(0.1, 0, 0), facing}, rays), 0);

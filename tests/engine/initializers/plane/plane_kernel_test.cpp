@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_kernel.h"
 
+#include "engine/base/processor.h"
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/plane/plane_observations.h"
 #include "engine/initializers/plane/plane_weights.h"

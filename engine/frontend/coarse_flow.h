@@ -1,0 +1,25 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// Soft pictures (soft_picture.h), each of half the size of the one before.
+using SoftPyramid = std::vector<cv::Mat>;
+
+/// `gray` is CV_8UC1.
+SoftPyramid soft_pyramid(const cv::Mat& gray);
+
+/// By how much places of one picture move to the next [px]: from coarse to fine down to half the
+/// size, whatever gain and offset the exposure has. Good to a few tenths of a pixel, and a guess
+/// where there is nothing to see. `raw_px` is 2 x n, finite.
+Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
+                             const SoftPyramid& to,
+                             const Eigen::Matrix2Xd& raw_px);
+
+}  // namespace gpo
