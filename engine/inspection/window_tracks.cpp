@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/frontend/tracker.h"
 #include "engine/inspection/kept.h"
+#include "engine/recording/pictures_ahead.h"
 
 #include <chrono>
 #include <utility>
@@ -37,7 +38,8 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
     if (progress) progress("tracking", done, of);
   };
   const TrackerOptions options{.tracking = tracking};
-  auto tracks = track_window([&](int frame) { return recording.pictures->gray(frame); },
+  PicturesAhead pictures(*recording.pictures, start, start + frames);
+  auto tracks = track_window([&](int frame) { return pictures.gray(frame); },
                              recording.camera,
                              start,
                              frames,
