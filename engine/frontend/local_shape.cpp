@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -17,7 +18,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kRounds = 2;                  // of weights
+constexpr int kRounds = 3;                  // of weights
+constexpr double kMiddleWeight = 100;       // of the look's middle; that of a corner is 1
 constexpr double kUnit_px = 100;            // of monomials, so that they are well scaled
 constexpr std::array kCorners{0, 2, 6, 8};  // of the nodes
 
@@ -89,20 +91,12 @@ Places places_of(const std::vector<int>& neighbors,
   return places;
 }
 
-Moments moments_of(const Neighborhood& around, const Places& places) {
-  Eigen::Matrix<double, Eigen::Dynamic, 4> factors(places.seen.size(), 4);
-  factors.col(0) = places.seen * around.weights;
-  factors.col(1) = factors.col(0).array() * places.x;
-  factors.col(2) = factors.col(0).array() * places.y;
-  factors.col(3) = factors.col(1).array() * places.x + factors.col(2).array() * places.y;
-  return around.monomials.lazyProduct(factors);
-}
-
-/// Those that the homography leaves off its place count less (Geman and McClure).
-void weigh(const LocalHomography& H,
-           const Places& places,
-           double agreement_px,
-           Neighborhood& around) {
+/// How much each neighbor counts: less where the homography leaves it off its place (Geman and
+/// McClure), nothing where it is not seen.
+Eigen::ArrayXd weights(const LocalHomography& H,
+                       const Neighborhood& around,
+                       const Places& places,
+                       double agreement_px) {
   const auto dx = around.monomials.row(1).transpose().array();
   const auto dy = around.monomials.row(2).transpose().array();
   const auto& A = H.affine;
@@ -110,7 +104,18 @@ void weigh(const LocalHomography& H,
   const Eigen::ArrayXd inverse = (1 + H.v.x() * dx + H.v.y() * dy).inverse();
   const Eigen::ArrayXd x = (A(0, 0) * dx + A(0, 1) * dy + A(0, 2)) * inverse - places.x;
   const Eigen::ArrayXd y = (A(1, 0) * dx + A(1, 1) * dy + A(1, 2)) * inverse - places.y;
-  around.weights = (1 + squares * (x.square() + y.square())).inverse().square();
+  return places.seen * (1 + squares * (x.square() + y.square())).inverse().square();
+}
+
+Moments moments_of(const Neighborhood& around,
+                   const Places& places,
+                   const Eigen::ArrayXd& weights) {
+  Eigen::Matrix<double, Eigen::Dynamic, 4> factors(weights.size(), 4);
+  factors.col(0) = weights;
+  factors.col(1) = weights * places.x;
+  factors.col(2) = weights * places.y;
+  factors.col(3) = weights * (places.x.square() + places.y.square());
+  return around.monomials.lazyProduct(factors);
 }
 
 /// The quadratic through nodes around a center.
@@ -150,7 +155,6 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
     around.monomials.resize(6, count);
     for (std::ptrdiff_t k = 0; k < count; ++k)
       around.monomials.col(k) = monomials((undistorted_px.col(near[k]) - origin) / kUnit_px);
-    around.weights.setOnes(count);
     around.neighbors = std::move(near);
     for (int k = 0; k < 9; ++k)
       around.nodes_px.col(k) = undistort(camera, middle + node(k, half)) - origin;
@@ -162,20 +166,22 @@ Warp shaped(const Camera& camera,
             const Warp& warp,
             const Matrix2Xd& undistorted_px,
             int half,
-            Neighborhood& around,
+            const Neighborhood& around,
             const ShapeOptions& options) {
   const Vector2d origin = undistort(camera, warp.center);
+  // Through the look's own middle, or those on another surface would outvote it.
   Moments own = Moments::Zero();
+  own(0, 0) = kMiddleWeight;
   for (const int k : kCorners) {
     const Vector2d p = (undistort(camera, warp(node(k, half))) - origin) / kUnit_px;
     own += monomials(around.nodes_px.col(k) / kUnit_px) *
            Eigen::RowVector4d(1, p.x(), p.y(), p.squaredNorm());
   }
   const Places places = places_of(around.neighbors, undistorted_px, origin);
-  LocalHomography H;
+  LocalHomography H = fitted(own);
   for (int round = 0; round < kRounds; ++round) {
-    H = fitted(own + moments_of(around, places));
-    weigh(H, places, options.agreement_px, around);
+    const double agreement_px = round == 0 ? options.start_px : options.agreement_px;
+    H = fitted(own + moments_of(around, places, weights(H, around, places, agreement_px)));
   }
   Nodes nodes;
   for (int k = 0; k < 9; ++k)

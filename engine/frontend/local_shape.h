@@ -12,8 +12,9 @@
 namespace gpo {
 
 struct ShapeOptions {
-  int neighbors = 60;         ///< of a track, the nearest in the reference frame [-]
-  double agreement_px = 0.5;  ///< a neighbor that is as far off counts a quarter [px]
+  int neighbors = 60;       ///< of a track, the nearest in the reference frame [-]
+  double start_px = 3;      ///< by the look's own shape, one that far off counts a quarter [px]
+  double agreement_px = 1;  ///< the same by the shape that neighbors tell [px]
 };
 
 /// A look's pixels at left, middle and right of its first, middle and last row; 2 x 9, row by row.
@@ -25,8 +26,7 @@ struct Neighborhood {
   std::vector<int> neighbors;  ///< the nearest first
   /// 1, x, y, x^2, x y, y^2 of each from the look's middle, in the reference frame [100 px].
   Eigen::Matrix<double, 6, Eigen::Dynamic> monomials;
-  Eigen::ArrayXd weights;  ///< of each, from 0 to 1: is on the look's surface; as of the last frame
-  Nodes nodes_px;          ///< of the look, in the reference frame, from its middle
+  Nodes nodes_px;  ///< of the look, in the reference frame, from its middle
 };
 
 /// One a track. `raw_px` is 2 x tracks, in the reference frame; their looks are `half` pixels
@@ -44,7 +44,7 @@ Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
             int half,
-            Neighborhood& neighborhood,
+            const Neighborhood& neighborhood,
             const ShapeOptions& options = {});
 
 }  // namespace gpo

@@ -66,6 +66,12 @@ bool holds(const cv::Size& picture, const Vector2d& px) {
   return px.x() > 1 && px.y() > 1 && px.x() < picture.width - 2 && px.y() < picture.height - 2;
 }
 
+/// What shrinks or grows by more from a picture to the next has slid into something else.
+bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
+  const double share = now.determinant() / before.determinant();
+  return share > 0.5 && share < 2;
+}
+
 /// Nothing where less than half of the look's pixels are in the picture, or where it is darker
 /// where it should be brighter.
 std::optional<Step> step_from(const cv::Mat& soft,
@@ -116,6 +122,7 @@ Found search(const cv::Mat& soft,
     warp.linear *= (Matrix2d::Identity() + step->B).inverse();
     const Vector2d moved_px = -warp.linear * step->t;
     warp.center += moved_px;
+    if (!keeps_its_size(start.linear, warp.linear)) break;
     const double far_px = (warp.center - start.center).norm();
     if (!(far_px <= options.farthest_px))
       return {.end = TrackEnd{0, LossReason::look_far, far_px, options.farthest_px}};
