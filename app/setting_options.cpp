@@ -34,6 +34,18 @@ std::string option_name(std::string name) {
 }
 
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
+  // Taken as soon as it is read, so that single options overrule it wherever they stand.
+  command
+      .add_option_function<std::string>(
+          "--preset",
+          [&settings](const std::string& key) {
+            settings = with_preset(std::move(settings), choice<Preset>(key));
+          },
+          "All settings by one word: the best that we have, or what the paper does: best, paper")
+      ->default_str("best")
+      ->type_name("KEY")
+      ->check(CLI::IsMember({"best", "paper"}))
+      ->trigger_on_parse();
   for (const Setting& setting : settings_table()) {
     const std::string name = option_name(setting.key);
     const std::string help = help_of(setting);

@@ -18,7 +18,7 @@ namespace {
 
 /// The paper's; beside them each method as it is.
 constexpr std::array kAblations{
-    "gpo+no-ransac", "gpo+gyro-calibrated", "gpo+averaging", "gpo+truth", "ba+ransac"};
+    "gpo+no-ransac", "gpo+gyro", "gpo+averaging", "gpo+truth", "ba+ransac"};
 
 using Change = Configuration::Change;
 
@@ -73,6 +73,33 @@ Change change_of(const std::string& word, const std::string& text) {
       "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
 }
 
+/// What a preset decides of the settings that this method reads, and the other preset otherwise.
+std::vector<Change> preset_changes(Preset preset, const std::string& method) {
+  const auto used = [&](Preset of) {
+    Settings settings = with_preset({}, of);
+    settings.method = method;
+    return as_used(std::move(settings));
+  };
+  const Settings wanted = used(preset);
+  const Settings other = used(preset == Preset::best ? Preset::paper : Preset::best);
+  std::vector<Change> changes;
+  for (const Setting* setting : comparable_settings()) {
+    const std::string value = value_text(setting->get(wanted));
+    if (is_read(*setting, method) && value != value_text(setting->get(other)))
+      changes.push_back({setting->key, value});
+  }
+  return changes;
+}
+
+/// One word's, or all those of a preset.
+std::vector<Change> changes_of(const std::string& word,
+                               const std::string& text,
+                               const std::string& method) {
+  for (const Preset preset : {Preset::best, Preset::paper})
+    if (word == to_string(preset)) return preset_changes(preset, method);
+  return {change_of(word, text)};
+}
+
 void check_read(const Configuration& configuration, const std::string& text) {
   for (const Change& change : configuration.changes)
     if (!is_read(find_setting(change.setting), configuration.method))
@@ -120,9 +147,11 @@ Configuration parse_configuration(const std::string& text) {
         fmt::format("unknown method '{}', expected all, or some of {}", method, known_methods()));
   Configuration configuration{.method = method};
   for (std::size_t i = 1; i < parts.size(); ++i) {
-    Change change = change_of(parts[i], text);
-    if (configuration.names(change.setting)) refuse(fmt::format("'{}' sets one thing twice", text));
-    configuration.changes.push_back(std::move(change));
+    for (Change& change : changes_of(parts[i], text, method)) {
+      if (configuration.names(change.setting))
+        refuse(fmt::format("'{}' sets one thing twice", text));
+      configuration.changes.push_back(std::move(change));
+    }
   }
   check_read(configuration, text);
   configuration.changes = in_order(configuration.changes);
@@ -154,7 +183,7 @@ std::string configuration_syntax() {
   std::string syntax = "METHOD";
   for (const Setting* setting : comparable_settings())
     syntax += fmt::format("[+{}]", fmt::join(words_of(*setting), "|"));
-  return syntax;
+  return syntax + "[+best|paper]";
 }
 
 std::string key_of(const Configuration& configuration) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -32,13 +33,14 @@ std::vector<Vector3d> residuals_rad(Gyroscope& gyroscope,
 
 }  // namespace
 
-Vector3d fit_gyro_bias(const Gyroscope& given,
+GyroBias fit_gyro_bias(const Gyroscope& given,
                        std::span<const std::int64_t> frame_times_ns,
                        const Rotations& visual) {
   constexpr double kStep_rad_s = 1e-4;  // the rotations are all but linear in the bias
   const double sigma_rad = std::max(visual.sigma_rad, kLeastSigma_rad);
   Gyroscope gyroscope = given;
   Vector3d bias = given.bias_rad_s;
+  Matrix3d covariance;
   for (int round = 0; round < 20; ++round) {
     const auto residuals = residuals_rad(gyroscope, bias, frame_times_ns, visual.R_wc);
     std::vector<Matrix3d> J(residuals.size());
@@ -58,10 +60,11 @@ Vector3d fit_gyro_bias(const Gyroscope& given,
       Jtr += weight * J[i].transpose() * residuals[i];
     }
     const Vector3d step = JtJ.ldlt().solve(-Jtr);
+    covariance = JtJ.inverse();
     bias += step;
     if (step.norm() < 1e-9) break;
   }
-  return bias;
+  return {bias, covariance};
 }
 
 Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
@@ -71,9 +74,11 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
   Rotations visual = averaged_rotations(window, R_wc_given, stop);
   if (visual.R_wc.empty()) return visual;
   Gyroscope calibrated = gyroscope;
-  calibrated.bias_rad_s = fit_gyro_bias(gyroscope, window.timestamps_ns, visual);
+  const GyroBias fitted = fit_gyro_bias(gyroscope, window.timestamps_ns, visual);
+  calibrated.bias_rad_s = fitted.bias_rad_s;
   Rotations rotations = sensitive_gyro_rotations(calibrated, window.timestamps_ns);
   rotations.gyro->prior_rad_s = gyroscope.bias_rad_s;
+  rotations.gyro->bias_covariance = fitted.covariance;
   return rotations;
 }
 

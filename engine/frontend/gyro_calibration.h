@@ -13,14 +13,19 @@
 
 namespace gpo {
 
-/// The constant bias [rad/s], in the gyroscope's axes, whose integrated rotations fit the visual
+struct GyroBias {
+  Eigen::Vector3d bias_rad_s;   ///< in the gyroscope's axes
+  Eigen::Matrix3d covariance;   ///< [(rad/s)^2]
+};
+
+/// The constant bias, in the gyroscope's axes, whose integrated rotations fit the visual
 /// ones best: robust least squares over the frames, around the bias that the gyroscope comes with
 /// (Gaussian, its `bias_sigma_rad_s`). Errors of the visual rotations share their cause, the
 /// plane's normal, so that all frames together count as one: a short or ill-conditioned window,
 /// which cannot tell, keeps the gyroscope's own bias.
-Eigen::Vector3d fit_gyro_bias(const Gyroscope& gyroscope,
-                              std::span<const std::int64_t> frame_times_ns,
-                              const Rotations& visual);
+GyroBias fit_gyro_bias(const Gyroscope& gyroscope,
+                       std::span<const std::int64_t> frame_times_ns,
+                       const Rotations& visual);
 
 /// Rotations of the gyroscope less a constant bias that is estimated from the window's own visual
 /// rotations (averaged homography decompositions; the gyroscope tells which of two planes). None

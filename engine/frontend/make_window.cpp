@@ -3,6 +3,8 @@
 #include "engine/frontend/make_window.h"
 
 #include "engine/frontend/consistent_inliers.h"
+#include "engine/frontend/window_planes.h"
+#include "engine/geometry/homography.h"
 #include "engine/window/frame_errors.h"
 
 #include <algorithm>
@@ -42,13 +44,56 @@ void keep_consistent(Window& window, double threshold_px) {
   window.inliers = Inliers::consistent;
 }
 
+WindowPlane plane_of(const Window& window, const std::vector<int>& tracks, double threshold_px) {
+  const Eigen::Matrix3d none =
+      Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const int frames = window.frame_count();
+  WindowPlane plane{tracks,
+                    std::vector<Eigen::Matrix3d>(frames, none),
+                    std::vector(frames, std::vector<bool>(window.track_count(), false))};
+  plane.H_i1[0] = Eigen::Matrix3d::Identity();
+  for (const int j : tracks) plane.inlier[0][j] = true;
+  for (int i = 1; i < frames; ++i) {
+    std::vector<int> seen;
+    for (const int j : tracks)
+      if (window.points_px[i].col(j).allFinite()) seen.push_back(j);
+    if (seen.size() < 4) continue;
+    const Eigen::Matrix2Xd from = window.points_px[0](Eigen::all, seen);
+    const Eigen::Matrix2Xd to = window.points_px[i](Eigen::all, seen);
+    const auto H = fit_homography(from, to);
+    if (!H) continue;
+    plane.H_i1[i] = refine_homography(*H, from, to);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const double error_px = (transfer(plane.H_i1[i], from.col(k)) - to.col(k)).norm();
+      plane.inlier[i][seen[k]] = error_px <= threshold_px;
+    }
+  }
+  return plane;
+}
+
+/// The planes of the window; the leading one's tracks are the inliers.
+void find_planes(Window& window, const RansacOptions& ransac, int leader) {
+  window.inliers = Inliers::planes;
+  const PlaneOptions options{.gate_px = ransac.threshold_px, .seed = ransac.seed};
+  const TrackPlanes found = window_planes(window.points_px, options);
+  window.largest_refused = found.largest_refused;
+  for (const std::vector<int>& tracks : found.planes)
+    window.planes.push_back(plane_of(window, tracks, ransac.threshold_px));
+  if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac.threshold_px));
+  window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
+  window.H_i1 = window.planes[window.leader].H_i1;
+  window.inlier = window.planes[window.leader].inlier;
+  if (window.planes[0].tracks.empty()) window.planes.clear();
+}
+
 }  // namespace
 
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
                    const RansacOptions& ransac,
-                   Inliers inliers) {
+                   Inliers inliers,
+                   int leader) {
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
@@ -56,9 +101,13 @@ Window make_window(const Tracks& tracks,
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
-  window.H_i1.push_back(Eigen::Matrix3d::Identity());
-  window.inlier.emplace_back(tracks.track_count(), false);
-  for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+  if (inliers == Inliers::planes && ransac.enabled) {
+    find_planes(window, ransac, leader);
+  } else {
+    window.H_i1.push_back(Eigen::Matrix3d::Identity());
+    window.inlier.emplace_back(tracks.track_count(), false);
+    for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
+  }
   if (inliers == Inliers::consistent && ransac.enabled)
     keep_consistent(window, ransac.threshold_px);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);

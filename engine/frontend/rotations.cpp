@@ -125,8 +125,13 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
   };
   const Eigen::Vector3d first_rate = rate(times_ns.front());
   Rotations rotations{.model = RotationModel::bias};
-  GyroSensitivity gyro{
-      gyroscope.bias_rad_s, gyroscope.bias_rad_s, gyroscope.bias_sigma_rad_s, {}, {}};
+  const double sigma_rad_s = gyroscope.bias_sigma_rad_s;
+  GyroSensitivity gyro{gyroscope.bias_rad_s,
+                       gyroscope.bias_rad_s,
+                       sigma_rad_s,
+                       sigma_rad_s * sigma_rad_s * Eigen::Matrix3d::Identity(),
+                       {},
+                       {}};
   Turn turn;
   for (std::size_t i = 0; i < times_ns.size(); ++i) {
     if (i > 0) advance(turn, gyroscope, times_ns[i - 1], times_ns[i]);

@@ -12,9 +12,9 @@ namespace gpo {
 PlaneSolution solve_gpo(const Window& window,
                         const InitializerOptions& options,
                         const Watch& watch) {
-  if (options.solver == Solver::ceres)
-    return solve_plane_with_ceres(window, resting(window), {}, watch);
   const PlaneObservations observations = plane_observations(window);
+  if (options.solver == Solver::ceres)
+    return solve_plane_with_ceres(window, observations, resting(window), {}, watch);
   const auto closed = closed_form_motion(window);
   if (closed) {
     PlaneSolution solution = solve_plane(window, observations, *closed, {}, watch);

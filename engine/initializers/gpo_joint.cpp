@@ -7,11 +7,16 @@
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/plane/delivery.h"
+#include "engine/initializers/plane/other_planes.h"
+#include "engine/initializers/plane/other_reading.h"
 #include "engine/initializers/plane/plane_solver.h"
 #include "engine/initializers/plane/plane_weights.h"
 #include "engine/initializers/plane/rolling_shutter.h"
 
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,10 +27,17 @@ namespace {
 constexpr int kWeightRounds = 10;
 /// More unknowns must lower the cost so much: chi-square of what noise alone does, 4 sigma.
 constexpr double kSignificantSigmas = 4;
+/// Rotations of their own for every frame must lower the noise so much, too: what is wrong with a
+/// track on a real surface is the same in all frames, and such unknowns explain some of it. In
+/// EuRoC's room, where the bias alone is right, they lower its variance by up to a sixth; bad
+/// gyroscopes of phones leave twice as much and more.
+constexpr double kWorthFreeRotations = 1.25;
 /// The pace that is tried first [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
-/// A bias so many prior standard deviations out is none.
+/// No gyroscope has a larger bias; nor one that is so many standard deviations out, of those that
+/// its file tells.
+constexpr double kMostBias_rad_s = 0.5;
 constexpr double kMostBiasSigmas = 6;
 
 /// A solution, and the window as the shutter that goes with it would have seen it.
@@ -34,8 +46,7 @@ struct Fit {
   PlaneSolution solution;
   RotationModel rotations;
   double row_delay_s = 0;
-
-  double cost() const { return solution.solver.final_cost; }
+  double cost = 0;  ///< as the loss has it, which solutions with different weights share [px^2]
 };
 
 struct Task {
@@ -45,19 +56,23 @@ struct Task {
   const Watch& watch;
 };
 
-PlaneSolution solve(const Task& task,
-                    const Window& window,
-                    const PlaneMotion& start,
-                    RotationModel rotations) {
+Fit solve(const Task& task,
+          const Window& window,
+          const PlaneMotion& start,
+          RotationModel rotations,
+          double row_delay_s = 0) {
   const bool offset = task.options.time_offset && rotations == RotationModel::bias;
   const PlaneUnknowns unknowns{rotations, offset, task.sigma_px};
-  if (task.options.solver == Solver::ceres)
-    return solve_plane_with_ceres(window, start, unknowns, task.watch);
-  PlaneObservations observations = plane_observations(window);
-  PlaneSolution solution = solve_plane(window, observations, start, unknowns, task.watch);
+  PlaneObservations observations = plane_observations(window, numbers_of(start.others));
+  const auto solve_from = [&](const PlaneMotion& from) {
+    return task.options.solver == Solver::ceres
+               ? solve_plane_with_ceres(window, observations, from, unknowns, task.watch)
+               : solve_plane(window, observations, from, unknowns, task.watch);
+  };
+  PlaneSolution solution = solve_from(start);
   for (int round = 0; is_weighted(task.options) && round < kWeightRounds; ++round) {
     reweigh(solution.motion, task.options, task.sigma_px, observations);
-    PlaneSolution next = solve_plane(window, observations, solution.motion, unknowns, task.watch);
+    PlaneSolution next = solve_from(solution.motion);
     next.solver.iterations += solution.solver.iterations;
     next.solver.milliseconds += solution.solver.milliseconds;
     continue_trace(solution.solver, next.solver);
@@ -65,25 +80,37 @@ PlaneSolution solve(const Task& task,
     solution = std::move(next);
     if (settled) break;
   }
-  return solution;
+  const double cost =
+      solution.solver.final_cost +
+      loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
+  return {window, std::move(solution), rotations, row_delay_s, cost};
 }
 
 /// The fit with another pace of the rows, from a fit at hand; time and iterations add up.
 Fit refit(const Task& task, const Fit& from, double row_delay_s) {
-  Fit fit{without_rolling_shutter(task.window, from.solution.motion, row_delay_s),
-          {},
-          from.rotations,
-          row_delay_s};
-  fit.solution = solve(task, fit.window, from.solution.motion, from.rotations);
+  const PlaneMotion& motion = from.solution.motion;
+  Fit fit = solve(task,
+                  without_rolling_shutter(task.window, motion, row_delay_s),
+                  motion,
+                  from.rotations,
+                  row_delay_s);
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
 }
 
+bool converged(const Fit& fit) {
+  return fit.solution.solver.termination == Termination::convergence;
+}
+
+/// Of a coordinate's noise, as the residuals tell it [px^2].
+double variance(const Fit& fit) {
+  const SolverReport& s = fit.solution.solver;
+  return 2 * s.final_cost / std::max(1, s.residuals - s.unknowns);
+}
+
 /// Whether so many more unknowns explain more than noise: `fit` leaves what noise there is.
 bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
-  const SolverReport& s = with.solution.solver;
-  const double variance = 2 * s.final_cost / std::max(1, s.residuals - s.unknowns);
-  const double chi_square = 2 * (without.cost() - s.final_cost) / variance;
+  const double chi_square = 2 * (without.cost - with.cost) / variance(with);
   return chi_square > more_unknowns + kSignificantSigmas * std::sqrt(2.0 * more_unknowns) +
                           kSignificantSigmas * kSignificantSigmas;
 }
@@ -97,14 +124,14 @@ Fit with_estimated_shutter(const Task& task, const Fit& global) {
   for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
     const Fit less = refit(task, best, best.row_delay_s - step_s);
     const Fit more = refit(task, best, best.row_delay_s + step_s);
-    const double bend = more.cost() - 2 * best.cost() + less.cost();
-    const double move_s = 0.5 * step_s * (less.cost() - more.cost()) / bend;
+    const double bend = more.cost - 2 * best.cost + less.cost;
+    const double move_s = 0.5 * step_s * (less.cost - more.cost) / bend;
     const Fit next = refit(task, best, best.row_delay_s + move_s);
     for (const Fit* each : {&less, &more, &next}) {
       milliseconds += each->solution.solver.milliseconds;
       iterations += each->solution.solver.iterations;
     }
-    if (!(bend > 0) || !(next.cost() < best.cost())) break;
+    if (!(bend > 0) || !(next.cost < best.cost)) break;
     best = next;
     if (!is_significant(global, best, 1)) break;
     step_s /= 4;
@@ -116,33 +143,130 @@ Fit with_estimated_shutter(const Task& task, const Fit& global) {
 }
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationModel rotations) {
-  const Fit global{task.window, solve(task, task.window, start, rotations), rotations};
+  const Fit global = solve(task, task.window, start, rotations);
   return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
 }
 
+/// Adds time and iterations of what was tried beside it.
+void add_effort(const SolverReport& tried, SolverReport& solver) {
+  solver.milliseconds += tried.milliseconds;
+  solver.iterations += tried.iterations;
+}
+
+/// A fit, and the gyroscope's bias that fits best where it is not the fit's own.
+struct Best {
+  Fit fit;
+  Eigen::Vector3d bias_rad_s;
+};
+
 /// With a gyroscope, the bias alone, unless the pictures know the rotations better than it does.
-Fit best_fit(const Task& task, const PlaneMotion& start) {
+Best best_fit(const Task& task, const PlaneMotion& start) {
   Fit fit = fitted(task, start, task.window.rotations);
-  if (fit.rotations != RotationModel::bias) return fit;
+  const Eigen::Vector3d bias = fit.solution.motion.bias_rad_s;
+  if (fit.rotations != RotationModel::bias) return {std::move(fit), bias};
   Fit free = fitted(task, fit.solution.motion, RotationModel::free);
   const int more = free.solution.solver.unknowns - fit.solution.solver.unknowns;
-  const bool better = is_significant(fit, free, more);
+  const bool better = is_significant(fit, free, more) &&
+                      variance(fit) > kWorthFreeRotations * variance(free);
   Fit& chosen = better ? free : fit;
-  const Fit& other = better ? fit : free;
-  chosen.solution.solver.milliseconds += other.solution.solver.milliseconds;
-  chosen.solution.solver.iterations += other.solution.solver.iterations;
-  return chosen;
+  add_effort((better ? fit : free).solution.solver, chosen.solution.solver);
+  return {std::move(chosen), bias};
+}
+
+/// The window with a gyroscope's rotations as the sensor's data have them, where its pictures have
+/// calibrated it: what they say of one plane has two readings, and they may have taken the wrong one.
+std::optional<Window> uncalibrated(const Window& window) {
+  if (window.rotations != RotationModel::bias) return std::nullopt;
+  const GyroSensitivity& gyro = *window.gyro;
+  if (gyro.bias_rad_s == gyro.prior_rad_s) return std::nullopt;
+  Window raw = window;
+  PlaneMotion prior;
+  prior.bias_rad_s = gyro.prior_rad_s;
+  for (int i = 0; i < window.frame_count(); ++i)
+    raw.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, prior));
+  return raw;
+}
+
+/// The start optimized, then with the other planes beside the leading one, where they are asked for.
+Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
+  Fit fit = solve(task, task.window, start, task.window.rotations);
+  add_effort(fit.solution.solver, effort);
+  if (task.options.planes == Planes::one || task.window.planes.size() < 2 || !converged(fit))
+    return fit;
+  PlaneMotion with_others = fit.solution.motion;
+  with_others.others = other_planes(task.window, with_others);
+  if (with_others.others.empty()) return fit;
+  Fit all = solve(task, task.window, with_others, task.window.rotations);
+  add_effort(all.solution.solver, effort);
+  return converged(all) ? all : fit;
+}
+
+/// Of a residual, so that solutions with more and with fewer planes compare.
+double mean_cost(const Fit& fit) {
+  return converged(fit) ? fit.cost / std::max(1, fit.solution.solver.residuals)
+                        : std::numeric_limits<double>::infinity();
+}
+
+/// The best of the starts that there are, so that nobody has to trust the first one: GPO with the
+/// rotations as given; with those of the gyroscope before pictures calibrated it; of several planes
+/// without a gyroscope the other reading of the leading one's homographies, which fits that one as
+/// well, and not the others.
+PlaneMotion best_start(const Task& task, SolverReport& effort) {
+  std::vector<PlaneMotion> starts;
+  const auto add_gpo = [&](const Window& window) {
+    const PlaneSolution gpo = solve_gpo(window, {}, task.watch);
+    add_effort(gpo.solver, effort);
+    starts.push_back(facing(window, gpo.motion));
+  };
+  add_gpo(task.window);
+  if (const auto raw = uncalibrated(task.window)) {
+    add_gpo(*raw);
+    starts.back().bias_rad_s = task.window.gyro->prior_rad_s;
+  }
+  const bool several = task.options.planes == Planes::all && task.window.planes.size() > 1;
+  if (several && task.window.rotations == RotationModel::free) {
+    if (const auto other = other_reading(task.window, starts.front())) starts.push_back(*other);
+  }
+  PlaneMotion best = starts.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const PlaneMotion& start : starts) {
+    const Fit next = optimized(task, start, effort);
+    const double cost = mean_cost(next);
+    if (cost < least) best = next.solution.motion;
+    least = std::min(least, cost);
+  }
+  return best;
+}
+
+/// With the weights that the solution rests on.
+void add_uncertainty(const Task& task, const Fit& fit, Initialization& result) {
+  const PlaneMotion motion = facing(fit.window, fit.solution.motion);
+  PlaneObservations observations = plane_observations(fit.window, numbers_of(motion.others));
+  if (is_weighted(task.options)) reweigh(motion, task.options, task.sigma_px, observations);
+  result.uncertainty = uncertainty_of(fit.window, observations, motion, fit.rotations);
+  if (!result.uncertainty || result.planes.empty()) return;
+  result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
+  result.planes[0].distance_sigma = 0;
+  for (std::size_t k = 0; k < result.uncertainty->others.size(); ++k) {
+    PlaneEstimate& plane = result.planes[k + 1];
+    const PlaneUncertainty& u = result.uncertainty->others[k];
+    plane.normal_covariance = u.normal_covariance;
+    plane.distance_sigma = u.log_distance_sigma * plane.plane.distance;
+  }
 }
 
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {
   if (window.rotations != RotationModel::bias) return "";
   const GyroSensitivity& gyro = *window.gyro;
+  const double bias_rad_s = motion.bias_rad_s.norm();
+  if (bias_rad_s > kMostBias_rad_s)
+    return fmt::format("wrong minimum: a gyroscope bias of {:.2f} rad/s fits best", bias_rad_s);
   const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
   if (sigmas < kMostBiasSigmas) return "";
   return fmt::format(
       "wrong minimum: a gyroscope bias of {:.3f} rad/s fits best, {:.0f} standard "
       "deviations from what is known of it",
-      motion.bias_rad_s.norm(),
+      bias_rad_s,
       sigmas);
 }
 
@@ -153,20 +277,21 @@ Initialization initialize_gpo_joint(const Window& window,
                                     const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
-  const PlaneSolution start = solve_gpo(window, {}, watch);
-  Fit fit = best_fit(task, facing(window, start.motion));
+  SolverReport effort;
+  const PlaneMotion start = best_start(task, effort);
+  auto [fit, bias_rad_s] = best_fit(task, start);
   SolverReport& solver = fit.solution.solver;
-  solver.milliseconds += start.solver.milliseconds;
+  solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
+  fit.solution.motion.bias_rad_s = bias_rad_s;
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
     return failed(wrong, solver);
   Initialization result = deliver(fit.window, fit.solution.motion, solver);
   if (!result.ok) return result;
-  result.uncertainty = uncertainty_of(fit.window, result.plane, result.cameras, fit.rotations);
-  if (fit.rotations == RotationModel::bias) {
-    result.bias_rad_s = fit.solution.motion.bias_rad_s;
-    if (options.time_offset) result.time_offset_s = fit.solution.motion.time_offset_s;
-  }
+  add_uncertainty(task, fit, result);
+  if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
+  if (fit.rotations == RotationModel::bias && options.time_offset)
+    result.time_offset_s = fit.solution.motion.time_offset_s;
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
   return result;
 }

@@ -12,6 +12,7 @@
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/gpo_joint.h"
 #include "engine/initializers/pba.h"
+#include "engine/initializers/plane/other_planes.h"
 #include "engine/initializers/pnp.h"
 #include "engine/initializers/pnp_ba.h"
 
@@ -32,6 +33,14 @@ Initialization plain(const Window& window,
   return initialize(window, watch);
 }
 
+/// The planes as the cameras of a method see them that knows of one only.
+void add_planes(const Window& window, Initialization& result) {
+  result.planes.push_back({window.leader, result.plane});
+  for (const auto& [number, m] : other_planes(window, motion_of(result.plane, result.cameras)))
+    result.planes.push_back(
+        {number, {m.normalized(), result.plane.distance / m.norm()}});
+}
+
 }  // namespace
 
 std::span<const Method> methods() {
@@ -40,16 +49,16 @@ std::span<const Method> methods() {
   using enum RotationModel;
   // clang-format off
   static const std::array table{
-      Method{"gpo",        "GPO",        0x009E73, optimization, true,  per_frame,  known,        {"solver"}, initialize_gpo},
-      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  per_frame,  free,         {}, plain<initialize_pnp>},
-      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  per_frame,  known,        {}, plain<initialize_dbscan>},
-      Method{"ba",         "BA",         0xD55E00, optimization, false, per_frame,  free,         {}, plain<initialize_ba>},
-      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, per_frame,  free,         {}, plain<initialize_pnp_ba>},
-      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  per_frame,  free,         {}, plain<initialize_pba>},
-      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  per_frame,  free,         {}, plain<initialize_fpba>},
-      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  consistent, known,        {}, plain<initialize_closed_form>},
-      Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  consistent, std::nullopt,
-             {"solver", "error", "loss", "shutter", "time_offset"}, initialize_gpo_joint},
+      Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo},
+      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  planes, free,         {}, plain<initialize_pnp>},
+      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>},
+      Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {}, plain<initialize_ba>},
+      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>},
+      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  planes, free,         {}, plain<initialize_pba>},
+      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>},
+      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  planes, known,        {}, plain<initialize_closed_form>},
+      Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  planes, std::nullopt,
+             {"solver", "error", "loss", "shutter", "planes", "time_offset"}, initialize_gpo_joint},
   };
   // clang-format on
   return table;
@@ -57,12 +66,17 @@ std::span<const Method> methods() {
 
 Initialization assessed(const Method& method, const Window& window, Initialization result) {
   if (!result.ok) return result;
-  const auto judged_by = uncertainty_of(window, result.plane, result.cameras, window.rotations);
+  const auto judged_by =
+      method.rotations ? uncertainty_of(window, result.plane, result.cameras, window.rotations)
+                       : result.uncertainty;
   double travel = 0;
   for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
   result.verdict = judged(evidence_of(window),
                           judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
                           travel / result.plane.distance);
+  result.verdict->scene = scene_of(window);
+  result.verdict->plane_shares = plane_shares(window);
+  if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   if (method.rotations)
     result.uncertainty = uncertainty_of(window, result.plane, result.cameras, *method.rotations);
   if (result.verdict->readiness != Readiness::degenerate) return result;

@@ -35,6 +35,13 @@ void check_window(const Recording& recording, const Settings& settings) {
   }
 }
 
+void without_plane(Evaluation& evaluation) {
+  evaluation.pne_deg.reset();
+  evaluation.pne_aligned_deg.reset();
+  evaluation.pde_m.reset();
+  evaluation.pne_bound_deg.reset();
+}
+
 }  // namespace
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
@@ -62,9 +69,12 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   stages.initialize(settings, stop, progress, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
+    // The truth is of one plane, which is taken to be the one with most tracks.
+    const bool leads_truth = settings.plane == 1;
     if (inspection.truth) {
       inspection.evaluation = evaluate(
           *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
+      if (!leads_truth) without_plane(*inspection.evaluation);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
       return place_cube(
@@ -72,7 +82,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     };
     inspection.cube = place(inspection.initialization->plane, Pose{});
     const WindowTruth* truth = inspection.truth.get();
-    if (truth != nullptr && truth->plane && truth->cameras.front())
+    if (leads_truth && truth != nullptr && truth->plane && truth->cameras.front())
       inspection.true_cube = place(*truth->plane, *truth->cameras.front());
   }
   return std::make_shared<const Inspection>(std::move(inspection));

@@ -94,6 +94,42 @@ ordered_json candidates_json(const Inspection& inspection) {
   return candidates;
 }
 
+ordered_json matrix_json(const auto& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(Eigen::VectorXd(row)));
+  return rows;
+}
+
+ordered_json optional_matrix_json(const std::optional<Eigen::Matrix3d>& matrix) {
+  return matrix ? matrix_json(*matrix) : ordered_json(nullptr);
+}
+
+/// The window's planes, the leading one first; without normal and distance where the method failed,
+/// or the cameras do not tell them.
+ordered_json planes_json(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  ordered_json planes = ordered_json::array();
+  const auto add = [&](int number, const PlaneEstimate* estimate) {
+    std::vector<std::int64_t> ids;
+    for (const int j : window.planes[number].tracks) ids.push_back(inspection.tracks->ids[j]);
+    ordered_json plane = {{"number", number + 1}, {"normal", nullptr}, {"distance", nullptr}};
+    if (estimate != nullptr) {
+      plane["normal"] = vector_json(estimate->plane.normal);
+      plane["distance"] = estimate->plane.distance;
+      plane["normal_covariance_rad2"] = optional_matrix_json(estimate->normal_covariance);
+      plane["distance_sigma"] = optional_json(estimate->distance_sigma);
+    }
+    plane["share"] = static_cast<double>(ids.size()) / window.track_count();
+    plane["tracks"] = ids;
+    planes.push_back(std::move(plane));
+  };
+  const std::vector<PlaneEstimate>& found = inspection.initialization->planes;
+  for (const PlaneEstimate& one : found) add(one.number, &one);
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (std::ranges::find(found, k, &PlaneEstimate::number) == found.end()) add(k, nullptr);
+  return planes;
+}
+
 ordered_json metrics_json(const Evaluation& evaluation) {
   return {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
           {"scale", optional_json(evaluation.scale)},
@@ -102,6 +138,14 @@ ordered_json metrics_json(const Evaluation& evaluation) {
           {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
           {"pde_m", optional_json(evaluation.pde_m)},
           {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+}
+
+ordered_json dropped_json(const Inspection& inspection) {
+  ordered_json dropped = ordered_json::array();
+  for (const int j : inspection.initialization->dropped)
+    dropped.push_back(
+        {{"track", inspection.tracks->ids[j]}, {"reason", "beyond the plane's horizon"}});
+  return dropped;
 }
 
 /// Medians of the uncertainties over the window; absent where the truth is from a file.
@@ -118,12 +162,6 @@ ordered_json truth_json(const WindowTruth& truth) {
   return json;
 }
 
-ordered_json matrix_json(const auto& matrix) {
-  ordered_json rows = ordered_json::array();
-  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(Eigen::VectorXd(row)));
-  return rows;
-}
-
 /// World = reference camera, plane distance 1; one center covariance and distance ratio a frame.
 ordered_json uncertainty_json(const Initialization& result) {
   const Uncertainty& u = *result.uncertainty;
@@ -137,6 +175,8 @@ ordered_json uncertainty_json(const Initialization& result) {
   }
   ordered_json json = {{"rotations", to_string(u.rotations)},
                        {"sigma_px", u.sigma_px},
+                       {"tracks", u.tracks},
+                       {"lens", "taken as exact"},
                        {"normal_sigma_deg", u.normal_sigma_deg},
                        {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
                        {"distance_ratios", ratios},
@@ -153,7 +193,9 @@ ordered_json verdict_json(const Verdict& verdict) {
           {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)},
           {"rotation_rms_px", optional_json(verdict.rotation_rms_px)},
           {"noise_px", optional_json(verdict.noise_px)},
-          {"largest_translation", optional_json(verdict.largest_translation)}};
+          {"largest_translation", optional_json(verdict.largest_translation)},
+          {"scene", to_string(verdict.scene)},
+          {"plane_shares", verdict.plane_shares}};
 }
 
 ordered_json growth_json(const Inspection& inspection) {
@@ -284,6 +326,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["unused_settings"] = unused_json(inspection);
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
+  json["planes"] = planes_json(inspection);
   json["plane"] = nullptr;
   if (result.ok) {
     json["plane"] = {{"normal", vector_json(result.plane.normal)},
@@ -298,6 +341,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
+  if (!result.dropped.empty()) json["dropped"] = dropped_json(inspection);
   json["solver"] = {{"iterations", solver.iterations},
                     {"initial_cost", solver.initial_cost},
                     {"final_cost", solver.final_cost},

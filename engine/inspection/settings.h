@@ -19,15 +19,16 @@ namespace gpo {
 struct Settings {
   int start = 0;               ///< reference frame, counts in the recording
   int frames = 30;             ///< length of the window
-  std::string method = "gpo";  ///< key in `methods()`
-  RotationSource rotations = RotationSource::automatic;  ///< gyroscope, else averaging
-  Tracking tracking = Tracking::frame_to_frame;          ///< of the built-in front end
+  std::string method = "gpo_joint";  ///< key in `methods()`
+  RotationSource rotations = RotationSource::automatic;  ///< calibrated gyroscope, else averaging
+  Tracking tracking = Tracking::anchored;                ///< of the built-in front end
   /// Whether tracks off the plane are rejected by homography RANSAC; nothing: as the method's
   /// authors do (`uses_ransac`).
   std::optional<bool> ransac = std::nullopt;
   double ransac_threshold_px = 2.0;  ///< transfer error of an inlier, one-sided
   /// Which tracks count as inliers; nothing: as the method does (`inliers_used`).
   std::optional<Inliers> inliers = std::nullopt;
+  int plane = 1;           ///< of the window's planes that which leads, by their support
   std::uint64_t seed = 1;  ///< of every random choice
   /// Ids of tracks that are left out as if they had never been seen, ascending.
   std::vector<std::int64_t> exclude = {};
@@ -35,6 +36,24 @@ struct Settings {
 
   bool operator==(const Settings&) const = default;
 };
+
+/// Whole sets of settings by one word: the best that we have, which are the defaults; and what the
+/// paper does: corners followed from frame to frame, inliers told frame by frame, the gyroscope as
+/// it is, `gpo` from rest by Ceres.
+enum class Preset { best, paper };
+
+template <>
+struct ChoiceKeys<Preset> {
+  static constexpr const char* name = "preset";
+  static constexpr std::array keys{"best", "paper"};
+};
+
+/// The settings with all that a preset decides as it has it; what it does not, as it was: the
+/// window, the seed, tracks left out, thresholds.
+Settings with_preset(Settings settings, Preset preset);
+
+/// The preset that the settings are an instance of; nothing: modified.
+std::optional<Preset> preset_of(const Settings& settings);
 
 /// What `ransac` comes to. Chosen, or by default on for the methods that need a plane and off for
 /// those that use all tracks (ba, pnp_ba). Throws InputError for an unknown method.

@@ -116,6 +116,7 @@ std::vector<Setting> window_rows() {
            .help = "Where the camera rotations come from",
            .stage = rotations,
            .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
+                     {"raw", "raw", "with rotations as they are", 0x7788AA},
                      {"gyro", "gyro", "with gyroscope", 0x117733},
                      {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
                      {"averaging", "averaging", "with averaged rotations", 0xAA7711},
@@ -157,13 +158,21 @@ void add_inlier_rows(std::vector<Setting>& rows) {
   rows.push_back(row([](auto& s) -> auto& { return s.inliers; },
                      {.key = "inliers",
                       .title = "Inliers",
-                      .help = "Tracks on the plane: told frame by frame, or consistent over the "
-                              "window; default: as the method does",
+                      .help = "Tracks on the plane: told frame by frame, consistent over the window, "
+                              "or those of one of the window's planes",
                       .reader = SettingReader::inlier_test,
                       .advanced = true,
                       .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
-                                {"consistent", "consistent", "with consistent inliers", 0x999933}},
+                                {"consistent", "consistent", "with consistent inliers", 0x999933},
+                                {"planes", "planes", "with inliers by plane", 0x88AA55}},
                       .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.plane; },
+                     {.key = "plane",
+                      .title = "Plane",
+                      .help = "Which of the window's planes leads: 1 has most tracks",
+                      .least = 1,
+                      .most = 9,
+                      .reader = SettingReader::inlier_test}));
   rows.push_back(row([](auto& s) -> auto& { return s.seed; },
                      {.key = "seed",
                       .title = "Seed",
@@ -209,6 +218,12 @@ void add_option_rows(std::vector<Setting>& rows) {
        .help = "Rows read one after another at an estimated pace, or all at once",
        .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
+  add([](auto& s) -> auto& { return s.initializer.planes; },
+      {.key = "planes",
+       .title = "Planes",
+       .help = "All planes of the window at once, or the leading one alone",
+       .words = {{"all-planes", "all", "with all planes", 0x557733},
+                 {"one-plane", "one", "with one plane", 0xCC8899}}});
   add([](auto& s) -> auto& { return s.initializer.time_offset; },
       {.key = "time_offset",
        .title = "Time offset",

@@ -117,7 +117,7 @@ bool Stages::update_truth(const Settings& settings,
 }
 
 bool Stages::update_window(const Settings& settings,
-                           RotationSource source,
+                           RotationSource& source,
                            const std::stop_token& stop) {
   check_excluded(*tracks.value, settings);
   const RansacOptions ransac = ransac_options(settings);
@@ -128,15 +128,24 @@ bool Stages::update_window(const Settings& settings,
                                                    recording->camera,
                                                    recording->timestamps_ns,
                                                    ransac,
-                                                   inliers)));
+                                                   inliers,
+                                                   settings.plane - 1)));
   });
-  Settings turning = rejecting(SettingStage::rotations, settings);
-  turning.rotations = source;
-  return rotations.update(turning, [&]() -> std::optional<Rotations> {
-    Rotations computed =
-        window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
-    return computed.stopped ? std::nullopt : std::optional(std::move(computed));
-  });
+  const auto rotate = [&]() {
+    Settings turning = rejecting(SettingStage::rotations, settings);
+    turning.rotations = source;
+    return rotations.update(turning, [&]() -> std::optional<Rotations> {
+      Rotations computed =
+          window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
+      return computed.stopped ? std::nullopt : std::optional(std::move(computed));
+    });
+  };
+  if (!rotate()) return false;
+  const bool by_default = settings.rotations == RotationSource::automatic;
+  if (!by_default || source != RotationSource::gyro_calibrated || !rotations.value.R_wc.empty())
+    return true;
+  source = RotationSource::gyro;
+  return rotate();
 }
 
 void Stages::initialize(const Settings& settings,
@@ -175,6 +184,13 @@ void Stages::initialize(const Settings& settings,
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
     if (!initialization.verdict && static_cast<int>(growth.value.size()) == settings.frames - 1)
       initialization.verdict = growth.value.back();
+  }
+  if (window.inliers == Inliers::planes && window.planes.empty()) {
+    Verdict verdict;
+    verdict.readiness = Readiness::no_plane;
+    verdict.reason = initialization.reason;
+    verdict.scene = Scene::no_plane;
+    initialization.verdict = std::move(verdict);
   }
   inspection.tracks = tracks.value;
   inspection.truth = truth.value;

@@ -39,7 +39,9 @@ struct Stages {
   bool update_truth(const Settings& settings,
                     const std::stop_token& stop,
                     const Progress& progress);
-  bool update_window(const Settings& settings, RotationSource source, const std::stop_token& stop);
+  /// `source` becomes the gyroscope as it is where pictures were to calibrate it by default, and
+  /// cannot.
+  bool update_window(const Settings& settings, RotationSource& source, const std::stop_token& stop);
   /// The method's result on what the other stages made, with its growth; into `inspection`.
   void initialize(const Settings& settings,
                   const std::stop_token& stop,

@@ -39,8 +39,9 @@ std::string why_no_rotations(const Recording& recording, RotationSource source) 
 }
 
 RotationSource rotation_source_used(const Recording& recording, RotationSource asked) {
-  if (asked == RotationSource::automatic) {
-    return recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  if (asked == RotationSource::automatic || asked == RotationSource::raw) {
+    if (!recording.gyroscope) return RotationSource::averaging;
+    return asked == RotationSource::raw ? RotationSource::gyro : RotationSource::gyro_calibrated;
   }
   if (const std::string why_not = why_no_rotations(recording, asked); !why_not.empty())
     throw SettingError("rotations", fmt::format("{}: {}", to_string(asked), why_not));

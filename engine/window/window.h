@@ -13,13 +13,14 @@
 namespace gpo {
 
 /// Which tracks count as on the plane: in each frame those that agree with its homography (the
-/// paper), or those that agree with the refined homographies in nearly all frames that see them.
-enum class Inliers { per_frame, consistent };
+/// paper); those that agree with the refined homographies in nearly all frames that see them; or
+/// those of one of the planes that are told over the whole window.
+enum class Inliers { per_frame, consistent, planes };
 
 template <>
 struct ChoiceKeys<Inliers> {
   static constexpr const char* name = "inliers";
-  static constexpr std::array keys{"per-frame", "consistent"};
+  static constexpr std::array keys{"per-frame", "consistent", "planes"};
 };
 
 /// How a homography and the best rotation explain one frame's inliers.
@@ -45,9 +46,18 @@ struct ChoiceKeys<RotationModel> {
 struct GyroSensitivity {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< with which R_wc was integrated
   Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< what the sensor's data say of it
-  double prior_sigma_rad_s = 0.01;                        ///< and how surely, each axis
+  double prior_sigma_rad_s = 0.1;                        ///< and how surely, each axis
+  /// Of `bias_rad_s`: what holds the rotations as they are is wrong by that.
+  Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
   std::vector<Eigen::Matrix3d> d_bias;                    ///< one a frame, of its camera axes [s]
   std::vector<Eigen::Vector3d> d_offset;  ///< one a frame, of its camera axes [rad/s]
+};
+
+/// A plane of a window: tracks that keep to one homography a frame over all of it.
+struct WindowPlane {
+  std::vector<int> tracks;                ///< ascending; no track is in two planes
+  std::vector<Eigen::Matrix3d> H_i1;      ///< one a frame, of these tracks [px]; NaN: too few
+  std::vector<std::vector<bool>> inlier;  ///< one a frame and track: seen, and agrees with H_i1
 };
 
 /// A window: all that an initializer may know. Frame 0 of it is the reference frame (frame 1 of the
@@ -60,6 +70,11 @@ struct Window {
   std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   Inliers inliers = Inliers::per_frame;     ///< how they were told
+  /// The plane with most tracks first; empty where inliers are not told by planes, or none was
+  /// found.
+  std::vector<WindowPlane> planes = {};
+  int largest_refused = 0;  ///< tracks of the set that was not taken as a plane, where none was
+  int leader = 0;  ///< the plane whose tracks are the inliers, and of whose distance is the gauge
   std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< what is uncertain of them
   std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope

@@ -6,6 +6,8 @@
 #include "engine/geometry/pose.h"
 #include "engine/initializers/common/uncertainty.h"
 #include "engine/initializers/plane/plane_kernel.h"
+#include "engine/initializers/plane/plane_motion.h"
+#include "engine/initializers/plane/plane_observations.h"
 #include "engine/window/window.h"
 
 #include <optional>
@@ -36,6 +38,12 @@ std::optional<double> normal_sigma_deg(const SharedInformation& information, dou
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
+                                          RotationModel rotations);
+
+/// The same of a solution over several planes whose observations are weighted.
+std::optional<Uncertainty> uncertainty_of(const Window& window,
+                                          const PlaneObservations& observations,
+                                          const PlaneMotion& motion,
                                           RotationModel rotations);
 
 }  // namespace gpo

@@ -13,15 +13,15 @@ namespace gpo {
 namespace {
 
 // Simulated windows (0.5 px of noise): rotations only leave 1.9 to 12 deg, low parallax (4 % of d)
-// 0.17 to 0.41, others less than 0.06.
-constexpr double kWeakSigma_deg = 0.12;
+// 0.17 to 0.41, others less than 0.06; a room 0.1 to 0.4.
+constexpr double kWeakSigma_deg = 0.5;
 constexpr double kDegenerateSigma_deg = 10;
 // The best rotations leave the noise where there is no parallax, twice to six times as much at low
 // parallax.
 constexpr double kDegenerateRotationToNoise = 1.3;
 // Largest |tau|: below 0.0065 without parallax, above 0.042 at low parallax, above 0.24 elsewhere.
 constexpr double kDegenerateTranslation = 0.015;
-constexpr double kWeakTranslation = 0.03;
+constexpr double kWeakTranslation = 0.06;
 
 }  // namespace
 
@@ -45,6 +45,19 @@ WindowEvidence evidence_of(const Window& window) {
   const std::vector<FrameErrors> errors = frame_errors(window);
   for (int i = 1; i < window.frame_count(); ++i) evidence.add(errors[i]);
   return evidence;
+}
+
+Scene scene_of(const Window& window) {
+  if (window.inliers != Inliers::planes) return Scene::not_told;
+  if (window.planes.empty()) return Scene::no_plane;
+  return window.planes.size() == 1 ? Scene::one_plane : Scene::several_planes;
+}
+
+std::vector<double> plane_shares(const Window& window) {
+  std::vector<double> shares;
+  for (const WindowPlane& plane : window.planes)
+    shares.push_back(static_cast<double>(plane.tracks.size()) / window.track_count());
+  return shares;
 }
 
 Verdict judged(const WindowEvidence& evidence,

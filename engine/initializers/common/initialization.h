@@ -89,15 +89,25 @@ struct HomographyCandidate {
   }
 };
 
+/// One of the window's planes as it was found.
+struct PlaneEstimate {
+  int number = 0;  ///< in the window
+  Plane plane;     ///< unit: distance of the leading plane
+  std::optional<Eigen::Matrix3d> normal_covariance = {};  ///< [rad^2], rank 2
+  std::optional<double> distance_sigma = {};              ///< of its distance
+};
+
 /// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
 /// false, `reason` says why and no poses, points or plane are delivered.
 struct Initialization {
   bool ok = false;
   bool stopped = false;  ///< by its watch: a failure that says nothing of the window
   std::string reason;
-  Plane plane;
+  Plane plane;                        ///< the leading one
+  std::vector<PlaneEstimate> planes;  ///< of a window that is told by planes; the leading one first
   std::vector<Pose> cameras;     ///< one a frame
   std::vector<MapPoint> points;  ///< inlier tracks; all that it used of a method without a plane
+  std::vector<int> dropped = {};  ///< inlier tracks beyond the plane's horizon, columns
   SolverReport solver;
   double rms_px = 0;  ///< root mean square reprojection error over the observations used
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< of the gyroscope, where the method estimates it

@@ -44,12 +44,22 @@ struct ChoiceKeys<Shutter> {
   static constexpr std::array keys{"estimated", "global"};
 };
 
+/// Of the window's planes, the leading one alone, or all of them at once.
+enum class Planes { all, one };
+
+template <>
+struct ChoiceKeys<Planes> {
+  static constexpr const char* name = "planes";
+  static constexpr std::array keys{"all", "one"};
+};
+
 /// What a user may choose of the optimizations; all but `solver` are gpo_joint's.
 struct InitializerOptions {
   Solver solver = Solver::schur;
   ErrorModel error = ErrorModel::transfer;
-  Loss loss = Loss::squared;
+  Loss loss = Loss::huber;
   Shutter shutter = Shutter::estimated;
+  Planes planes = Planes::all;
   bool time_offset = false;  ///< estimate the offset between the clocks of camera and gyroscope
 
   bool operator==(const InitializerOptions&) const = default;

@@ -11,18 +11,27 @@
 
 namespace gpo {
 
+/// Of a plane beside the leading one.
+struct PlaneUncertainty {
+  Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
+  double log_distance_sigma = 0;  ///< of the log of its distance from the reference camera [-]
+};
+
 /// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15), in the gauge of an
-/// initialization (world = reference camera, d = 1); independent noise of `sigma_px` on each
-/// coordinate of the inliers, reference points exact, what `rotations` leaves unknown marginalized.
-/// Where a method takes a gyroscope's rotations as known, their bias is wrong as its prior says,
-/// and the result with it.
+/// initialization (world = reference camera, d = 1), what `rotations` leaves unknown marginalized.
+/// It rests on what the residuals say, not on a model of them: errors of a track in all its frames
+/// may share a cause, and so may those of a frame in all its tracks (covariance clustered both
+/// ways). Where a method takes a gyroscope's rotations as known, their bias is wrong as far as it is
+/// unknown, and the result with it. The lens is taken as exact.
 struct Uncertainty {
-  double sigma_px = 0;  ///< from the residuals, unknowns counted
+  double sigma_px = 0;  ///< of a coordinate, from the residuals, unknowns counted
+  int tracks = 0;       ///< on which it rests
   RotationModel rotations = RotationModel::known;
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
   double normal_sigma_deg = 0;                                  ///< root of its trace
   std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
   std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i
+  std::vector<PlaneUncertainty> others;       ///< of the further planes, in their order
   std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope's axes
   /// Cramer-Rao bounds of the normal's angle [deg] at this solution.
   std::optional<double> bound_known_rotations_deg;

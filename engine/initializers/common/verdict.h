@@ -6,16 +6,26 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
 /// Whether a window is fit to initialize from.
-enum class Readiness { ready, weak, degenerate };
+enum class Readiness { ready, weak, degenerate, no_plane };
 
 template <>
 struct ChoiceKeys<Readiness> {
   static constexpr const char* name = "readiness";
-  static constexpr std::array keys{"ready", "weak", "degenerate"};
+  static constexpr std::array keys{"ready", "weak", "degenerate", "no plane"};
+};
+
+/// What the tracks of a window lie on.
+enum class Scene { not_told, one_plane, several_planes, no_plane };
+
+template <>
+struct ChoiceKeys<Scene> {
+  static constexpr const char* name = "scene";
+  static constexpr std::array keys{"not told", "one plane", "several planes", "no plane"};
 };
 
 /// With the numbers that it rests on; what could not be computed is empty.
@@ -26,6 +36,8 @@ struct Verdict {
   std::optional<double> rotation_rms_px;      ///< of the best rotations alone, frame by frame
   std::optional<double> noise_px;             ///< of one coordinate, what the homographies leave
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
+  Scene scene = Scene::not_told;              ///< of inliers that are told by planes
+  std::vector<double> plane_shares = {};      ///< of the window's tracks, one a plane [-]
 };
 
 }  // namespace gpo

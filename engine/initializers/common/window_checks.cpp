@@ -27,6 +27,9 @@ constexpr double kLeastParallaxPx = 0.5;
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
 
+/// Stray tracks; more beyond the horizon make the plane a wrong one.
+constexpr double kMostBeyond = 0.05;
+
 }  // namespace
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
@@ -36,6 +39,13 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
         window.track_count(),
         window.start,
         kLeastInliers);
+  }
+  if (window.inliers == Inliers::planes && window.planes.empty()) {
+    return fmt::format(
+        "no plane: of {} tracks no set stands out that keeps to one homography a frame; the largest "
+        "that was tried has {}",
+        window.track_count(),
+        window.largest_refused);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
     const int inliers = window.inlier_count(i);
@@ -113,15 +123,26 @@ std::optional<std::string> reason_to_distrust(const Window& window,
         found_px,
         expected_px);
   }
-  const Matrix3d K_inverse = window.K.inverse();
-  for (int j = 0; j < window.track_count(); ++j) {
-    const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
-    if (window.inlier[0][j] && !(plane.normal.dot(ray) < 0)) {
-      return fmt::format("wrong minimum: the plane's horizon runs through the points (track {})",
-                         j);
-    }
+  const std::vector<int> beyond = beyond_horizon(window, plane);
+  if (static_cast<double>(beyond.size()) > kMostBeyond * window.inlier_count(0)) {
+    return fmt::format(
+        "wrong minimum: the plane's horizon runs through the points ({} of {} lie beyond it, the "
+        "first is track {})",
+        beyond.size(),
+        window.inlier_count(0),
+        beyond.front());
   }
   return std::nullopt;
+}
+
+std::vector<int> beyond_horizon(const Window& window, const Plane& plane) {
+  const Matrix3d K_inverse = window.K.inverse();
+  std::vector<int> beyond;
+  for (int j = 0; j < window.track_count(); ++j) {
+    const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
+    if (window.inlier[0][j] && !(plane.normal.dot(ray) < 0)) beyond.push_back(j);
+  }
+  return beyond;
 }
 
 Initialization trusted(const Window& window, Initialization result) {

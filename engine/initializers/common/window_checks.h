@@ -29,6 +29,9 @@ std::optional<std::string> reason_to_distrust(const Window& window,
                                               const Plane& plane,
                                               std::span<const Pose> cameras);
 
+/// Inlier tracks that the plane puts behind the reference camera, ascending.
+std::vector<int> beyond_horizon(const Window& window, const Plane& plane);
+
 /// A method's plane and cameras as its result, `ok`; or a failure where they are to be distrusted,
 /// with the solver's report and the candidates.
 Initialization trusted(const Window& window, Initialization result);

@@ -6,6 +6,7 @@
 #include "engine/initializers/common/map_points.h"
 #include "engine/initializers/common/window_checks.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace gpo {
@@ -24,6 +25,10 @@ Initialization delivered(const Window& window, Initialization result) {
   result = trusted(window, std::move(result));
   if (!result.ok) return result;
   result.points = lift_to_plane(window, result.plane, result.cameras);
+  result.dropped = beyond_horizon(window, result.plane);
+  std::erase_if(result.points, [&](const MapPoint& point) {
+    return std::ranges::binary_search(result.dropped, point.track);
+  });
   result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
   return result;
 }
@@ -37,6 +42,9 @@ Initialization deliver(const Window& window,
   if (visible.normal.dot(motion.normal) < 0) turn_normals(result.solver);
   result.plane = {visible.normal, 1};
   result.cameras = cameras_of(visible);
+  if (!window.planes.empty()) result.planes.push_back({window.leader, result.plane});
+  for (const auto& [number, m] : visible.others)
+    result.planes.push_back({number, {m.normalized(), 1 / m.norm()}});
   return delivered(window, std::move(result));
 }
 

@@ -24,6 +24,7 @@ using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 /// vector (3) of its own.
 struct Blocks {
   Eigen::Quaterniond normal = Eigen::Quaterniond::Identity();
+  std::vector<Vector3d> others;
   std::vector<Vector3d> tau;
   Eigen::Vector4d bias_offset = Eigen::Vector4d::Zero();
   std::vector<Vector3d> phi;
@@ -59,25 +60,30 @@ Rotation rotation_at(const Window& window,
   return rotation;
 }
 
-/// Transfer errors of all inliers of one frame (engine/method.md, eq. 7): one block a frame, not
-/// one a point, is what makes the solve fast.
+/// How a plane is parametrized: the leading one by the quaternion of its normal, a further one by m.
+enum class PlaneBlock { direction, m };
+
+/// Transfer errors of one frame's tracks on one plane (engine/method.md, eq. 7): one block a frame,
+/// not one a point, is what makes the solve fast.
 class FrameCost : public ceres::CostFunction {
  public:
   FrameCost(const Window& window,
+            const FrameObservations& observations,
             const PlaneUnknowns& unknowns,
             const Matrix3d& R_wc,
-            const Eigen::Matrix3Xd& rays_1,
-            int frame)
+            int frame,
+            PlaneBlock block)
       : window_(window),
+        observations_(observations),
         unknowns_(unknowns),
+        focal_(Vector3d(window.K(0, 0), window.K(1, 1), 1).asDiagonal()),
         R_wc_(R_wc),
-        rays_1_(rays_1),
         frame_(frame),
-        inliers_(window.inlier_tracks(frame)) {
-    *mutable_parameter_block_sizes() = {4, 3};
+        block_(block) {
+    *mutable_parameter_block_sizes() = {block == PlaneBlock::m ? 3 : 4, 3};
     if (unknowns.rotations != RotationModel::known)
       mutable_parameter_block_sizes()->push_back(rotation_size(unknowns));
-    set_num_residuals(static_cast<int>(2 * inliers_.size()));
+    set_num_residuals(2 * observations.count);
   }
 
   static int rotation_size(const PlaneUnknowns& unknowns) {
@@ -87,45 +93,45 @@ class FrameCost : public ceres::CostFunction {
   bool Evaluate(const double* const* parameters,
                 double* residuals,
                 double** jacobians) const override {
-    const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
     const Eigen::Map<const Vector3d> tau(parameters[1]);
-    const Vector3d normal = direction(q);
-    const Eigen::Matrix<double, 3, 4> d_q = direction_jacobian(q);
+    Vector3d m = Eigen::Map<const Vector3d>(parameters[0]);
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_m = Matrix3d::Identity();
+    if (block_ == PlaneBlock::direction) {
+      const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
+      m = direction(q);
+      d_m = direction_jacobian(q);
+    }
     const bool rotates = unknowns_.rotations != RotationModel::known;
     const Rotation rotation = rotates
                                   ? rotation_at(window_, unknowns_, R_wc_, frame_, parameters[2])
                                   : Rotation{R_wc_, {}};
-    for (std::size_t k = 0; k < inliers_.size(); ++k) {
-      const Transfer transfer =
-          transfer_on_plane(window_.K, rotation.R_wc, rays_1_.col(inliers_[k]), normal, tau);
+    for (int k = 0; k < observations_.count; ++k) {
+      const Vector3d ray_1(observations_.ray_x[k], observations_.ray_y[k], 1);
+      const Transfer transfer = transfer_on_plane(focal_, rotation.R_wc, ray_1, m, tau);
       if (!transfer.in_front) return false;
+      const double weight = observations_.mask[k];
       Eigen::Map<Eigen::Vector2d> residual(residuals + 2 * k);
-      residual = transfer.pixel - window_.points_px[frame_].col(inliers_[k]);
-      if (jacobians == nullptr) continue;
-      if (jacobians[0] != nullptr) {
-        Eigen::Map<RowMajor<2, 4>> J(jacobians[0] + 8 * k);
-        J = transfer.d_normal * d_q;
-      }
-      if (jacobians[1] != nullptr) {
-        Eigen::Map<RowMajor<2, 3>> J(jacobians[1] + 6 * k);
-        J = transfer.d_tau;
-      }
-      if (rotates && jacobians[2] != nullptr) {
-        const Eigen::Index size = rotation.d_parameters.cols();
-        Eigen::Map<RowMajor<2, Eigen::Dynamic>> J(jacobians[2] + 2 * size * k, 2, size);
-        J = transfer.d_rotation * rotation.d_parameters;
-      }
+      residual = weight * (transfer.pixel - Eigen::Vector2d(observations_.u[k], observations_.v[k]));
+      const auto write = [&](int block, const auto& J) {
+        if (jacobians == nullptr || jacobians[block] == nullptr) return;
+        Eigen::Map<RowMajor<2, Eigen::Dynamic>>(
+            jacobians[block] + 2 * J.cols() * k, 2, J.cols()) = weight * J;
+      };
+      write(0, (transfer.d_normal * d_m).eval());
+      write(1, transfer.d_tau);
+      if (rotates) write(2, (transfer.d_rotation * rotation.d_parameters).eval());
     }
     return true;
   }
 
  private:
   const Window& window_;
+  const FrameObservations& observations_;
   const PlaneUnknowns& unknowns_;
+  Matrix3d focal_;
   Matrix3d R_wc_;
-  const Eigen::Matrix3Xd& rays_1_;
   int frame_;
-  std::vector<int> inliers_;
+  PlaneBlock block_;
 };
 
 /// Gaussian priors on the bias and the time offset, in pixels of the noise.
@@ -158,6 +164,7 @@ class PriorCost : public ceres::CostFunction {
 Blocks blocks_of(const PlaneMotion& motion) {
   Blocks blocks;
   blocks.normal = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), motion.normal);
+  for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
   blocks.tau = motion.tau;
   blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
   blocks.phi.assign(motion.tau.size(), Vector3d::Zero());
@@ -170,6 +177,7 @@ PlaneMotion motion_of(const Window& window,
                       const Blocks& blocks) {
   PlaneMotion motion = start;
   motion.normal = direction(blocks.normal).normalized();
+  for (std::size_t k = 0; k < blocks.others.size(); ++k) motion.others[k].m = blocks.others[k];
   motion.tau = blocks.tau;
   motion.bias_rad_s = blocks.bias_offset.head<3>();
   motion.time_offset_s = blocks.bias_offset(3);
@@ -184,11 +192,11 @@ PlaneMotion motion_of(const Window& window,
 }  // namespace
 
 PlaneSolution solve_plane_with_ceres(const Window& window,
+                                     const PlaneObservations& observations,
                                      const PlaneMotion& start,
                                      const PlaneUnknowns& unknowns,
                                      const Watch& watch,
                                      double cost_tolerance) {
-  const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
   Blocks blocks = blocks_of(start);
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -205,12 +213,22 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
         new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
     ordering->AddElementToGroup(blocks.bias_offset.data(), 1);
   }
+  for (Vector3d& m : blocks.others) {
+    problem.AddParameterBlock(m.data(), 3);
+    ordering->AddElementToGroup(m.data(), 1);
+  }
   for (int i = 1; i < window.frame_count(); ++i) {
-    std::vector<double*> parameters{normal, blocks.tau[i].data()};
-    if (shared) parameters.push_back(blocks.bias_offset.data());
-    if (unknowns.rotations == RotationModel::free) parameters.push_back(blocks.phi[i].data());
-    problem.AddResidualBlock(
-        new FrameCost(window, unknowns, start.R_wc[i], rays_1, i), nullptr, parameters);
+    const auto add = [&](double* plane, const FrameObservations& f, PlaneBlock block) {
+      if (f.count == 0) return;
+      std::vector<double*> parameters{plane, blocks.tau[i].data()};
+      if (shared) parameters.push_back(blocks.bias_offset.data());
+      if (unknowns.rotations == RotationModel::free) parameters.push_back(blocks.phi[i].data());
+      problem.AddResidualBlock(
+          new FrameCost(window, f, unknowns, start.R_wc[i], i, block), nullptr, parameters);
+    };
+    add(normal, observations.frames[i], PlaneBlock::direction);
+    for (std::size_t k = 0; k < blocks.others.size(); ++k)
+      add(blocks.others[k].data(), observations.others[k][i], PlaneBlock::m);
     ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
     if (unknowns.rotations == RotationModel::free)
       ordering->AddElementToGroup(blocks.phi[i].data(), 1);

@@ -38,6 +38,7 @@ PlaneMotion facing(const Window& window, PlaneMotion motion) {
   }
   if (in_front > 0) return motion;
   motion.normal = -motion.normal;
+  for (OtherPlane& other : motion.others) other.m = -other.m;
   for (Eigen::Vector3d& tau : motion.tau) tau = -tau;
   return motion;
 }
@@ -65,6 +66,16 @@ FrameState frame_state(const PlaneObservations& observations,
           normal_tangents(motion.normal),
           observations.fx,
           observations.fy};
+}
+
+FrameState frame_state(const PlaneObservations& observations,
+                       const PlaneMotion& motion,
+                       int frame,
+                       const Eigen::Vector3d& m) {
+  FrameState state = frame_state(observations, motion, frame);
+  state.normal = m;
+  state.tangents = m.norm() * normal_tangents(m.normalized());
+  return state;
 }
 
 Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal) {

@@ -15,11 +15,19 @@
 
 namespace gpo {
 
-/// The unknowns of an optimization over a plane: world = reference camera, plane distance 1. Of the
+/// A plane beside the leading one, m.P + 1 = 0.
+struct OtherPlane {
+  int number = 0;                                ///< in the window
+  Eigen::Vector3d m = -Eigen::Vector3d::UnitZ();  ///< n / d [1 / distance of the leading plane]
+};
+
+/// The unknowns of an optimization over planes: world = reference camera, the leading plane's
+/// distance 1. Of the
 /// two solutions with the same pictures, (n, tau) and (-n, -tau), `facing` is the one that is seen.
 struct PlaneMotion {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  std::vector<Eigen::Vector3d> tau;                      ///< one a frame, -p_wc
+  std::vector<OtherPlane> others = {};       ///< further planes that are seen from these cameras
+  std::vector<Eigen::Vector3d> tau;          ///< one a frame, -p_wc
   std::vector<Eigen::Matrix3d> R_wc;                     ///< one a frame
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< where the rotations depend on it
   double time_offset_s = 0;  ///< added to the gyroscope's own, where they depend on it
@@ -40,6 +48,12 @@ Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const Plane
 
 /// Where a frame's errors are linearized.
 FrameState frame_state(const PlaneObservations& observations, const PlaneMotion& motion, int frame);
+/// The same for another plane's, m = n / d of it in the leading plane's place; the tangents are
+/// those of n times the length of m.
+FrameState frame_state(const PlaneObservations& observations,
+                       const PlaneMotion& motion,
+                       int frame,
+                       const Eigen::Vector3d& m);
 
 /// Two orthonormal directions in which a normal moves, and where it comes to.
 Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);

@@ -18,15 +18,7 @@ void pad(FrameObservations& f) {
   f.mask.resize(size, 0);
 }
 
-}  // namespace
-
-int PlaneObservations::count() const {
-  int sum = 0;
-  for (const FrameObservations& frame : frames) sum += frame.count;
-  return sum;
-}
-
-FrameObservations frame_observations(const Window& window, int frame) {
+FrameObservations gathered(const Window& window, int frame, const std::vector<bool>& inlier) {
   FrameObservations f;
   if (frame == 0) return f;
   const Eigen::Matrix3d& K = window.K;
@@ -36,22 +28,42 @@ FrameObservations frame_observations(const Window& window, int frame) {
   const double to_y = 1 / K(1, 1);
   resize(f, window.track_count() + kKernelWidth);
   for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.inlier[frame][j]) continue;
+    if (!inlier[j]) continue;
     f.ray_x[f.count] = to_x * (from(0, j) - K(0, 2));
     f.ray_y[f.count] = to_y * (from(1, j) - K(1, 2));
     f.u[f.count] = to(0, j) - K(0, 2);
     f.v[f.count] = to(1, j) - K(1, 2);
     f.mask[f.count] = 1;
+    f.track.push_back(j);
     ++f.count;
   }
   pad(f);
   return f;
 }
 
-PlaneObservations plane_observations(const Window& window) {
+}  // namespace
+
+int PlaneObservations::count() const {
+  int sum = 0;
+  for (const FrameObservations& frame : frames) sum += frame.count;
+  for (const auto& plane : others)
+    for (const FrameObservations& frame : plane) sum += frame.count;
+  return sum;
+}
+
+FrameObservations frame_observations(const Window& window, int frame) {
+  return gathered(window, frame, window.inlier[frame]);
+}
+
+PlaneObservations plane_observations(const Window& window, std::span<const int> others) {
   PlaneObservations observations{window.K(0, 0), window.K(1, 1), {}};
   for (int i = 0; i < window.frame_count(); ++i)
     observations.frames.push_back(frame_observations(window, i));
+  for (const int plane : others) {
+    auto& frames = observations.others.emplace_back();
+    for (int i = 0; i < window.frame_count(); ++i)
+      frames.push_back(gathered(window, i, window.planes[plane].inlier[i]));
+  }
   return observations;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/initializers/plane/plane_kernel.h"
 #include "engine/initializers/plane/plane_weights.h"
+#include "engine/initializers/plane/shared_unknowns.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,14 +33,22 @@ using KnownRotations = Split<2, 3>;     // normal | t
 using UnknownBias = Split<5, 3>;        // normal, bias | t
 using UnknownBiasOffset = Split<6, 3>;  // normal, bias, time offset | t
 using FreeRotations = Split<2, 6>;      // normal | phi, t
+// Of several planes, as many as there are (`Layout`).
+using SeveralPlanes = Split<Eigen::Dynamic, 3>;
+using SeveralPlanesFree = Split<Eigen::Dynamic, 6>;
+
+template <class S>
+constexpr bool kSeveral = S::kShared == Eigen::Dynamic;
+template <class S>
+constexpr int kMost = kSeveral<S> ? kMostShared : S::kShared;
 
 /// Normal equations of a frame over shared and own unknowns, from those over (u, phi, t).
 template <class S>
 struct SplitNormals {
-  Eigen::Matrix<double, S::kShared, S::kShared> ss;
-  Eigen::Matrix<double, S::kShared, S::kOwn> so;
+  Eigen::Matrix<double, S::kShared, S::kShared, 0, kMost<S>, kMost<S>> ss;
+  Eigen::Matrix<double, S::kShared, S::kOwn, 0, kMost<S>, S::kOwn> so;
   Eigen::Matrix<double, S::kOwn, S::kOwn> oo;
-  Eigen::Matrix<double, S::kShared, 1> s;
+  Eigen::Matrix<double, S::kShared, 1, 0, kMost<S>, 1> s;
   Eigen::Matrix<double, S::kOwn, 1> o;
 };
 
@@ -81,9 +90,36 @@ SplitNormals<S> split(const FrameNormals& f,
   }
 }
 
+/// Adds one plane's share of a frame.
+template <class S>
+void add_plane(const FrameNormals& f,
+               const Layout& layout,
+               int plane,
+               const PlaneColumns& M,
+               SplitNormals<S>& sum) {
+  const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ * M;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM = M.transpose() * FM;
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose() * f.Jtr;
+  const int p = Layout::of_plane(plane);
+  const int n = Layout::size_of_plane(plane);
+  const int g = layout.of_gyro();
+  const int b = layout.gyro;
+  sum.ss.block(p, p, n, n) += MFM.topLeftCorner(n, n);
+  sum.ss.block(p, g, n, b) += MFM.topRightCorner(n, b);
+  sum.ss.block(g, p, b, n) += MFM.bottomLeftCorner(b, n);
+  sum.ss.block(g, g, b, b) += MFM.bottomRightCorner(b, b);
+  sum.so.middleRows(p, n) += FM.leftCols(n).template bottomRows<S::kOwn>().transpose();
+  sum.so.middleRows(g, b) += FM.rightCols(b).template bottomRows<S::kOwn>().transpose();
+  sum.oo += f.JtJ.template bottomRightCorner<S::kOwn, S::kOwn>();
+  sum.s.segment(p, n) += Mr.head(n);
+  sum.s.segment(g, b) += Mr.tail(b);
+  sum.o += f.Jtr.template tail<S::kOwn>();
+}
+
 /// All frames linearized at a state.
 struct Linearized {
   std::vector<FrameNormals> frames;
+  std::vector<std::vector<FrameNormals>> others;  ///< of each further plane
   double cost = 0;  ///< with the priors' share
   bool in_front = true;
 };
@@ -91,8 +127,8 @@ struct Linearized {
 template <class S>
 class PlaneProblem {
  public:
-  using SharedVector = Eigen::Matrix<double, S::kShared, 1>;
-  using SharedMatrix = Eigen::Matrix<double, S::kShared, S::kShared>;
+  using SharedVector = Eigen::Matrix<double, S::kShared, 1, 0, kMost<S>, 1>;
+  using SharedMatrix = Eigen::Matrix<double, S::kShared, S::kShared, 0, kMost<S>, kMost<S>>;
   using OwnVector = Eigen::Matrix<double, S::kOwn, 1>;
 
   struct Step {
@@ -105,7 +141,7 @@ class PlaneProblem {
 
   /// A frame's own unknowns are -(rest + gain shared).
   struct Eliminated {
-    Eigen::Matrix<double, S::kOwn, S::kShared> gain;
+    Eigen::Matrix<double, S::kOwn, S::kShared, 0, S::kOwn, kMost<S>> gain;
     OwnVector rest;
     OwnVector gradient;
   };
@@ -113,23 +149,29 @@ class PlaneProblem {
   PlaneProblem(const Window& window,
                const PlaneObservations& observations,
                const PlaneUnknowns& unknowns)
-      : window_(window), observations_(observations), unknowns_(unknowns) {}
+      : window_(window),
+        observations_(observations),
+        unknowns_(unknowns),
+        layout_{static_cast<int>(observations.others.size()),
+                unknowns.rotations != RotationModel::bias ? 0
+                : unknowns.time_offset                    ? 4
+                                                          : 3} {}
 
   int frame_count() const { return window_.frame_count(); }
-  int unknown_count() const { return S::kShared + S::kOwn * (frame_count() - 1); }
+  int unknown_count() const { return layout_.size() + S::kOwn * (frame_count() - 1); }
 
   Linearized linearize(const PlaneMotion& motion) const {
-    constexpr Rotating rotating = S::kShared + S::kOwn > 5 ? Rotating::yes : Rotating::no;
     Linearized all;
     all.frames.resize(frame_count());
+    all.others.resize(observations_.others.size(), std::vector<FrameNormals>(frame_count()));
     all.cost = prior_cost(motion);
     for (int i = 1; i < frame_count(); ++i) {
-      const FrameObservations& f = observations_.frames[i];
       const FrameState state = frame_state(observations_, motion, i);
-      all.frames[i] =
-          f.weight.empty() ? frame_normals(f, state, rotating) : frame_normals_by_matrix(f, state);
-      all.cost += all.frames[i].cost;
-      all.in_front = all.in_front && all.frames[i].in_front;
+      all.frames[i] = normals_of(observations_.frames[i], state, all);
+      for (std::size_t k = 0; k < observations_.others.size(); ++k) {
+        const FrameState other = frame_state(observations_, motion, i, motion.others[k].m);
+        all.others[k][i] = normals_of(observations_.others[k][i], other, all);
+      }
     }
     return all;
   }
@@ -137,14 +179,14 @@ class PlaneProblem {
   /// The damped Gauss-Newton step: own unknowns eliminated, the shared ones solved for, the own
   /// ones substituted back.
   Step step(const Linearized& at, const PlaneMotion& motion, double damping) const {
-    SharedMatrix reduced = SharedMatrix::Zero();
-    SharedVector right = SharedVector::Zero();
+    SharedMatrix reduced = SharedMatrix::Zero(layout_.size(), layout_.size());
+    SharedVector right = SharedVector::Zero(layout_.size());
     add_priors(motion, reduced, right);
     SharedVector gradient = right;
     SharedVector diagonal = reduced.diagonal();
     std::vector<Eliminated> frames(frame_count());
     for (int i = 1; i < frame_count(); ++i) {
-      SplitNormals<S> f = split<S>(at.frames[i], window_, motion, i);
+      SplitNormals<S> f = split_frame(at, motion, i);
       f.oo.diagonal() *= 1 + damping;
       const Eigen::LLT<Eigen::Matrix<double, S::kOwn, S::kOwn>> factor(f.oo);
       frames[i] = {factor.solve(f.so.transpose()), factor.solve(f.o), f.o};
@@ -175,10 +217,16 @@ class PlaneProblem {
     SharedVector shared = prior_gradient(motion);
     double largest = 0;
     for (int i = 1; i < frame_count(); ++i) {
+      if constexpr (kSeveral<S>) {
+        const SplitNormals<S> f = split_frame(at, motion, i);
+        shared += f.s;
+        largest = std::max(largest, f.o.cwiseAbs().maxCoeff());
+        continue;
+      }
       const Eigen::Matrix<double, 8, 1>& Jtr = at.frames[i].Jtr;
       if constexpr (S::kShared == 2) {
         shared += Jtr.head<2>();
-      } else {
+      } else if constexpr (!kSeveral<S>) {
         shared += shared_columns<S>(window_, motion, i).transpose() * Jtr.head<5>();
       }
       largest = std::max(largest, Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
@@ -189,13 +237,19 @@ class PlaneProblem {
   PlaneMotion moved(const PlaneMotion& from, const Step& step) const {
     PlaneMotion to = from;
     to.normal = moved_normal(from.normal, step.shared.template head<2>());
-    if constexpr (S::kShared > 2) to.bias_rad_s += step.shared.template segment<3>(2);
-    if constexpr (S::kShared == 6) to.time_offset_s += step.shared(5);
+    for (int k = 0; kSeveral<S> && k < layout_.others; ++k) {
+      const Eigen::Vector3d u_s = step.shared.segment(Layout::of_plane(k + 1), 3);
+      const double length = from.others[k].m.norm();
+      to.others[k].m = length * std::exp(u_s(2)) *
+                       moved_normal(from.others[k].m / length, u_s.head<2>());
+    }
+    if (has_gyro()) to.bias_rad_s += step.shared.template segment<3>(layout_.of_gyro());
+    if (has_clock()) to.time_offset_s += step.shared(layout_.of_gyro() + 3);
     for (int i = 1; i < frame_count(); ++i) {
       to.tau[i] += from.R_wc[i] * step.own[i].template tail<3>();
       if constexpr (S::kOwn == 6) {
         to.R_wc[i] = from.R_wc[i] * so3_exp(step.own[i].template head<3>());
-      } else if constexpr (S::kShared > 2) {
+      } else if (has_gyro()) {
         to.R_wc[i] = window_.R_wc[i] * so3_exp(gyro_correction_rad(window_, i, to));
       }
     }
@@ -203,30 +257,67 @@ class PlaneProblem {
   }
 
  private:
+  // False at compile time where there is no room for them.
+  bool has_gyro() const { return (kSeveral<S> || S::kShared > 2) && layout_.gyro > 0; }
+  bool has_clock() const { return (kSeveral<S> || S::kShared == 6) && layout_.gyro == 4; }
+
+  FrameNormals normals_of(const FrameObservations& f,
+                          const FrameState& state,
+                          Linearized& all) const {
+    const bool rotating = S::kOwn == 6 || has_gyro();
+    FrameNormals normals =
+        f.weight.empty() ? frame_normals(f, state, rotating ? Rotating::yes : Rotating::no)
+                         : frame_normals_by_matrix(f, state);
+    all.cost += normals.cost;
+    all.in_front = all.in_front && normals.in_front;
+    return normals;
+  }
+
+  SplitNormals<S> split_frame(const Linearized& at, const PlaneMotion& motion, int frame) const {
+    if constexpr (!kSeveral<S>) {
+      return split<S>(at.frames[frame], window_, motion, frame);
+    } else {
+      const int size = layout_.size();
+      SplitNormals<S> sum;
+      sum.ss.setZero(size, size);
+      sum.so.setZero(size, S::kOwn);
+      sum.oo.setZero();
+      sum.s.setZero(size);
+      sum.o.setZero();
+      const auto gyro = gyro_columns(window_, motion, frame, layout_.gyro);
+      const Eigen::Vector3d tau_c = motion.R_wc[frame].transpose() * motion.tau[frame];
+      add_plane<S>(at.frames[frame], layout_, 0, plane_columns(0, tau_c, gyro), sum);
+      for (int k = 0; k < layout_.others; ++k)
+        add_plane<S>(
+            at.others[k][frame], layout_, k + 1, plane_columns(k + 1, tau_c, gyro), sum);
+      return sum;
+    }
+  }
+
   double prior_cost(const PlaneMotion& motion) const {
     double cost = 0;
-    if constexpr (S::kShared > 2) {
+    if (has_gyro())
       cost += 0.5 * bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s).squaredNorm();
-    }
-    if constexpr (S::kShared == 6) {
+    if (has_clock())
       cost += 0.5 * offset_weight() * motion.time_offset_s * motion.time_offset_s;
-    }
     return cost;
   }
 
   SharedVector prior_gradient(const PlaneMotion& motion) const {
-    SharedVector gradient = SharedVector::Zero();
-    if constexpr (S::kShared > 2) {
-      gradient.template segment<3>(2) =
+    SharedVector gradient = SharedVector::Zero(layout_.size());
+    if (has_gyro()) {
+      gradient.template segment<3>(layout_.of_gyro()) =
           bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s);
     }
-    if constexpr (S::kShared == 6) gradient(5) = offset_weight() * motion.time_offset_s;
+    if (has_clock())
+      gradient(layout_.of_gyro() + 3) = offset_weight() * motion.time_offset_s;
     return gradient;
   }
 
   void add_priors(const PlaneMotion& motion, SharedMatrix& JtJ, SharedVector& Jtr) const {
-    if constexpr (S::kShared > 2) JtJ.diagonal().template segment<3>(2).array() += bias_weight();
-    if constexpr (S::kShared == 6) JtJ(5, 5) += offset_weight();
+    const int g = layout_.of_gyro();
+    if (has_gyro()) JtJ.diagonal().template segment<3>(g).array() += bias_weight();
+    if (has_clock()) JtJ(g + 3, g + 3) += offset_weight();
     Jtr += prior_gradient(motion);
   }
 
@@ -242,6 +333,7 @@ class PlaneProblem {
   const Window& window_;
   const PlaneObservations& observations_;
   const PlaneUnknowns& unknowns_;
+  const Layout layout_;
 };
 
 template <class S>
@@ -305,7 +397,10 @@ PlaneSolution solve_plane(const Window& window,
                           const PlaneUnknowns& unknowns,
                           const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto solve = unknowns.rotations == RotationModel::known  ? solve_split<KnownRotations>
+  const bool several = !observations.others.empty();
+  const bool free = unknowns.rotations == RotationModel::free;
+  const auto solve = several ? (free ? solve_split<SeveralPlanesFree> : solve_split<SeveralPlanes>)
+                     : unknowns.rotations == RotationModel::known  ? solve_split<KnownRotations>
                      : unknowns.rotations == RotationModel::free ? solve_split<FreeRotations>
                      : unknowns.time_offset                      ? solve_split<UnknownBiasOffset>
                                                                  : solve_split<UnknownBias>;

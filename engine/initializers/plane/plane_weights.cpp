@@ -36,6 +36,38 @@ Matrix2d slope(const FrameObservations& f, const FrameState& state, int k) {
   return (H.topLeftCorner<2, 2>() - y.hnormalized() * H.bottomLeftCorner<1, 2>()) / y.z();
 }
 
+/// Transfer error of an observation [px].
+Vector2d error_of(const FrameObservations& f, const FrameState& state, int k) {
+  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
+  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
+  return {state.fx * y.x() / y.z() - f.u[k], state.fy * y.y() / y.z() - f.v[k]};
+}
+
+double huber_weight(double length_px, double sigma_px) {
+  return std::min(1.0, kHuberSigmas * sigma_px / std::max(length_px, 1e-12));
+}
+
+/// Of Huber's loss alone a weight is a number, which the kernel takes as it does its mask.
+void reweigh_by_huber(const FrameState& state, double sigma_px, FrameObservations& f) {
+  for (int k = 0; k < f.count; ++k)
+    f.mask[k] = std::sqrt(huber_weight(error_of(f, state, k).norm(), sigma_px));
+}
+
+void reweigh(const FrameState& state,
+             const InitializerOptions& options,
+             double sigma_px,
+             FrameObservations& f) {
+  if (options.error == ErrorModel::transfer) return reweigh_by_huber(state, sigma_px, f);
+  f.weight.assign(f.count, Matrix2d::Identity());
+  for (int k = 0; k < f.count; ++k) {
+    const Matrix2d J = slope(f, state, k);
+    f.weight[k] = 2 * (Matrix2d::Identity() + J * J.transpose()).inverse();
+    if (options.loss != Loss::huber) continue;
+    const Vector2d r = transfer_of(f, state, k).pixel - Vector2d(f.u[k], f.v[k]);
+    f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), sigma_px);
+  }
+}
+
 }  // namespace
 
 bool is_weighted(const InitializerOptions& options) {
@@ -47,21 +79,32 @@ void reweigh(const PlaneMotion& motion,
              double sigma_px,
              PlaneObservations& observations) {
   for (std::size_t i = 1; i < observations.frames.size(); ++i) {
-    FrameObservations& f = observations.frames[i];
-    const FrameState state = frame_state(observations, motion, static_cast<int>(i));
-    f.weight.assign(f.count, Matrix2d::Identity());
-    for (int k = 0; k < f.count; ++k) {
-      if (options.error == ErrorModel::sampson) {
-        const Matrix2d J = slope(f, state, k);
-        f.weight[k] = 2 * (Matrix2d::Identity() + J * J.transpose()).inverse();
-      }
-      if (options.loss == Loss::huber) {
-        const Vector2d r = transfer_of(f, state, k).pixel - Vector2d(f.u[k], f.v[k]);
-        const double length = std::sqrt(r.dot(f.weight[k] * r));
-        f.weight[k] *= std::min(1.0, kHuberSigmas * sigma_px / std::max(length, 1e-12));
-      }
+    const int frame = static_cast<int>(i);
+    reweigh(frame_state(observations, motion, frame), options, sigma_px, observations.frames[i]);
+    for (std::size_t k = 0; k < observations.others.size(); ++k) {
+      const FrameState state = frame_state(observations, motion, frame, motion.others[k].m);
+      reweigh(state, options, sigma_px, observations.others[k][i]);
     }
   }
+}
+
+double loss_beyond_weights(const PlaneMotion& motion,
+                           const InitializerOptions& options,
+                           double sigma_px,
+                           const PlaneObservations& observations) {
+  if (options.loss != Loss::huber || options.error != ErrorModel::transfer) return 0;
+  const double knee_px = kHuberSigmas * sigma_px;
+  double sum = 0;
+  const auto add = [&](const FrameObservations& f, const FrameState& state) {
+    for (int k = 0; k < f.count; ++k)
+      sum += 0.5 * knee_px * std::max(0.0, error_of(f, state, k).norm() - knee_px);
+  };
+  for (int i = 1; i < static_cast<int>(observations.frames.size()); ++i) {
+    add(observations.frames[i], frame_state(observations, motion, i));
+    for (std::size_t k = 0; k < observations.others.size(); ++k)
+      add(observations.others[k][i], frame_state(observations, motion, i, motion.others[k].m));
+  }
+  return sum;
 }
 
 FrameNormals frame_normals_by_matrix(const FrameObservations& f, const FrameState& state) {

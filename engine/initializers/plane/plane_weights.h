@@ -20,6 +20,14 @@ void reweigh(const PlaneMotion& motion,
              double sigma_px,
              PlaneObservations& observations);
 
+/// By how much Huber's loss of all observations exceeds what iteratively reweighted least squares
+/// minimize: k (|r| - k) / 2 beyond the knee k. Solutions with different weights compare by the sum.
+/// Zero of the squared loss, and of Sampson's error, whose weights hardly differ.
+double loss_beyond_weights(const PlaneMotion& motion,
+                           const InitializerOptions& options,
+                           double sigma_px,
+                           const PlaneObservations& observations);
+
 /// The normal equations of a frame of which each observation has a weight matrix of its own.
 FrameNormals frame_normals_by_matrix(const FrameObservations& observations,
                                      const FrameState& state);

@@ -5,6 +5,8 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include <Eigen/LU>
 
@@ -36,6 +38,18 @@ Pose pose_after(const PlaneMotion& motion, int frame, const Velocity& velocity, 
           -(motion.tau[frame] + seconds * velocity.tau_s)};
 }
 
+/// The plane of each track; nothing of one that lies on none.
+std::vector<std::optional<Plane>> planes_of_tracks(const Window& window, const PlaneMotion& motion) {
+  std::vector<std::optional<Plane>> planes(window.track_count());
+  for (const std::vector<bool>& inlier : window.inlier)
+    for (int j = 0; j < window.track_count(); ++j)
+      if (inlier[j]) planes[j] = Plane{motion.normal, 1};
+  for (const OtherPlane& other : motion.others)
+    for (const int j : window.planes[other.number].tracks)
+      planes[j] = Plane{other.m.normalized(), 1 / other.m.norm()};
+  return planes;
+}
+
 }  // namespace
 
 Window without_rolling_shutter(const Window& window,
@@ -44,16 +58,16 @@ Window without_rolling_shutter(const Window& window,
   Window corrected = window;
   corrected.errors.clear();
   const Eigen::Matrix3d K_inverse = window.K.inverse();
-  const Plane plane{motion.normal, 1};
+  const auto planes = planes_of_tracks(window, motion);
   for (int i = 0; i < window.frame_count(); ++i) {
     const Velocity velocity = velocity_at(window, motion, i);
     const Pose at_stamp = pose_after(motion, i, velocity, 0);
     for (int j = 0; j < window.track_count(); ++j) {
-      if (!window.inlier[i][j]) continue;
+      if (!planes[j] || !window.points_px[i].col(j).allFinite()) continue;
       const Vector2d& seen_px = window.points_px[i].col(j);
       const double seconds = row_delay_s * (seen_px.y() - window.K(1, 2));
       const auto point = intersect(
-          plane, pose_after(motion, i, velocity, seconds), K_inverse * seen_px.homogeneous());
+          *planes[j], pose_after(motion, i, velocity, seconds), K_inverse * seen_px.homogeneous());
       if (!point) continue;
       corrected.points_px[i].col(j) = (window.K * to_camera(at_stamp, *point)).hnormalized();
     }

@@ -44,6 +44,7 @@ TEST(Inspector, KeepsTheTracksOfBothTrackings) {
   Inspector inspector(desk());
   Settings settings;
   settings.frames = 12;
+  settings.tracking = Tracking::frame_to_frame;
   const auto drifting = inspector.inspect(settings);
   settings.tracking = Tracking::anchored;
   const auto held = inspector.inspect(settings);
@@ -62,7 +63,8 @@ TEST(Inspector, KeepsTheTracksOfBothTrackings) {
 
 TEST(Inspector, TellsInliersAsChosen) {
   Inspector inspector(desk());
-  Settings settings{.frames = 12, .tracking = Tracking::anchored};
+  Settings settings{.frames = 12};
+  settings.inliers = Inliers::per_frame;
   const auto per_frame = inspector.inspect(settings);
   settings.inliers = Inliers::consistent;
   const auto consistent = inspector.inspect(settings);
@@ -71,6 +73,11 @@ TEST(Inspector, TellsInliersAsChosen) {
   EXPECT_EQ(to_json(*per_frame)["settings"]["inliers"], "per-frame");
   EXPECT_EQ(to_json(*consistent)["settings"]["inliers"], "consistent");
   EXPECT_THAT(to_text(*consistent), HasSubstr("tracks, consistent"));
+  settings.inliers.reset();
+  const auto planes = inspector.inspect(settings);
+  EXPECT_EQ(to_json(*planes)["settings"]["inliers"], "planes");
+  EXPECT_EQ(planes->window->planes[0].tracks.size(), to_json(*planes)["planes"][0]["tracks"].size());
+  settings.inliers = Inliers::consistent;
   settings.ransac = false;
   const auto all = inspector.inspect(settings);
   EXPECT_EQ(inliers_note(*all), "tracks");

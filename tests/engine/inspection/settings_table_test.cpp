@@ -125,10 +125,10 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   const auto why = [](const Settings& settings, const std::string& key) {
     return why_idle(find_setting(key), settings, nullptr);
   };
-  Settings settings;
+  Settings settings{.method = "gpo"};
   for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"})
     EXPECT_EQ(why(settings, key), "") << key;
-  for (const char* key : {"error", "loss", "shutter", "time_offset"})
+  for (const char* key : {"error", "loss", "shutter", "planes", "time_offset"})
     EXPECT_EQ(why(settings, key), "Only gpo_joint lets one choose this") << key;
   settings.ransac = false;
   EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
@@ -145,11 +145,11 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
 TEST(SettingValues, AsUsedAreEqualWhereTheyComeToTheSame) {
   Settings said{.method = "ba"};
   said.ransac = false;
-  said.inliers = Inliers::per_frame;
-  said.initializer.loss = Loss::huber;
+  said.inliers = Inliers::planes;
+  said.initializer.loss = Loss::squared;
   EXPECT_EQ(as_used(said), as_used({.method = "ba"}));
   said.method = "gpo_joint";
-  EXPECT_EQ(as_used(said).initializer.loss, Loss::huber);
+  EXPECT_EQ(as_used(said).initializer.loss, Loss::squared);
 }
 
 TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
@@ -186,6 +186,30 @@ TEST(RotationSources, ABoardWithoutPicturesIsNoTruth) {
   recording.board = Board{};
   EXPECT_NE(why_no_rotations(recording, RotationSource::truth), "");
   EXPECT_THROW(rotation_source_used(recording, RotationSource::truth), SettingError);
+}
+
+TEST(Presets, AreTheDefaultsAndThePaper) {
+  EXPECT_EQ(with_preset({}, Preset::best), Settings{});
+  EXPECT_EQ(preset_of({}), Preset::best);
+  const Settings paper = with_preset({}, Preset::paper);
+  EXPECT_EQ(preset_of(paper), Preset::paper);
+  EXPECT_EQ(paper.method, "gpo");
+  EXPECT_EQ(setting_text(paper, "tracking"), "frame-to-frame");
+  EXPECT_EQ(setting_text(paper, "inliers"), "per-frame");
+  EXPECT_EQ(setting_text(paper, "rotations"), "raw");
+  EXPECT_EQ(setting_text(paper, "solver"), "ceres");
+  EXPECT_EQ(preset_of(with_setting(paper, "solver", "schur")), std::nullopt);
+}
+
+TEST(Presets, LeaveTheWindowAlone) {
+  Settings settings{.start = 7, .frames = 12};
+  settings.exclude = {3};
+  settings.seed = 5;
+  const Settings paper = with_preset(settings, Preset::paper);
+  EXPECT_EQ(paper.start, 7);
+  EXPECT_EQ(paper.frames, 12);
+  EXPECT_EQ(paper.exclude, settings.exclude);
+  EXPECT_EQ(with_preset(paper, Preset::best), settings);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
+#include "ui/panels/panes/lead_with.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_geometry.h"
@@ -66,6 +67,7 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands&
   const bool clicked = (pointer.at - pointer.pressed_at).norm() < 4 * pointer.scale;
   if (clicked && track) {
     push(commands, SelectTracks{io.KeyCtrl ? toggled(selection, *track) : selected({&*track, 1})});
+    if (!io.KeyCtrl) lead_with(pointer.state, *track, commands);
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
     push(commands, SelectTracks{});
   } else if (!clicked && io.KeyShift) {

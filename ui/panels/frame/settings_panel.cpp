@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/setting_values.h"
+#include "engine/inspection/window_rotations.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
@@ -125,18 +126,17 @@ struct SettingRows {
     return asks ? setting.why_not(*input.state.recording, one.key) : "";
   }
 
-  /// "automatic (gyro)": the first of the others that the recording has.
-  std::string title_of(const Setting& setting, const SettingChoice& one) const {
+  /// "automatic (gyro-calibrated)": what it comes to in the recording.
+  std::string title_of(const SettingChoice& one) const {
     if (one.key != "automatic" || !input.state.recording) return one.title;
-    for (const SettingChoice& other : setting.choices)
-      if (other.key != one.key && why_not(setting, other).empty())
-        return fmt::format("{} ({})", one.title, other.title);
-    return one.title;
+    const RotationSource used =
+        rotation_source_used(*input.state.recording, RotationSource::automatic);
+    return fmt::format("{} ({})", one.title, to_string(used));
   }
 
   void combo(const Setting& setting, const std::string& chosen) {
     const auto now = std::ranges::find(setting.choices, chosen, &SettingChoice::key);
-    const std::string title = now == setting.choices.end() ? chosen : title_of(setting, *now);
+    const std::string title = now == setting.choices.end() ? chosen : title_of(*now);
     if (!ImGui::BeginCombo(("##" + setting.key).c_str(), title.c_str())) return explain(setting);
     for (const SettingChoice& one : setting.choices) {
       const std::string lacks = why_not(setting, one);
@@ -146,13 +146,26 @@ struct SettingRows {
         ImGui::PopStyleColor();
       }
       const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
-      if (ImGui::Selectable(title_of(setting, one).c_str(), one.key == chosen, flags))
+      if (ImGui::Selectable(title_of(one).c_str(), one.key == chosen, flags))
         change(setting, one.key);
       tooltip(lacks);
     }
     ImGui::EndCombo();
   }
 };
+
+void preset_row(SettingRows& rows) {
+  const char* help = "All settings by one word: the best that we have, or what the paper does";
+  rows.label("Preset", help);
+  const auto now = preset_of(rows.settings);
+  if (!ImGui::BeginCombo("##preset", now ? to_string(*now) : "modified")) return tooltip(help);
+  for (const Preset preset : {Preset::best, Preset::paper}) {
+    if (!ImGui::Selectable(to_string(preset), now == preset)) continue;
+    rows.settings = with_preset(rows.settings, preset);
+    rows.changed = true;
+  }
+  ImGui::EndCombo();
+}
 
 void cube_row(const SettingRows& rows, const PanelInput& input, Commands& commands) {
   const char* help =
@@ -198,6 +211,7 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
   heading("SETTINGS");
   reset_button(input, commands);
   SettingRows rows{input, commands, std::round(104 * s)};
+  preset_row(rows);
   rows.draw(false);
   cube_row(rows, input, commands);
   if (ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen)) rows.draw(true);

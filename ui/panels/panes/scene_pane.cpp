@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/panes/lead_with.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
@@ -61,6 +62,7 @@ void click(const PanelInput& input,
     push(
         commands,
         SelectTracks{io.KeyCtrl ? toggled(selection, *hover.track) : selected({&*hover.track, 1})});
+    if (!io.KeyCtrl) lead_with(input.state, *hover.track, commands);
   } else if (hover.camera) {
     push(commands, GoToFrame{*hover.camera});
   } else if (const auto point = plane_at(*input.inspection(), camera, rect.size, at - rect.min)) {

@@ -7,11 +7,13 @@
 #include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/plane_look.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/picture_texture.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -93,8 +95,7 @@ void draw_tails(const Canvas& canvas) {
   const int oldest = std::max(0, canvas.frame - canvas.options.tail_frames);
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
-    const bool inlier = canvas.inspection.window->inlier[canvas.frame][track];
-    const std::uint32_t rgb = inlier ? color_of(Role::inlier) : color_of(Role::outlier);
+    const std::uint32_t rgb = track_look(*canvas.inspection.window, canvas.frame, track).rgb;
     for (int i = oldest; i < canvas.frame; ++i) {
       const double age = static_cast<double>(canvas.frame - i) / canvas.options.tail_frames;
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
@@ -109,11 +110,8 @@ void draw_tracks(const Canvas& canvas) {
   const Tracks& tracks = *canvas.inspection.tracks;
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
-    const bool inlier = canvas.inspection.window->inlier[canvas.frame][track];
-    draw_sign(canvas.list,
-              inlier ? Sign::circle : Sign::cross,
-              canvas.at(tracks.raw_px[canvas.frame].col(track)),
-              inlier ? color_of(Role::inlier) : color_of(Role::outlier));
+    const auto [sign, rgb] = track_look(*canvas.inspection.window, canvas.frame, track);
+    draw_sign(canvas.list, sign, canvas.at(tracks.raw_px[canvas.frame].col(track)), rgb);
   }
 }
 
@@ -178,26 +176,44 @@ std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+/// How many tracks are on each plane and on none.
+std::vector<LegendRow> track_rows(const Canvas& canvas) {
+  const Inspection& inspection = canvas.inspection;
+  const Window& window = *inspection.window;
+  std::map<int, int> on_plane = {{window.leader, 0}};
+  int outliers = 0;
+  for (int track = 0; track < inspection.tracks->track_count(); ++track) {
+    if (!inspection.tracks->seen(canvas.frame, track)) continue;
+    const auto plane = plane_of_track(window, canvas.frame, track);
+    ++(plane ? on_plane[*plane] : outliers);
+  }
+  std::vector<LegendRow> rows;
+  for (const auto& [plane, count] : on_plane) {
+    const bool leads = plane == window.leader;
+    const std::string text =
+        leads ? counted(count, "inlier") : fmt::format("{} on plane {}", count, plane + 1);
+    const LegendRow row{Sign::circle, plane_color(window, plane), text};
+    rows.insert(leads ? rows.begin() : rows.end(), row);
+  }
+  const std::string text = counted(outliers, "outlier");
+  rows.insert(rows.end(), LegendRow{Sign::cross, color_of(Role::outlier), text});
+  return rows;
+}
+
 std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ImageViewOptions& options = canvas.options;
   std::vector<LegendRow> rows;
-  if (options.tracks) {
-    int inliers = 0, outliers = 0;
-    for (int track = 0; track < inspection.tracks->track_count(); ++track)
-      if (inspection.tracks->seen(canvas.frame, track))
-        ++(inspection.window->inlier[canvas.frame][track] ? inliers : outliers);
-    rows.push_back({Sign::circle, color_of(Role::inlier), counted(inliers, "inlier")});
-    rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
-  }
+  if (options.tracks) rows = track_rows(canvas);
+  const auto add = [&rows](Sign sign, Role role, std::string text) {
+    rows.push_back(LegendRow{sign, color_of(role), std::move(text)});
+  };
   if (inspection.initialization->ok && options.residuals)
-    rows.push_back({Sign::line,
-                    color_of(Role::residual),
-                    fmt::format("residuals × {:g}", options.residual_magnification)});
+    add(Sign::line, Role::residual, fmt::format("residuals × {:g}", options.residual_magnification));
   if (options.cube && inspection.cube)
-    rows.push_back({Sign::square, color_of(Role::cube_base), "cube on the estimated plane"});
+    add(Sign::square, Role::cube_base, std::string("cube on the estimated plane"));
   if (options.cube && options.truth && canvas.true_cube())
-    rows.push_back({Sign::square, color_of(Role::truth), "true cube"});
+    add(Sign::square, Role::truth, std::string("true cube"));
   return rows;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/picture/track_highlight.h"
 
+#include "engine/inspection/plane_patches.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
@@ -84,6 +85,10 @@ std::optional<int> point_at(const Inspection& inspection,
   for (const MapPoint& point : inspection.initialization->points)
     if (const auto at = view_pixel(camera, point.position, view_size_px))
       nearest.add(point.track, *at);
+  for (const PlanePatch& patch : plane_patches(inspection))
+    for (const MapPoint& point : patch.points)
+      if (const auto at = view_pixel(camera, point.position, view_size_px))
+        nearest.add(point.track, *at);
   return nearest.index;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
+#include "engine/inspection/plane_patches.h"
 #include "engine/truth/truth.h"
 #include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/uncertainty_geometry.h"
@@ -130,7 +131,10 @@ OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side,
   camera.yaw_deg = 35;
   // A plane seen at a slant is wide and low: the taller the view, the steeper it is looked upon.
   camera.pitch_deg = std::clamp(42 - 13 * aspect, 25.0, 32.0);
-  return fitted(camera, scene_extent(inspection, cube_side), aspect, {.bottom = 0.24});
+  std::vector<Vector3d> extent = scene_extent(inspection, cube_side);
+  for (const PlanePatch& patch : plane_patches(inspection))
+    extent.insert(extent.end(), patch.corners.begin(), patch.corners.end());
+  return fitted(camera, extent, aspect, {.bottom = 0.24});
 }
 
 }  // namespace gpo

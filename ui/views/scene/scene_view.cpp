@@ -3,9 +3,11 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/initializers/methods.h"
+#include "engine/inspection/plane_patches.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/plane_look.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/scene_actors.h"
@@ -135,6 +137,20 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
   stage.add(points, 5);
 }
 
+/// The planes beside the leading one, each with its tracks in its color.
+void add_patches(const Stage& stage) {
+  for (const PlanePatch& patch : plane_patches(stage.inspection)) {
+    const std::uint32_t rgb = plane_color(*stage.inspection.window, patch.number);
+    Shapes border, face, points;
+    border.lines(patch.corners, true, mixed_rgb(color_of(Role::scene_bottom), rgb, 0.8));
+    face.face(patch.corners, rgb, 0.12);
+    for (const MapPoint& point : patch.points) points.point(point.position, rgb);
+    stage.add(face, 1);
+    stage.add(border, 1.8);
+    stage.add(points, 5);
+  }
+}
+
 void add_cube(const Stage& stage) {
   const Inspection& inspection = stage.inspection;
   const auto corners =
@@ -198,6 +214,7 @@ void build(const Stage& stage, const OrbitCamera& camera) {
   if (!grid) return;
   add_plane(stage, *grid, camera);
   add_points(stage, *grid);
+  add_patches(stage);
   add_cameras(stage);
   if (stage.options.cube && inspection.cube) add_cube(stage);
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);

@@ -57,6 +57,18 @@ void add_settings(std::vector<Action>& table) {
     change_settings(s, with_setting(s.settings, arguments[0], arguments[1]));
   };
   table.push_back(set);
+  Action preset{"preset",
+                "Choose a preset",
+                "Method",
+                {},
+                "All settings but the window: the best that we have, or what the paper does"};
+  preset.arguments = "best|paper";
+  preset.needs_recording = false;
+  preset.run = [](State& s, const Arguments& arguments) {
+    expect_count("preset", arguments, 1, 1);
+    change_settings(s, with_preset(s.settings, choice<Preset>(arguments[0])));
+  };
+  table.push_back(preset);
   Action reset{"reset",
                "Reset settings",
                "Method",

@@ -238,7 +238,7 @@ TEST_F(EurocReader, NamesAGyroscopeBiasOfTwoNumbers) {
 }
 
 TEST_F(EurocReader, ReadsHowSureTheBiasIs) {
-  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.01);
+  EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.1);
   folder.write("mav0/imu0/sensor.yaml", std::string(kTbsImu) + "gyroscope_bias_sigma: 0.002\n");
   EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.002);
   for (const char* bad : {"0", "-0.01", "small", "nan", "[0.1, 0.1, 0.1]"}) {

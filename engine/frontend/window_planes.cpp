@@ -1,0 +1,267 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/window_planes.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <random>
+
+#include <Eigen/LU>
+
+namespace gpo {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+
+constexpr int kLeastSeen = 8;
+constexpr int kMostRounds = 8;
+/// Of a plane's tracks, so many may miss its gate by less than the gate itself. Of a cloud of
+/// points as many miss it as meet it.
+constexpr double kMostJustOff = 0.5;
+
+/// Tracks in the reference picture and in a later one [px].
+struct Pairs {
+  std::vector<int> tracks;
+  Matrix2Xd from, to;
+};
+
+Pairs pairs_of(const std::vector<Matrix2Xd>& points_px, int frame, const std::vector<int>& among) {
+  Pairs pairs;
+  for (const int j : among)
+    if (points_px[0].col(j).allFinite() && points_px[frame].col(j).allFinite())
+      pairs.tracks.push_back(j);
+  pairs.from = points_px[0](Eigen::all, pairs.tracks);
+  pairs.to = points_px[frame](Eigen::all, pairs.tracks);
+  return pairs;
+}
+
+std::vector<int> numbers_below(int count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<int> spread_frames(int frames, int wanted) {
+  const int n = std::min(wanted, frames - 1);
+  std::vector<int> chosen;
+  for (int k = 1; k <= n; ++k) chosen.push_back((frames - 1) * k / n);
+  return chosen;
+}
+
+/// Squared transfer errors [px^2]; infinite where H turns a point around.
+ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd& to) {
+  const auto x = from.row(0).array();
+  const auto y = from.row(1).array();
+  const Eigen::Array<double, 1, Eigen::Dynamic> depth = H(2, 0) * x + H(2, 1) * y + H(2, 2);
+  const auto u = (H(0, 0) * x + H(0, 1) * y + H(0, 2)) / depth - to.row(0).array();
+  const auto v = (H(1, 0) * x + H(1, 1) * y + H(1, 2)) / depth - to.row(1).array();
+  const double infinity = std::numeric_limits<double>::infinity();
+  return (depth * H(2, 2) > 0).select(u * u + v * v, infinity).transpose();
+}
+
+/// The homography that takes three points to three points and a fourth one, too.
+Matrix3d through_four(const Pairs& pairs, const std::array<int, 4>& four) {
+  const auto basis = [&four](const Matrix2Xd& x) -> Matrix3d {
+    Matrix3d three;
+    for (int k = 0; k < 3; ++k) three.col(k) = x.col(four[k]).homogeneous();
+    return three * (three.inverse() * x.col(four[3]).homogeneous()).asDiagonal();
+  };
+  return basis(pairs.to) * basis(pairs.from).inverse();
+}
+
+/// For each pair the others, the nearest quarter of them in the reference picture.
+std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
+  const int n = static_cast<int>(pairs.tracks.size());
+  const int size = std::max(3, n / 4);
+  std::vector<std::vector<int>> near(n);
+  for (int k = 0; k < n; ++k) {
+    const ArrayXd distance =
+        (pairs.from.colwise() - pairs.from.col(k)).colwise().squaredNorm().transpose();
+    near[k] = numbers_below(n);
+    std::erase(near[k], k);
+    const auto closer = [&](int a, int b) { return distance[a] < distance[b]; };
+    std::ranges::nth_element(near[k], near[k].begin() + std::min(size, n - 2), closer);
+    near[k].resize(std::min(size, n - 1));
+  }
+  return near;
+}
+
+/// Tracks of the hypothesis with which most agree in one frame; four neighbors make one.
+std::vector<int> best_hypothesis(const Pairs& pairs,
+                                 const PlaneOptions& options,
+                                 std::mt19937_64& random) {
+  const int n = static_cast<int>(pairs.tracks.size());
+  if (n < kLeastSeen) return {};
+  const auto near = neighborhoods(pairs);
+  const double gate_px = options.least_gate * options.gate_px;
+  const auto draw = [&](std::size_t below) { return static_cast<std::size_t>(random() % below); };
+  Eigen::Index most = 0;
+  ArrayXd best;
+  for (int h = 0; h < options.hypotheses; ++h) {
+    const int seed = static_cast<int>(draw(n));
+    std::array<int, 4> four{seed, -1, -1, -1};
+    for (int k = 1; k < 4;) {
+      const int drawn = near[seed][draw(near[seed].size())];
+      if (std::ranges::find(four, drawn) == four.end()) four[k++] = drawn;
+    }
+    const Matrix3d H = through_four(pairs, four);
+    if (!H.allFinite()) continue;
+    const ArrayXd errors = squared_errors(H, pairs.from, pairs.to);
+    const Eigen::Index agreeing = (errors <= gate_px * gate_px).count();
+    if (agreeing <= most) continue;
+    most = agreeing;
+    best = errors;
+  }
+  std::vector<int> tracks;
+  for (int k = 0; k < best.size(); ++k)
+    if (best[k] <= gate_px * gate_px) tracks.push_back(pairs.tracks[k]);
+  return tracks;
+}
+
+/// A plane as it is found: its tracks, and how far each of all tracks is from it.
+struct Found {
+  std::vector<int> tracks;
+  ArrayXd rms_px;  ///< over the judging frames that see the track; infinite: none of them does
+  double gate_px = 0;
+};
+
+class Search {
+ public:
+  Search(const std::vector<Matrix2Xd>& points_px, const PlaneOptions& options)
+      : points_px_(points_px), options_(options) {
+    for (const int i : spread_frames(static_cast<int>(points_px.size()), options.judging_frames))
+      frames_.push_back(pairs_of(points_px, i, numbers_below(track_count())));
+  }
+
+  int track_count() const { return static_cast<int>(points_px_[0].cols()); }
+
+  /// Root mean square transfer errors from the homographies of these tracks, refitted in every
+  /// judging frame; infinite of all where they do not give them.
+  ArrayXd errors_from(const std::vector<int>& tracks) const {
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::vector<bool> chosen(track_count(), false);
+    for (const int j : tracks) chosen[j] = true;
+    ArrayXd squares = ArrayXd::Zero(track_count());
+    ArrayXd seen = ArrayXd::Zero(track_count());
+    for (const Pairs& pairs : frames_) {
+      std::vector<int> own;
+      for (int k = 0; k < static_cast<int>(pairs.tracks.size()); ++k)
+        if (chosen[pairs.tracks[k]]) own.push_back(k);
+      if (static_cast<int>(own.size()) < kLeastSeen) continue;
+      const Matrix2Xd from = pairs.from(Eigen::all, own);
+      const Matrix2Xd to = pairs.to(Eigen::all, own);
+      const auto H = fit_homography(from, to);
+      if (!H) return ArrayXd::Constant(track_count(), infinity);
+      const ArrayXd errors = squared_errors(refine_homography(*H, from, to), pairs.from, pairs.to);
+      squares(pairs.tracks) += errors;
+      seen(pairs.tracks) += 1;
+    }
+    return (seen > 0).select((squares / seen.max(1)).sqrt(), infinity);
+  }
+
+  /// From a first choice of tracks to one that stands still, among those that are free.
+  Found settled(std::vector<int> tracks, const std::vector<int>& free) const {
+    Found found;
+    for (int round = 0; round < kMostRounds; ++round) {
+      found.rms_px = errors_from(tracks);
+      std::vector<double> own;
+      for (const int j : tracks) own.push_back(found.rms_px[j]);
+      if (own.empty()) return {};
+      found.gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
+                                 options_.least_gate * options_.gate_px,
+                                 options_.gate_px);
+      found.tracks.clear();
+      for (const int j : free)
+        if (found.rms_px[j] <= found.gate_px) found.tracks.push_back(j);
+      if (found.tracks == tracks) break;
+      tracks = found.tracks;
+    }
+    return found;
+  }
+
+  /// Whether its tracks stand out among those that are free.
+  bool stands_out(const Found& found, const std::vector<int>& free) const {
+    const auto just_off = std::ranges::count_if(free, [&](int j) {
+      return found.rms_px[j] > found.gate_px && found.rms_px[j] <= 2 * found.gate_px;
+    });
+    return static_cast<double>(just_off) <=
+           kMostJustOff * static_cast<double>(found.tracks.size() - 4);
+  }
+
+  TrackPlanes planes() const {
+    std::vector<int> judged;
+    for (const Pairs& pairs : frames_) judged.insert(judged.end(), pairs.tracks.begin(), pairs.tracks.end());
+    std::ranges::sort(judged);
+    judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
+    std::vector<int> free = judged;
+    std::mt19937_64 random(options_.seed);
+    const int widest = widest_frame(
+        points_px_, spread_frames(static_cast<int>(points_px_.size()), options_.judging_frames));
+    TrackPlanes result;
+    std::vector<std::vector<int>>& planes = result.planes;
+    while (widest > 0 && static_cast<int>(planes.size()) < options_.most_planes) {
+      const Pairs pairs = pairs_of(points_px_, widest, free);
+      const Found found = settled(best_hypothesis(pairs, options_, random), free);
+      const int least = planes.empty() ? options_.least_tracks : least_more();
+      result.largest_refused = static_cast<int>(found.tracks.size());
+      if (result.largest_refused < least || !stands_out(found, free)) break;
+      planes.push_back(found.tracks);
+      std::erase_if(free, [&](int j) { return std::ranges::binary_search(found.tracks, j); });
+    }
+    std::ranges::stable_sort(
+        planes, [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    return result;
+  }
+
+ private:
+  int least_more() const {
+    return std::max(options_.least_more,
+                    static_cast<int>(std::ceil(options_.least_share_more * track_count())));
+  }
+
+  const std::vector<Matrix2Xd>& points_px_;
+  const PlaneOptions& options_;
+  std::vector<Pairs> frames_;  ///< those that judge
+};
+
+double motion_px(const Pairs& pairs) {
+  std::vector<double> lengths;
+  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
+    lengths.push_back((pairs.to.col(k) - pairs.from.col(k)).norm());
+  return median(std::move(lengths));
+}
+
+}  // namespace
+
+int widest_frame(const std::vector<Matrix2Xd>& points_px, const std::vector<int>& frames) {
+  const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
+  const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
+  int widest = 0;
+  double most_px = 0;
+  for (const int i : frames) {
+    const Pairs pairs = pairs_of(points_px, i, all);
+    if (pairs.from.cols() < kLeastSeen) continue;
+    if (pairs.from.cols() < wanted && widest > 0) break;
+    const double px = motion_px(pairs);
+    if (px < most_px) continue;
+    most_px = px;
+    widest = i;
+  }
+  return widest;
+}
+
+TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px, const PlaneOptions& options) {
+  if (points_px.size() < 2 || points_px[0].cols() < kLeastSeen) return {};
+  return Search(points_px, options).planes();
+}
+
+}  // namespace gpo

@@ -1,0 +1,100 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/engine/simulated_room.h"
+
+#include "engine/frontend/make_window.h"
+#include "engine/geometry/camera.h"
+
+#include <random>
+
+#include <Eigen/LU>
+
+namespace gpo::test {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+void tell_truly(Room& room) {
+  Window& window = room.window;
+  window.planes.clear();
+  for (int k = 0; k < static_cast<int>(room.planes.size()); ++k) {
+    WindowPlane plane;
+    std::vector<bool> on(window.track_count(), false);
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (room.plane_of_track[j] != k) continue;
+      plane.tracks.push_back(j);
+      on[j] = true;
+    }
+    for (const Pose& camera : room.cameras) {
+      const Eigen::Matrix3d A =
+          Eigen::Matrix3d::Identity() + camera.p_wc * room.planes[k].transpose();
+      plane.H_i1.emplace_back(window.K * camera.R_wc.transpose() * A * window.K.inverse());
+      plane.inlier.push_back(on);
+    }
+    window.planes.push_back(std::move(plane));
+  }
+  window.leader = 0;
+  window.H_i1 = window.planes[0].H_i1;
+  window.inlier = window.planes[0].inlier;
+  window.errors.clear();
+}
+
+}  // namespace
+
+std::vector<Vector3d> floor_and_walls() {
+  const auto plane = [](const Vector3d& normal, double distance) -> Vector3d {
+    return normal.normalized() / distance;
+  };
+  return {plane({0, -1, -0.5}, 1), plane({0.1, 0.3, -1}, 2.2), plane({-1, 0.1, -0.4}, 1.3)};
+}
+
+Room simulate_room(const RoomOptions& options) {
+  const Simulation base = simulate({.motion = options.motion,
+                                    .frames = options.frames,
+                                    .points = 8,
+                                    .noise_px = 0,
+                                    .travel = options.travel,
+                                    .seed = options.seed});
+  Room room{{}, base.cameras, options.planes, {}};
+  const Eigen::Matrix3d K = base.window.K;
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = K(0, 0);
+  camera.fy = K(1, 1);
+  camera.cx = K(0, 2);
+  camera.cy = K(1, 2);
+  std::mt19937_64 random(options.seed);
+  std::uniform_real_distribution<double> u(20, 620), v(20, 460), share(0, 1);
+  std::uniform_real_distribution<double> inverse(1 / options.farthest, 1 / options.nearest);
+  std::normal_distribution<double> noise(0, options.noise_px);
+  Tracks tracks;
+  tracks.raw_px.assign(options.frames, Eigen::Matrix2Xd(2, options.tracks));
+  while (static_cast<int>(tracks.ids.size()) < options.tracks) {
+    const Vector3d ray = K.inverse() * Vector3d(u(random), v(random), 1);
+    int plane = -1;
+    double at = share(random);
+    for (int k = 0; k < static_cast<int>(options.shares.size()) && plane < 0; ++k) {
+      if (at < options.shares[k]) plane = k;
+      at -= options.shares[k];
+    }
+    const double rho = plane < 0 ? inverse(random) : -options.planes[plane].dot(ray);
+    if (rho < 0.1) continue;
+    const auto j = static_cast<Eigen::Index>(tracks.ids.size());
+    for (int i = 0; i < options.frames; ++i) {
+      const Vector2d px = (K * to_camera(base.cameras[i], ray / rho)).hnormalized();
+      tracks.raw_px[i].col(j) = px + Vector2d(noise(random), noise(random));
+    }
+    tracks.ids.push_back(j);
+    room.plane_of_track.push_back(plane);
+  }
+  room.window =
+      make_window(tracks, camera, base.window.timestamps_ns, {.seed = options.seed}, Inliers::planes);
+  for (int i = 0; i < options.frames; ++i) room.window.R_wc[i] = base.cameras[i].R_wc;
+  if (options.told_truly) tell_truly(room);
+  return room;
+}
+
+}  // namespace gpo::test

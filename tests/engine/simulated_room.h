@@ -1,0 +1,46 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/pose.h"
+#include "engine/window/window.h"
+#include "tests/engine/simulated_window.h"
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo::test {
+
+/// What the tracks of a room lie on, in the world of the reference camera, whose distance from the
+/// first plane is 1.
+struct RoomOptions {
+  Motion motion = Motion::orbit;
+  int frames = 20;
+  int tracks = 200;
+  double travel = 0.3;
+  double noise_px = 0.2;  ///< on each coordinate, in all frames
+  /// m = n / d of each plane, and how many of the tracks lie on it; the rest lies at depths between
+  /// `nearest` and `farthest`, at random.
+  std::vector<Eigen::Vector3d> planes = {};
+  std::vector<double> shares = {};
+  double nearest = 1;
+  double farthest = 3;
+  /// The window's planes are the true ones with all their tracks, not those that the front end finds.
+  bool told_truly = false;
+  std::uint64_t seed = 1;
+};
+
+struct Room {
+  Window window;  ///< as the front end makes it, told by planes; rotations are the true ones
+  std::vector<Pose> cameras;
+  std::vector<Eigen::Vector3d> planes;
+  std::vector<int> plane_of_track;  ///< -1: none
+};
+
+/// Floor, a wall ahead, a wall to the right.
+std::vector<Eigen::Vector3d> floor_and_walls();
+
+Room simulate_room(const RoomOptions& options);
+
+}  // namespace gpo::test

@@ -1,0 +1,48 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/overlay/plane_look.h"
+
+#include <algorithm>
+#include <array>
+
+namespace gpo {
+namespace {
+
+/// Okabe-Ito's that stand for nothing else among tracks and planes: orange, reddish purple, blue; and ochre.
+constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+
+}  // namespace
+
+std::uint32_t plane_color(const Window& window, int plane) {
+  if (plane == window.leader) return color_of(Role::inlier);
+  const int place = plane < window.leader ? plane : plane - 1;
+  return kOtherPlanes[place % kOtherPlanes.size()];
+}
+
+std::optional<int> plane_of_track(const Window& window, int frame, int column) {
+  if (window.inlier[frame][column]) return window.leader;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (window.planes[k].inlier[frame][column]) return k;
+  return std::nullopt;
+}
+
+TrackLook track_look(const Window& window, int frame, int column) {
+  const auto plane = plane_of_track(window, frame, column);
+  if (!plane) return {Sign::cross, color_of(Role::outlier)};
+  return {Sign::circle, plane_color(window, *plane)};
+}
+
+std::optional<int> to_lead(const Inspection& inspection, std::int64_t id) {
+  const Window& window = *inspection.window;
+  const auto& ids = inspection.tracks->ids;
+  const auto found = std::ranges::find(ids, id);
+  if (found == ids.end()) return std::nullopt;
+  const auto column = static_cast<int>(found - ids.begin());
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
+    if (k != window.leader && std::ranges::binary_search(window.planes[k].tracks, column))
+      return k + 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace gpo
