@@ -24,9 +24,14 @@ using Eigen::Matrix3d;
 
 constexpr int kLeastSeen = 8;
 constexpr int kMostRounds = 8;
-/// Of a plane's tracks, so many may miss its gate by less than the gate itself. Of a cloud of
-/// points as many miss it as meet it.
-constexpr double kMostJustOff = 0.5;
+constexpr double kGoodDraws = 25;
+/// A plane has so many times the tracks that chance would put there: half of those that miss its
+/// gate by up to twice the gate. Of a cloud of points the best hypothesis has two to three times.
+constexpr double kLeastOverChance = 4;
+constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane: that there are any is known
+constexpr int kSpentTracks = 4;                 // any four tracks have a homography
+constexpr double kWellExplained = 0.5;          // of the tracks, by planes
+constexpr double kFarMore = 1.3;
 
 /// Tracks in the reference picture and in a later one [px].
 struct Pairs {
@@ -95,6 +100,15 @@ std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   return near;
 }
 
+/// So many that four neighbors of a plane with such a share of the tracks are drawn some ten times:
+/// those that lie near each other tell its homography badly.
+int hypotheses_needed(double share, const PlaneOptions& options) {
+  const double wanted = kGoodDraws / (share * share * share);
+  return wanted < options.most_hypotheses
+             ? std::max(options.least_hypotheses, static_cast<int>(wanted))
+             : options.most_hypotheses;
+}
+
 /// Tracks of the hypothesis with which most agree in one frame; four neighbors make one.
 std::vector<int> best_hypothesis(const Pairs& pairs,
                                  const PlaneOptions& options,
@@ -104,9 +118,10 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
   const auto near = neighborhoods(pairs);
   const double gate_px = options.least_gate * options.gate_px;
   const auto draw = [&](std::size_t below) { return static_cast<std::size_t>(random() % below); };
-  Eigen::Index most = 0;
+  double most = 0;
   ArrayXd best;
-  for (int h = 0; h < options.hypotheses; ++h) {
+  int needed = options.most_hypotheses;
+  for (int h = 0; h < needed; ++h) {
     const int seed = static_cast<int>(draw(n));
     std::array<int, 4> four{seed, -1, -1, -1};
     for (int k = 1; k < 4;) {
@@ -116,10 +131,14 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
     const Matrix3d H = through_four(pairs, four);
     if (!H.allFinite()) continue;
     const ArrayXd errors = squared_errors(H, pairs.from, pairs.to);
-    const Eigen::Index agreeing = (errors <= gate_px * gate_px).count();
-    if (agreeing <= most) continue;
-    most = agreeing;
+    // Not how many agree, but how closely (MSAC, Torr and Zisserman 2000): at little parallax one
+    // homography passes near the tracks of two planes, and through those of one.
+    const double score = (1 - errors / (gate_px * gate_px)).max(0).sum();
+    if (score <= most) continue;
+    most = score;
     best = errors;
+    const auto agreeing = static_cast<double>((errors <= gate_px * gate_px).count());
+    needed = hypotheses_needed(agreeing / n, options);
   }
   std::vector<int> tracks;
   for (int k = 0; k < best.size(); ++k)
@@ -189,17 +208,20 @@ class Search {
   }
 
   /// Whether its tracks stand out among those that are free.
-  bool stands_out(const Found& found, const std::vector<int>& free) const {
+  bool stands_out(const Found& found,
+                  const std::vector<int>& free,
+                  double least_over_chance) const {
     const auto just_off = std::ranges::count_if(free, [&](int j) {
-      return found.rms_px[j] > found.gate_px && found.rms_px[j] <= 2 * found.gate_px;
+      return found.rms_px[j] > found.gate_px && found.rms_px[j] <= 3 * found.gate_px;
     });
-    return static_cast<double>(just_off) <=
-           kMostJustOff * static_cast<double>(found.tracks.size() - 4);
+    const double chance = 0.5 * static_cast<double>(just_off);
+    return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
 
   TrackPlanes planes() const {
     std::vector<int> judged;
-    for (const Pairs& pairs : frames_) judged.insert(judged.end(), pairs.tracks.begin(), pairs.tracks.end());
+    for (const Pairs& pairs : frames_)
+      judged.insert(judged.end(), pairs.tracks.begin(), pairs.tracks.end());
     std::ranges::sort(judged);
     judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
     std::vector<int> free = judged;
@@ -213,12 +235,13 @@ class Search {
       const Found found = settled(best_hypothesis(pairs, options_, random), free);
       const int least = planes.empty() ? options_.least_tracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
-      if (result.largest_refused < least || !stands_out(found, free)) break;
+      const double over_chance = planes.empty() ? kLeastOverChance : kLeastOverChanceOfMore;
+      if (result.largest_refused < least || !stands_out(found, free, over_chance)) break;
       planes.push_back(found.tracks);
       std::erase_if(free, [&](int j) { return std::ranges::binary_search(found.tracks, j); });
     }
-    std::ranges::stable_sort(
-        planes, [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    std::ranges::stable_sort(planes,
+                             [](const auto& a, const auto& b) { return a.size() > b.size(); });
     return result;
   }
 
@@ -238,6 +261,12 @@ double motion_px(const Pairs& pairs) {
   for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
     lengths.push_back((pairs.to.col(k) - pairs.from.col(k)).norm());
   return median(std::move(lengths));
+}
+
+double explained(const TrackPlanes& found) {
+  double sum = 0;
+  for (const std::vector<int>& plane : found.planes) sum += static_cast<double>(plane.size());
+  return sum;
 }
 
 }  // namespace
@@ -261,7 +290,14 @@ int widest_frame(const std::vector<Matrix2Xd>& points_px, const std::vector<int>
 
 TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px, const PlaneOptions& options) {
   if (points_px.size() < 2 || points_px[0].cols() < kLeastSeen) return {};
-  return Search(points_px, options).planes();
+  TrackPlanes fine = Search(points_px, options).planes();
+  const auto judged = static_cast<double>(points_px[0].cols());
+  if (explained(fine) >= kWellExplained * judged) return fine;
+  // Tracks may be as noisy as the gate: then a wider one explains far more of them.
+  PlaneOptions wide = options;
+  wide.least_gate = 1;
+  TrackPlanes coarse = Search(points_px, wide).planes();
+  return explained(coarse) > kFarMore * explained(fine) ? coarse : fine;
 }
 
 }  // namespace gpo

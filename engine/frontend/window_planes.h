@@ -10,13 +10,14 @@
 namespace gpo {
 
 struct PlaneOptions {
-  double gate_px = 2.0;         ///< RMS transfer error over the frames, above it no track agrees [px]
-  double least_gate = 0.6;      ///< and below so much of it every one does [-]
-  double gate_to_median = 2.0;  ///< in between, in medians of the plane's own tracks [-]
-  int judging_frames = 6;       ///< spread over the window, in which tracks are judged
-  int hypotheses = 600;         ///< of four neighboring tracks, for each plane
-  int least_tracks = 8;         ///< of the first plane
-  int least_more = 18;          ///< of each further one
+  double gate_px = 2.0;     ///< RMS transfer error over the frames, above it no track agrees [px]
+  double least_gate = 0.6;  ///< and below so much of it every one does [-]
+  double gate_to_median = 2.0;     ///< in between, in medians of the plane's own tracks [-]
+  int judging_frames = 6;          ///< spread over the window, in which tracks are judged
+  int least_hypotheses = 300;      ///< of four neighboring tracks, for each plane
+  int most_hypotheses = 3000;      ///< where few tracks agree with the best one
+  int least_tracks = 8;            ///< of the first plane
+  int least_more = 18;             ///< of each further one
   double least_share_more = 0.06;  ///< of all tracks, of each further one [-]
   int most_planes = 5;
   std::uint64_t seed = 1;  ///< of the hypotheses
@@ -35,8 +36,8 @@ struct TrackPlanes {
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           const PlaneOptions& options = {});
 
-/// The frame of those given into which tracks have moved most, in the median, of those that at least
-/// half of all tracks are seen in; 0 where eight are seen in none.
+/// The frame of those given into which tracks have moved most, in the median, of those that at
+/// least half of all tracks are seen in; 0 where eight are seen in none.
 int widest_frame(const std::vector<Eigen::Matrix2Xd>& points_px, const std::vector<int>& frames);
 
 }  // namespace gpo

@@ -47,6 +47,7 @@ struct Fit {
   RotationModel rotations;
   double row_delay_s = 0;
   double cost = 0;  ///< as the loss has it, which solutions with different weights share [px^2]
+  PlaneObservations observations = {};  ///< of this window, with the weights of the last round
 };
 
 struct Task {
@@ -56,18 +57,23 @@ struct Task {
   const Watch& watch;
 };
 
-Fit solve(const Task& task,
-          const Window& window,
-          const PlaneMotion& start,
-          RotationModel rotations,
-          double row_delay_s = 0) {
+PlaneSolution solve_once(const Task& task,
+                         const Window& window,
+                         const PlaneObservations& observations,
+                         const PlaneMotion& start,
+                         RotationModel rotations) {
   const bool offset = task.options.time_offset && rotations == RotationModel::bias;
   const PlaneUnknowns unknowns{rotations, offset, task.sigma_px};
+  return task.options.solver == Solver::ceres
+             ? solve_plane_with_ceres(window, observations, start, unknowns, task.watch)
+             : solve_plane(window, observations, start, unknowns, task.watch);
+}
+
+Fit solve(const Task& task, const PlaneMotion& start, RotationModel rotations) {
+  const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
   const auto solve_from = [&](const PlaneMotion& from) {
-    return task.options.solver == Solver::ceres
-               ? solve_plane_with_ceres(window, observations, from, unknowns, task.watch)
-               : solve_plane(window, observations, from, unknowns, task.watch);
+    return solve_once(task, window, observations, from, rotations);
   };
   PlaneSolution solution = solve_from(start);
   for (int round = 0; is_weighted(task.options) && round < kWeightRounds; ++round) {
@@ -83,17 +89,31 @@ Fit solve(const Task& task,
   const double cost =
       solution.solver.final_cost +
       loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
-  return {window, std::move(solution), rotations, row_delay_s, cost};
+  return {window, std::move(solution), rotations, 0, cost, std::move(observations)};
 }
 
-/// The fit with another pace of the rows, from a fit at hand; time and iterations add up.
+/// The weights of one fit for the same observations in another one.
+void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
+  const auto copy = [](const std::vector<FrameObservations>& a, std::vector<FrameObservations>& b) {
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      b[i].mask = a[i].mask;
+      b[i].weight = a[i].weight;
+    }
+  };
+  copy(from.frames, to.frames);
+  for (std::size_t k = 0; k < to.others.size(); ++k) copy(from.others[k], to.others[k]);
+}
+
+/// The fit with another pace of the rows, from a fit at hand, whose weights it keeps, so that their
+/// costs compare to the last digit; time and iterations add up.
 Fit refit(const Task& task, const Fit& from, double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit = solve(task,
-                  without_rolling_shutter(task.window, motion, row_delay_s),
-                  motion,
-                  from.rotations,
-                  row_delay_s);
+  Fit fit{
+      without_rolling_shutter(task.window, motion, row_delay_s), {}, from.rotations, row_delay_s};
+  fit.observations = plane_observations(fit.window, numbers_of(motion.others));
+  copy_weights(from.observations, fit.observations);
+  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
+  fit.cost = fit.solution.solver.final_cost;
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
 }
@@ -115,42 +135,43 @@ bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
                           kSignificantSigmas * kSignificantSigmas;
 }
 
+/// Adds time and iterations of what was tried beside it.
+void add_effort(const SolverReport& tried, SolverReport& solver) {
+  solver.milliseconds += tried.milliseconds;
+  solver.iterations += tried.iterations;
+}
+
 /// The pace at the minimum of a parabola through the costs at three, in rounds.
-Fit with_estimated_shutter(const Task& task, const Fit& global) {
+Fit with_estimated_shutter(const Task& task, const Fit& given) {
+  Fit global = given;
+  global.cost = given.solution.solver.final_cost;  // as its weights have it, like the others'
   Fit best = global;
   double step_s = kTriedRowDelay_s;
-  double milliseconds = global.solution.solver.milliseconds;
-  int iterations = global.solution.solver.iterations;
+  SolverReport effort = global.solution.solver;
   for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
     const Fit less = refit(task, best, best.row_delay_s - step_s);
     const Fit more = refit(task, best, best.row_delay_s + step_s);
     const double bend = more.cost - 2 * best.cost + less.cost;
     const double move_s = 0.5 * step_s * (less.cost - more.cost) / bend;
     const Fit next = refit(task, best, best.row_delay_s + move_s);
-    for (const Fit* each : {&less, &more, &next}) {
-      milliseconds += each->solution.solver.milliseconds;
-      iterations += each->solution.solver.iterations;
-    }
+    for (const Fit* each : {&less, &more, &next}) add_effort(each->solution.solver, effort);
     if (!(bend > 0) || !(next.cost < best.cost)) break;
     best = next;
     if (!is_significant(global, best, 1)) break;
     step_s /= 4;
   }
-  Fit chosen = is_significant(global, best, 1) ? best : global;
-  chosen.solution.solver.milliseconds = milliseconds;
-  chosen.solution.solver.iterations = iterations;
+  Fit chosen = is_significant(global, best, 1) ? best : given;
+  chosen.cost =
+      chosen.solution.solver.final_cost +
+      loss_beyond_weights(chosen.solution.motion, task.options, task.sigma_px, chosen.observations);
+  chosen.solution.solver.milliseconds = effort.milliseconds;
+  chosen.solution.solver.iterations = effort.iterations;
   return chosen;
 }
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationModel rotations) {
-  const Fit global = solve(task, task.window, start, rotations);
+  const Fit global = solve(task, start, rotations);
   return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
-}
-
-/// Adds time and iterations of what was tried beside it.
-void add_effort(const SolverReport& tried, SolverReport& solver) {
-  solver.milliseconds += tried.milliseconds;
-  solver.iterations += tried.iterations;
 }
 
 /// A fit, and the gyroscope's bias that fits best where it is not the fit's own.
@@ -166,15 +187,16 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
   if (fit.rotations != RotationModel::bias) return {std::move(fit), bias};
   Fit free = fitted(task, fit.solution.motion, RotationModel::free);
   const int more = free.solution.solver.unknowns - fit.solution.solver.unknowns;
-  const bool better = is_significant(fit, free, more) &&
-                      variance(fit) > kWorthFreeRotations * variance(free);
+  const bool better =
+      is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free);
   Fit& chosen = better ? free : fit;
   add_effort((better ? fit : free).solution.solver, chosen.solution.solver);
   return {std::move(chosen), bias};
 }
 
 /// The window with a gyroscope's rotations as the sensor's data have them, where its pictures have
-/// calibrated it: what they say of one plane has two readings, and they may have taken the wrong one.
+/// calibrated it: what they say of one plane has two readings, and they may have taken the wrong
+/// one.
 std::optional<Window> uncalibrated(const Window& window) {
   if (window.rotations != RotationModel::bias) return std::nullopt;
   const GyroSensitivity& gyro = *window.gyro;
@@ -187,16 +209,17 @@ std::optional<Window> uncalibrated(const Window& window) {
   return raw;
 }
 
-/// The start optimized, then with the other planes beside the leading one, where they are asked for.
+/// The start optimized, then with the other planes beside the leading one, where they are asked
+/// for.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
-  Fit fit = solve(task, task.window, start, task.window.rotations);
+  Fit fit = solve(task, start, task.window.rotations);
   add_effort(fit.solution.solver, effort);
   if (task.options.planes == Planes::one || task.window.planes.size() < 2 || !converged(fit))
     return fit;
   PlaneMotion with_others = fit.solution.motion;
   with_others.others = other_planes(task.window, with_others);
   if (with_others.others.empty()) return fit;
-  Fit all = solve(task, task.window, with_others, task.window.rotations);
+  Fit all = solve(task, with_others, task.window.rotations);
   add_effort(all.solution.solver, effort);
   return converged(all) ? all : fit;
 }
@@ -239,11 +262,9 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 }
 
 /// With the weights that the solution rests on.
-void add_uncertainty(const Task& task, const Fit& fit, Initialization& result) {
+void add_uncertainty(const Fit& fit, Initialization& result) {
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
-  PlaneObservations observations = plane_observations(fit.window, numbers_of(motion.others));
-  if (is_weighted(task.options)) reweigh(motion, task.options, task.sigma_px, observations);
-  result.uncertainty = uncertainty_of(fit.window, observations, motion, fit.rotations);
+  result.uncertainty = uncertainty_of(fit.window, fit.observations, motion, fit.rotations);
   if (!result.uncertainty || result.planes.empty()) return;
   result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
   result.planes[0].distance_sigma = 0;
@@ -288,7 +309,7 @@ Initialization initialize_gpo_joint(const Window& window,
     return failed(wrong, solver);
   Initialization result = deliver(fit.window, fit.solution.motion, solver);
   if (!result.ok) return result;
-  add_uncertainty(task, fit, result);
+  add_uncertainty(fit, result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (fit.rotations == RotationModel::bias && options.time_offset)
     result.time_offset_s = fit.solution.motion.time_offset_s;

@@ -79,10 +79,9 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   const std::string csv = read_file(folder / "results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
   EXPECT_THAT(csv, ::testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
-  EXPECT_THAT(
-      csv,
-      HasSubstr(
-          "\ndesk,gpo+no-ransac,0,6,gpo,gyro,frame-to-frame,false,2,per-frame,1,schur,,,,,ok,,"))
+  EXPECT_THAT(csv,
+              HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
+                        "1,schur,,,,,,ok,,"))
       << "gpo reads the solver only";
   EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
   EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));

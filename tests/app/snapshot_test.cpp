@@ -84,10 +84,12 @@ TEST(Snapshot, CompareDrawsEveryMethodOfTheTable) {
 
 TEST(Snapshot, SaysWhatIsNotUsed) {
   const fs::path file = fresh_folder() / "a.png";
-  EXPECT_EQ(snapshot("image", file, "--frames 12 --methods gpo --lengths 5 --loss huber").err,
-            "--methods is not used. Only the views compare and curves read it\n"
-            "--lengths is not used. Only the view curves reads it\n"
-            "--loss is not used. Only gpo_joint lets one choose this\n");
+  EXPECT_EQ(
+      snapshot("image", file, "--frames 12 --method gpo --methods gpo --lengths 5 --loss huber")
+          .err,
+      "--methods is not used. Only the views compare and curves read it\n"
+      "--lengths is not used. Only the view curves reads it\n"
+      "--loss is not used. Only gpo_joint lets one choose this\n");
   const std::string three = "--frames 12 --methods gpo,gpo+no-ransac,gpo_joint ";
   EXPECT_EQ(snapshot("compare", file, three + "--loss huber --tracking anchored").err, "");
   EXPECT_EQ(snapshot("compare", file, three + "--ransac --method ba").err,

@@ -75,6 +75,7 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   std::mt19937_64 random(options.seed + 1'000'003);
   std::normal_distribution<double> normal_noise;
   Gyroscope gyroscope;
+  gyroscope.bias_sigma_rad_s = 0.01;
   gyroscope.R_gyro_camera = so3_exp(Vector3d(1.2, -0.7, 2));
   const double last_s = kFramePeriod_s * (options.frames - 1);
   constexpr double kPeriod_s = 0.005;

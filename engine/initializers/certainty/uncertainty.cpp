@@ -82,6 +82,24 @@ struct Linearization {
   double sigma_px = 0;
 };
 
+/// Huber's loss beyond its knee, k |r|, bends along the error not at all and across it by k / |r|;
+/// the weights of its least squares, k / |r| both ways, would promise too much. Nothing where every
+/// weight is one, or a matrix already.
+std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
+                                                   const FrameState& state) {
+  if (!f.weight.empty()) return std::nullopt;
+  if (std::all_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m == 1; }))
+    return std::nullopt;
+  FrameObservations curved = f;
+  curved.weight.assign(f.count, Eigen::Matrix2d::Identity());
+  for (int k = 0; k < f.count; ++k) {
+    if (f.mask[k] == 1) continue;
+    const Eigen::Vector2d r = transfer_error_px(f, state, k).normalized();
+    curved.weight[k] = f.mask[k] * f.mask[k] * (Eigen::Matrix2d::Identity() - r * r.transpose());
+  }
+  return curved;
+}
+
 /// The observations of the leading plane (0) or a further one.
 const std::vector<FrameObservations>& of_plane(const PlaneObservations& observations, int plane) {
   return plane == 0 ? observations.frames : observations.others[plane - 1];
@@ -112,6 +130,11 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
       FrameNormals& normals = all.planes[k][i];
       normals = f.weight.empty() ? frame_normals(f, state, Rotating::yes)
                                  : frame_normals_by_matrix(f, state);
+      if (const auto of_loss = curvature_weights(f, state)) {
+        const double cost_of_weights = normals.cost;
+        normals = frame_normals_by_matrix(*of_loss, state);
+        normals.cost = cost_of_weights;
+      }
       if (!normals.in_front) return std::nullopt;
       cost += normals.cost;
     }
@@ -132,8 +155,7 @@ class Sandwich {
       : window_(window),
         observations_(observations),
         motion_(motion),
-        layout_{static_cast<int>(observations.others.size()),
-                model == RotationModel::bias ? 3 : 0},
+        layout_{static_cast<int>(observations.others.size()), model == RotationModel::bias ? 3 : 0},
         own_(own_size(model)),
         frames_(static_cast<int>(motion.tau.size())) {
     const double sigma_px = linearized.sigma_px;
@@ -224,12 +246,14 @@ struct Spread {
 };
 
 /// J^T r of an observation over (u, phi, t), weighted as it is.
-Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f, const FrameState& state, int k) {
+Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
+                                        const FrameState& state,
+                                        int k) {
   const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
   const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
   const double x = y.x() / y.z();
   const double v = y.y() / y.z();
-  Eigen::Vector2d r(state.fx * x - f.u[k], state.fy * v - f.v[k]);
+  Eigen::Vector2d r = transfer_error_px(f, state, k);
   r = f.weight.empty() ? Eigen::Vector2d(f.mask[k] * f.mask[k] * r)
                        : Eigen::Vector2d(f.weight[k] * r);
   // dp/dy, transposed, times r; then dy/du = -tau_c (x_1.N), dy/dphi = [y]x, dy/dt = -n.x_1.
@@ -292,8 +316,7 @@ Spread spread_of(const Window& window,
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(size);
     for (const auto& [frame, influence] : track) sum += influence.shared;
     by_track.add(of_tracks, sum);
-    for (const auto& [frame, influence] : track)
-      by_track.add(of_tracks, frame, sum, influence.own);
+    for (const auto& [frame, influence] : track) by_track.add(of_tracks, frame, sum, influence.own);
   }
   Spread both = by_track;
   both.add(by_frame);
@@ -327,8 +350,8 @@ void add_frame(const PlaneMotion& motion,
   result.center_covariances.emplace_back(R * t * R.transpose());
   const Eigen::Vector2d d_u = -(normal_tangents(motion.normal).transpose() * motion.tau[frame]);
   const Vector3d d_t = -(R.transpose() * motion.normal);
-  const double ratio_variance = d_u.dot(Y.topLeftCorner<2, 2>() * d_u) +
-                                2 * d_u.dot(ut * d_t) + d_t.dot(t * d_t);
+  const double ratio_variance =
+      d_u.dot(Y.topLeftCorner<2, 2>() * d_u) + 2 * d_u.dot(ut * d_t) + d_t.dot(t * d_t);
   result.distance_ratio_sigmas.push_back(std::sqrt(std::max(0.0, ratio_variance)));
 }
 

@@ -36,13 +36,6 @@ Matrix2d slope(const FrameObservations& f, const FrameState& state, int k) {
   return (H.topLeftCorner<2, 2>() - y.hnormalized() * H.bottomLeftCorner<1, 2>()) / y.z();
 }
 
-/// Transfer error of an observation [px].
-Vector2d error_of(const FrameObservations& f, const FrameState& state, int k) {
-  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
-  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
-  return {state.fx * y.x() / y.z() - f.u[k], state.fy * y.y() / y.z() - f.v[k]};
-}
-
 double huber_weight(double length_px, double sigma_px) {
   return std::min(1.0, kHuberSigmas * sigma_px / std::max(length_px, 1e-12));
 }
@@ -50,7 +43,7 @@ double huber_weight(double length_px, double sigma_px) {
 /// Of Huber's loss alone a weight is a number, which the kernel takes as it does its mask.
 void reweigh_by_huber(const FrameState& state, double sigma_px, FrameObservations& f) {
   for (int k = 0; k < f.count; ++k)
-    f.mask[k] = std::sqrt(huber_weight(error_of(f, state, k).norm(), sigma_px));
+    f.mask[k] = std::sqrt(huber_weight(transfer_error_px(f, state, k).norm(), sigma_px));
 }
 
 void reweigh(const FrameState& state,
@@ -69,6 +62,12 @@ void reweigh(const FrameState& state,
 }
 
 }  // namespace
+
+Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k) {
+  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
+  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
+  return {state.fx * y.x() / y.z() - f.u[k], state.fy * y.y() / y.z() - f.v[k]};
+}
 
 bool is_weighted(const InitializerOptions& options) {
   return options.error != ErrorModel::transfer || options.loss != Loss::squared;
@@ -97,7 +96,7 @@ double loss_beyond_weights(const PlaneMotion& motion,
   double sum = 0;
   const auto add = [&](const FrameObservations& f, const FrameState& state) {
     for (int k = 0; k < f.count; ++k)
-      sum += 0.5 * knee_px * std::max(0.0, error_of(f, state, k).norm() - knee_px);
+      sum += 0.5 * knee_px * std::max(0.0, transfer_error_px(f, state, k).norm() - knee_px);
   };
   for (int i = 1; i < static_cast<int>(observations.frames.size()); ++i) {
     add(observations.frames[i], frame_state(observations, motion, i));

@@ -8,6 +8,9 @@
 
 namespace gpo {
 
+/// Of an observation of a frame.
+Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
+
 /// Whether the options ask for weights other than one.
 bool is_weighted(const InitializerOptions& options);
 
@@ -21,8 +24,8 @@ void reweigh(const PlaneMotion& motion,
              PlaneObservations& observations);
 
 /// By how much Huber's loss of all observations exceeds what iteratively reweighted least squares
-/// minimize: k (|r| - k) / 2 beyond the knee k. Solutions with different weights compare by the sum.
-/// Zero of the squared loss, and of Sampson's error, whose weights hardly differ.
+/// minimize: k (|r| - k) / 2 beyond the knee k. Solutions with different weights compare by the
+/// sum. Zero of the squared loss, and of Sampson's error, whose weights hardly differ.
 double loss_beyond_weights(const PlaneMotion& motion,
                            const InitializerOptions& options,
                            double sigma_px,

@@ -4,6 +4,7 @@
 
 #include "engine/frontend/tracking.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/setting_values.h"
 #include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 
@@ -37,13 +38,13 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
 }
 
 TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
-  const Configuration huber = parse_configuration("gpo_joint+global-shutter+huber+time-offset");
-  const Settings settings = apply(huber, {});
-  EXPECT_EQ(settings.initializer.loss, Loss::huber);
+  const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
+  const Settings settings = apply(squared, {});
+  EXPECT_EQ(settings.initializer.loss, Loss::squared);
   EXPECT_EQ(settings.initializer.shutter, Shutter::global);
   EXPECT_TRUE(settings.initializer.time_offset);
-  EXPECT_EQ(key_of(huber), "gpo_joint+huber+global-shutter+time-offset");
-  EXPECT_EQ(configuration_of(settings), huber);
+  EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
+  EXPECT_EQ(configuration_of(settings), squared);
   EXPECT_EQ(title_of(parse_configuration("gpo+ceres")), "GPO by Ceres");
   EXPECT_THAT(error_of([] { parse_configuration("ba+huber"); }),
               HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
@@ -55,11 +56,11 @@ TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
   };
   EXPECT_EQ(shortest("gpo+ransac"), "gpo");
   EXPECT_EQ(shortest("gpo+automatic"), "gpo");
-  EXPECT_EQ(shortest("gpo+frame-to-frame"), "gpo");
-  EXPECT_EQ(shortest("pnp+per-frame"), "pnp");
+  EXPECT_EQ(shortest("gpo+anchored"), "gpo");
+  EXPECT_EQ(shortest("pnp+planes"), "pnp");
   EXPECT_EQ(shortest("closed_form+per-frame"), "closed_form+per-frame");
   Settings unread{.method = "ba"};
-  unread.initializer.loss = Loss::huber;
+  unread.initializer.loss = Loss::squared;
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
 }
 
@@ -86,17 +87,17 @@ TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
 
 TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettings) {
   Settings settings;
-  settings.tracking = Tracking::anchored;
+  settings.tracking = Tracking::frame_to_frame;
   settings.ransac = false;
   const auto list = parse_configurations("gpo,gpo+no-ransac,pba");
   const Settings base = base_of(list, settings);
-  EXPECT_EQ(key_of(configuration_of(apply(list[0], base))), "gpo+anchored");
-  EXPECT_EQ(key_of(configuration_of(apply(list[1], base))), "gpo+no-ransac+anchored");
-  EXPECT_EQ(key_of(configuration_of(apply(list[2], base))), "pba+anchored");
+  EXPECT_EQ(key_of(configuration_of(apply(list[0], base))), "gpo+frame-to-frame");
+  EXPECT_EQ(key_of(configuration_of(apply(list[1], base))), "gpo+no-ransac+frame-to-frame");
+  EXPECT_EQ(key_of(configuration_of(apply(list[2], base))), "pba+frame-to-frame");
 }
 
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
-  const Settings base{.start = 3, .frames = 7, .seed = 9};
+  const Settings base{.start = 3, .frames = 7, .method = "gpo", .seed = 9};
   Settings expected = base;
   expected.ransac = false;
   expected.rotations = RotationSource::truth;
@@ -108,7 +109,7 @@ TEST(Configuration, AllIsEveryMethodAndTheAblations) {
   for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
   for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
   for (const char* ablation :
-       {"gpo+no-ransac", "gpo+gyro-calibrated", "gpo+averaging", "gpo+truth", "ba+ransac"}) {
+       {"gpo+no-ransac", "gpo+gyro", "gpo+averaging", "gpo+truth", "ba+ransac"}) {
     EXPECT_TRUE(keys.contains(ablation)) << ablation;
   }
 }
@@ -130,6 +131,21 @@ TEST(Configuration, HasATitleAndAColorOfItsOwn) {
   }
   EXPECT_EQ(titles.size(), all.size());
   EXPECT_EQ(colors.size(), all.size());
+}
+
+TEST(Configuration, APresetIsAllThatItDecides) {
+  const Settings paper = apply(parse_configuration("gpo+paper"), {});
+  EXPECT_EQ(preset_of(with_setting(
+                with_setting(with_setting(paper, "loss", "squared"), "shutter", "global"),
+                "planes",
+                "one")),
+            Preset::paper)
+      << "but for what gpo does not read";
+  Settings frame_to_frame;
+  frame_to_frame.tracking = Tracking::frame_to_frame;
+  const Settings best = apply(parse_configuration("gpo_joint+best"), frame_to_frame);
+  EXPECT_EQ(best.tracking, Tracking::anchored);
+  EXPECT_THAT(error_of([] { parse_configuration("gpo+paper+anchored"); }), HasSubstr("twice"));
 }
 
 TEST(Configuration, EveryRotationSourceHasATitle) {

@@ -115,7 +115,8 @@ TEST(GpoJoint, OfAnAbsurdBiasSaysSo) {
 
 TEST(GpoJoint, IsGpoWhereTheRotationsAreKnown) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
-  const Initialization joint = initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
+  const Initialization joint =
+      initialize_gpo_joint(truth.window, {.loss = Loss::squared, .shutter = Shutter::global}, {});
   const Initialization gpo = initialize_gpo(truth.window, {}, {});
   EXPECT_LT(angle_deg(joint.plane.normal, gpo.plane.normal), 1e-6);
   EXPECT_FALSE(joint.bias_rad_s);
@@ -159,7 +160,7 @@ TEST(GpoJoint, HuberHoldsTracksThatSlipped) {
     for (int i = 15; i < truth.window.frame_count(); ++i) {
       for (int j = 140; j < 150; ++j) truth.window.points_px[i].col(j).array() += 4;
     }
-    const InitializerOptions least_squares{.shutter = Shutter::global};
+    const InitializerOptions least_squares{.loss = Loss::squared, .shutter = Shutter::global};
     const InitializerOptions robust{.loss = Loss::huber, .shutter = Shutter::global};
     squared.push_back(error_deg(initialize_gpo_joint(truth.window, least_squares, {}), truth));
     huber.push_back(error_deg(initialize_gpo_joint(truth.window, robust, {}), truth));

