@@ -158,7 +158,7 @@ TEST_F(WorkbenchWindow, WheelAndDragMoveTheCameraOfTheScene) {
 
 TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
   open();
-  const Commands commands = click(115, 193);
+  const Commands commands = click(115, 218);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
   EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings),
             uses_ransac(inspection_->settings));

@@ -123,6 +123,7 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
   Linearization all;
   all.planes.assign(planes, std::vector<FrameNormals>(frames));
   double cost = 0;
+  bool huber = false;
   for (int k = 0; k < planes; ++k) {
     for (int i = 1; i < frames; ++i) {
       const FrameObservations& f = of_plane(observations, k)[i];
@@ -131,6 +132,7 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
       normals = f.weight.empty() ? frame_normals(f, state, Rotating::yes)
                                  : frame_normals_by_matrix(f, state);
       if (const auto of_loss = curvature_weights(f, state)) {
+        huber = true;
         const double cost_of_weights = normals.cost;
         normals = frame_normals_by_matrix(*of_loss, state);
         normals.cost = cost_of_weights;
@@ -141,6 +143,7 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
   }
   const int unknowns = shared_size(model) + 3 * (planes - 1) + own_size(model) * (frames - 1);
   all.sigma_px = noise_px(2 * cost, 2 * observations.count(), unknowns);
+  if (huber) all.sigma_px /= kSigmaOfHuber;
   return all;
 }
 
@@ -236,13 +239,6 @@ struct Spread {
     cross[frame] += weight * x * e.transpose();
     own[frame] += weight * e * e.transpose();
   }
-  void add(const Spread& other) {
-    shared += other.shared;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      cross[i] += other.cross[i];
-      own[i] += other.own[i];
-    }
-  }
 };
 
 /// J^T r of an observation over (u, phi, t), weighted as it is.
@@ -266,7 +262,8 @@ Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
   return gradient;
 }
 
-/// The observations' influences, summed by track and by frame. `shared_inverse` is that of the
+/// The observations' influences, summed by track, and of what is shared by frame, too; a frame's own
+/// unknowns take up what its observations have in common. `shared_inverse` is that of the
 /// information on what the frames share, zero in the rows and columns of what is held.
 Spread spread_of(const Window& window,
                  const PlaneObservations& observations,
@@ -279,12 +276,12 @@ Spread spread_of(const Window& window,
   const int own = static_cast<int>(sandwich.eliminated[1].inverse.rows());
   std::vector<std::vector<std::pair<int, Influence>>> tracks(window.track_count());
   Spread by_track(size, own, frames);
-  Spread by_frame(size, own, frames);
+  SharedMatrix by_frame = SharedMatrix::Zero(size, size);
   const bool frames_tell = frames - 1 >= kLeastClusters;
   const double of_frames = degrees_of_freedom * (frames - 1) / std::max(1, frames - 2);
   for (int i = 1; i < frames; ++i) {
     const Eliminated& eliminated = sandwich.eliminated[i];
-    Influence of_frame{Eigen::VectorXd::Zero(size), Own::Zero(own)};
+    Eigen::VectorXd of_frame = Eigen::VectorXd::Zero(size);
     for (int k = 0; k <= static_cast<int>(observations.others.size()); ++k) {
       const FrameObservations& f = of_plane(observations, k)[i];
       const FrameState state = state_of(observations, motion, i, k);
@@ -295,19 +292,12 @@ Spread spread_of(const Window& window,
         Eigen::VectorXd reduced = -(eliminated.gain.transpose() * g.tail(own));
         reduced(at) += M.transpose() * g;
         Influence one{-(shared_inverse * reduced), -(eliminated.inverse * g.tail(own))};
-        of_frame.shared += one.shared;
-        of_frame.own += one.own;
-        if (frames_tell) {
-          by_frame.add(-degrees_of_freedom, one.shared);
-          by_frame.add(-degrees_of_freedom, i, one.shared, one.own);
-        }
+        of_frame += one.shared;
+        if (frames_tell) by_frame -= degrees_of_freedom * one.shared * one.shared.transpose();
         tracks[f.track[o]].emplace_back(i, std::move(one));
       }
     }
-    if (frames_tell) {
-      by_frame.add(of_frames, of_frame.shared);
-      by_frame.add(of_frames, i, of_frame.shared, of_frame.own);
-    }
+    if (frames_tell) by_frame += of_frames * of_frame * of_frame.transpose();
   }
   const auto clusters = static_cast<double>(
       std::ranges::count_if(tracks, [](const auto& track) { return !track.empty(); }));
@@ -318,11 +308,13 @@ Spread spread_of(const Window& window,
     by_track.add(of_tracks, sum);
     for (const auto& [frame, influence] : track) by_track.add(of_tracks, frame, sum, influence.own);
   }
-  Spread both = by_track;
-  both.add(by_frame);
-  // Few frames may make the difference indefinite: tracks alone are the cautious answer then.
-  const Eigen::SelfAdjointEigenSolver<SharedMatrix> eigen(both.shared - 0.25 * by_track.shared);
-  return eigen.eigenvalues()(0) < 0 ? by_track : both;
+  const SharedMatrix both = by_track.shared + by_frame;
+  // What frames share may add to what tracks share, never take from it: of few frames it is noise.
+  const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
+  const Eigen::SelfAdjointEigenSolver<SharedMatrix> eigen(both);
+  const bool more = of_normal(both) > of_normal(by_track.shared) && eigen.eigenvalues()(0) >= 0;
+  if (more) by_track.shared = both;
+  return by_track;
 }
 
 int tracks_of(const PlaneObservations& observations) {

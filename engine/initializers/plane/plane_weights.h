@@ -8,6 +8,9 @@
 
 namespace gpo {
 
+/// Root of what Huber's weights leave of the mean square of two-dimensional Gaussian noise.
+inline constexpr double kSigmaOfHuber = 0.8636;
+
 /// Of an observation of a frame.
 Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
 

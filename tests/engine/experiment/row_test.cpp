@@ -63,17 +63,18 @@ std::map<std::string, std::string> cells_of(const Row& row) {
 TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
   const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
   const auto inspection =
-      Inspector(recording).inspect({.frames = 6, .tracking = Tracking::anchored});
+      Inspector(recording).inspect(
+          {.frames = 6, .method = "gpo", .tracking = Tracking::frame_to_frame});
   const Row row = make_row(*inspection);
-  EXPECT_EQ(row.configuration, "gpo+anchored");
-  EXPECT_EQ(row.settings.tracking, Tracking::anchored);
-  EXPECT_EQ(row.settings.rotations, RotationSource::gyro);
+  EXPECT_EQ(row.configuration, "gpo+frame-to-frame");
+  EXPECT_EQ(row.settings.tracking, Tracking::frame_to_frame);
+  EXPECT_EQ(row.settings.rotations, RotationSource::gyro_calibrated);
   EXPECT_EQ(row.settings.ransac, true);
 }
 
 TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
-  Settings settings;
-  settings.initializer.loss = Loss::huber;
+  Settings settings{.method = "gpo"};
+  settings.initializer.loss = Loss::squared;
   auto cells = cells_of(refused_row("desk", settings, ""));
   EXPECT_EQ(cells.at("configuration"), "gpo");
   EXPECT_EQ(cells.at("solver"), "schur");
@@ -81,8 +82,8 @@ TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
   EXPECT_EQ(cells.at("shutter"), "");
   settings.method = "gpo_joint";
   cells = cells_of(refused_row("desk", settings, ""));
-  EXPECT_EQ(cells.at("configuration"), "gpo_joint+huber");
-  EXPECT_EQ(cells.at("loss"), "huber");
+  EXPECT_EQ(cells.at("configuration"), "gpo_joint+squared");
+  EXPECT_EQ(cells.at("loss"), "squared");
   EXPECT_EQ(cells.at("shutter"), "estimated");
   EXPECT_EQ(cells.at("time_offset"), "false");
 }
@@ -105,7 +106,7 @@ TEST(Row, ComesBackFromJsonToTheBit) {
 
 TEST(Row, QuotesReasonsAndLeavesTheUnknownEmpty) {
   const std::string csv = to_csv(std::vector{made_row("gpo", 3, 7, {})});
-  EXPECT_THAT(csv.substr(csv.find('\n') + 1), StartsWith("made,gpo,3,7,gpo,automatic,"));
+  EXPECT_THAT(csv.substr(csv.find('\n') + 1), StartsWith("made,gpo,3,7,gpo_joint,automatic,"));
   EXPECT_THAT(csv, HasSubstr("failed,\"no parallax, \"\"none\"\"\",,,"));
 }
 

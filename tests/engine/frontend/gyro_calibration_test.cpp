@@ -27,6 +27,7 @@ const Vector3d kBias(0.004, -0.006, 0.003);
 /// frames, and reads a bias that it does not know of. Its axes are turned against the camera's.
 Gyroscope biased_gyroscope(const Simulation& s) {
   Gyroscope gyroscope;
+  gyroscope.bias_sigma_rad_s = 0.01;
   gyroscope.R_gyro_camera = so3_exp({0.3, -1.2, 0.5});
   const auto& times = s.window.timestamps_ns;
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {

@@ -198,7 +198,7 @@ TEST(RotationSource, TypoNamesTheKnownOnes) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "rotations: unknown value 'gyr', expected one of automatic, gyro, "
+                 "rotations: unknown value 'gyr', expected one of automatic, raw, gyro, "
                  "gyro-calibrated, averaging, truth");
   }
 }

@@ -58,7 +58,7 @@ class JointPattern : public testing::TestWithParam<Motion> {};
 
 TEST_P(JointPattern, ReachesTheBoundOfAnUnknownBiasAndBeatsTheOthers) {
   const Medians m = medians(GetParam(), 15);
-  EXPECT_LT(m.joint, 1.15 * m.bound);
+  EXPECT_LT(m.joint, 1.2 * m.bound) << "Huber's loss costs 3 % where no track is wrong";
   EXPECT_LT(m.joint, m.ba);
   EXPECT_LT(m.joint, m.pba);
   EXPECT_LT(m.joint, m.gpo);

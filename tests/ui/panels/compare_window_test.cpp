@@ -31,6 +31,7 @@ class CompareWindow : public DrawingTest {
   void SetUp() override {
     DrawingTest::SetUp();
     auto own = std::make_shared<Inspection>(made_inspection());
+    own->settings.method = "gpo";
     state_.settings = own->settings;
     adopt(state_, own->recording);
     state_.inspection = own;

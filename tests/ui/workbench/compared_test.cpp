@@ -76,13 +76,13 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
   for (const Configuration& one : parse_configurations("all"))
     EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
   Settings settings;
-  settings.ransac = true;  // as gpo does by default
-  EXPECT_EQ(key_of(configuration_of(settings)), "gpo");
+  settings.ransac = true;  // as gpo_joint does by default
+  EXPECT_EQ(key_of(configuration_of(settings)), "gpo_joint");
 }
 
 TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   WorkbenchState state;
-  state.settings.tracking = Tracking::anchored;
+  state.settings.tracking = Tracking::frame_to_frame;
   run(state, "compare gpo,ba");
   const auto keys = [&] {
     std::vector<std::string> all;
@@ -92,19 +92,20 @@ TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   // What all have in common is not said of each, so that each keeps its name and its color.
   EXPECT_THAT(keys(), ElementsAre("gpo", "ba"));
   for (const Compared& one : compared_results(state))
-    EXPECT_EQ(one.settings.tracking, Tracking::anchored);
+    EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run(state, "compare gpo,gpo+no-ransac");
   state.settings.ransac = false;  // as a click on the second makes it
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
-  run(state, "compare gpo,gpo+frame-to-frame");  // the same by default, and not here
+  run(state, "compare gpo,gpo+anchored");  // the same by default, and not here
   EXPECT_THAT(state.compared, ElementsAre("gpo"));
-  run(state, "compare gpo+frame-to-frame");
+  run(state, "compare gpo+anchored");
   state.settings.ransac.reset();
   EXPECT_THAT(keys(), ElementsAre("gpo"));
 }
 
 TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   WorkbenchState state;
+  state.settings.method = "gpo";
   EXPECT_EQ(flipped(state), std::nullopt);
   run(state, "flip on");
   EXPECT_EQ(flipped(state), "pnp_ba");
@@ -121,6 +122,7 @@ TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
 TEST(Compared, FlipAsksForWhatItShows) {
   WorkbenchState state;
   surveyed(state, "gpo");
+  state.settings.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
   run(state, "flip on");
   const auto wanted = wanted_inspections(state);

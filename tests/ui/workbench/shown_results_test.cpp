@@ -13,7 +13,9 @@ namespace {
 TEST(ShownResults, AreTheCurrentOneAndTheComparedOnesThatExist) {
   WorkbenchState state;
   EXPECT_TRUE(shown_results(state).empty());
-  const auto current = std::make_shared<const Inspection>(made_inspection());
+  Inspection made = made_inspection();
+  made.settings.method = "gpo";
+  const auto current = std::make_shared<const Inspection>(made);
   state.inspection = current;
   state.compared = {"gpo", "ba", "gpo+no-ransac"};
   const Settings& settings = current->settings;
