@@ -14,8 +14,8 @@
 namespace gpo {
 
 struct GyroBias {
-  Eigen::Vector3d bias_rad_s;   ///< in the gyroscope's axes
-  Eigen::Matrix3d covariance;   ///< [(rad/s)^2]
+  Eigen::Vector3d bias_rad_s;  ///< in the gyroscope's axes
+  Eigen::Matrix3d covariance;  ///< [(rad/s)^2]
 };
 
 /// The constant bias, in the gyroscope's axes, whose integrated rotations fit the visual

@@ -45,8 +45,7 @@ void keep_consistent(Window& window, double threshold_px) {
 }
 
 WindowPlane plane_of(const Window& window, const std::vector<int>& tracks, double threshold_px) {
-  const Eigen::Matrix3d none =
-      Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const int frames = window.frame_count();
   WindowPlane plane{tracks,
                     std::vector<Eigen::Matrix3d>(frames, none),

@@ -14,8 +14,8 @@ namespace gpo {
 
 /// Undistorts the tracks once and rejects outliers between the reference frame and each other
 /// frame, then also over the window where `inliers` says so and enough tracks are consistent; or
-/// tells the planes of the window, of which number `leader` (from 0) leads. Rotations are left at the identity. `recording_timestamps_ns` are those of all frames of the
-/// recording.
+/// tells the planes of the window, of which number `leader` (from 0) leads. Rotations are left at
+/// the identity. `recording_timestamps_ns` are those of all frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

@@ -26,14 +26,15 @@ struct Rotations {
   bool stopped = false;                                ///< there are none because of that
 };
 
-/// automatic: a gyroscope, calibrated where the pictures can, else averaging. raw: a gyroscope as it
-/// is, else averaging.
+/// automatic: a gyroscope, calibrated where the pictures can, else averaging. raw: a gyroscope as
+/// it is, else averaging.
 enum class RotationSource { automatic, raw, gyro, gyro_calibrated, averaging, truth };
 
 template <>
 struct ChoiceKeys<RotationSource> {
   static constexpr const char* name = "rotations";
-  static constexpr std::array keys{"automatic", "raw", "gyro", "gyro-calibrated", "averaging", "truth"};
+  static constexpr std::array keys{
+      "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "truth"};
 };
 
 /// Whether the source integrates a gyroscope.

@@ -37,8 +37,7 @@ Initialization plain(const Window& window,
 void add_planes(const Window& window, Initialization& result) {
   result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : other_planes(window, motion_of(result.plane, result.cameras)))
-    result.planes.push_back(
-        {number, {m.normalized(), result.plane.distance / m.norm()}});
+    result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
 }  // namespace

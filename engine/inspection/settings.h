@@ -17,8 +17,8 @@ namespace gpo {
 /// Everything that a result depends on beside the recording. Immutable in use. A field more is a
 /// row more in `settings_table`.
 struct Settings {
-  int start = 0;               ///< reference frame, counts in the recording
-  int frames = 30;             ///< length of the window
+  int start = 0;                     ///< reference frame, counts in the recording
+  int frames = 30;                   ///< length of the window
   std::string method = "gpo_joint";  ///< key in `methods()`
   RotationSource rotations = RotationSource::automatic;  ///< calibrated gyroscope, else averaging
   Tracking tracking = Tracking::anchored;                ///< of the built-in front end

@@ -155,17 +155,18 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .least = 0.1,
                       .most = 50,
                       .reader = SettingReader::inlier_test}));
-  rows.push_back(row([](auto& s) -> auto& { return s.inliers; },
-                     {.key = "inliers",
-                      .title = "Inliers",
-                      .help = "Tracks on the plane: told frame by frame, consistent over the window, "
-                              "or those of one of the window's planes",
-                      .reader = SettingReader::inlier_test,
-                      .advanced = true,
-                      .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
-                                {"consistent", "consistent", "with consistent inliers", 0x999933},
-                                {"planes", "planes", "with inliers by plane", 0x88AA55}},
-                      .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
+  rows.push_back(
+      row([](auto& s) -> auto& { return s.inliers; },
+          {.key = "inliers",
+           .title = "Inliers",
+           .help = "Tracks on the plane: told frame by frame, consistent over the window, "
+                   "or those of one of the window's planes",
+           .reader = SettingReader::inlier_test,
+           .advanced = true,
+           .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
+                     {"consistent", "consistent", "with consistent inliers", 0x999933},
+                     {"planes", "planes", "with inliers by plane", 0x88AA55}},
+           .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
   rows.push_back(row([](auto& s) -> auto& { return s.plane; },
                      {.key = "plane",
                       .title = "Plane",

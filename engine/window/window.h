@@ -46,10 +46,10 @@ struct ChoiceKeys<RotationModel> {
 struct GyroSensitivity {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< with which R_wc was integrated
   Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< what the sensor's data say of it
-  double prior_sigma_rad_s = 0.1;                        ///< and how surely, each axis
+  double prior_sigma_rad_s = 0.1;                         ///< and how surely, each axis
   /// Of `bias_rad_s`: what holds the rotations as they are is wrong by that.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
-  std::vector<Eigen::Matrix3d> d_bias;                    ///< one a frame, of its camera axes [s]
+  std::vector<Eigen::Matrix3d> d_bias;    ///< one a frame, of its camera axes [s]
   std::vector<Eigen::Vector3d> d_offset;  ///< one a frame, of its camera axes [rad/s]
 };
 
@@ -75,7 +75,7 @@ struct Window {
   std::vector<WindowPlane> planes = {};
   int largest_refused = 0;  ///< tracks of the set that was not taken as a plane, where none was
   int leader = 0;  ///< the plane whose tracks are the inliers, and of whose distance is the gauge
-  std::vector<Eigen::Matrix3d> R_wc;        ///< given rotations, R_wc of frame 0 is I
+  std::vector<Eigen::Matrix3d> R_wc;               ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< what is uncertain of them
   std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope
   /// One a frame, of the members above; empty: whoever needs them computes them (`frame_errors`).

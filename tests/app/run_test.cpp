@@ -324,7 +324,7 @@ TEST_F(SharedRecordings, CardsTracksInitializeByGyroscope) {
   if (!fs::exists(shared("cards-tracks"))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   for (const int start : {1, 139, 259}) {
     const json j = run_json(shared("cards-tracks").string() + " --tracks " +
-                            shared("cards-tracks/tracks.csv").string() + " --frames 12 --start " +
+                            shared("cards-tracks/tracks.csv").string() + " --frames 16 --start " +
                             std::to_string(start));
     EXPECT_EQ(j["status"], "ok") << start;
     const double squares = 2 * j["solver"]["final_cost"].get<double>();

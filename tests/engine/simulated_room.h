@@ -26,7 +26,8 @@ struct RoomOptions {
   std::vector<double> shares = {};
   double nearest = 1;
   double farthest = 3;
-  /// The window's planes are the true ones with all their tracks, not those that the front end finds.
+  /// The window's planes are the true ones with all their tracks, not those that the front end
+  /// finds.
   bool told_truly = false;
   std::uint64_t seed = 1;
 };

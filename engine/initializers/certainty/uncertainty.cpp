@@ -262,8 +262,8 @@ Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
   return gradient;
 }
 
-/// The observations' influences, summed by track, and of what is shared by frame, too; a frame's own
-/// unknowns take up what its observations have in common. `shared_inverse` is that of the
+/// The observations' influences, summed by track, and of what is shared by frame, too; a frame's
+/// own unknowns take up what its observations have in common. `shared_inverse` is that of the
 /// information on what the frames share, zero in the rows and columns of what is held.
 Spread spread_of(const Window& window,
                  const PlaneObservations& observations,

@@ -91,8 +91,8 @@ struct HomographyCandidate {
 
 /// One of the window's planes as it was found.
 struct PlaneEstimate {
-  int number = 0;  ///< in the window
-  Plane plane;     ///< unit: distance of the leading plane
+  int number = 0;                                         ///< in the window
+  Plane plane;                                            ///< unit: distance of the leading plane
   std::optional<Eigen::Matrix3d> normal_covariance = {};  ///< [rad^2], rank 2
   std::optional<double> distance_sigma = {};              ///< of its distance
 };
@@ -105,8 +105,8 @@ struct Initialization {
   std::string reason;
   Plane plane;                        ///< the leading one
   std::vector<PlaneEstimate> planes;  ///< of a window that is told by planes; the leading one first
-  std::vector<Pose> cameras;     ///< one a frame
-  std::vector<MapPoint> points;  ///< inlier tracks; all that it used of a method without a plane
+  std::vector<Pose> cameras;          ///< one a frame
+  std::vector<MapPoint> points;   ///< inlier tracks; all that it used of a method without a plane
   std::vector<int> dropped = {};  ///< inlier tracks beyond the plane's horizon, columns
   SolverReport solver;
   double rms_px = 0;  ///< root mean square reprojection error over the observations used

@@ -21,8 +21,8 @@ struct PlaneUncertainty {
 /// initialization (world = reference camera, d = 1), what `rotations` leaves unknown marginalized.
 /// It rests on what the residuals say, not on a model of them: errors of a track in all its frames
 /// may share a cause, and so may those of a frame in all its tracks (covariance clustered both
-/// ways). Where a method takes a gyroscope's rotations as known, their bias is wrong as far as it is
-/// unknown, and the result with it. The lens is taken as exact.
+/// ways). Where a method takes a gyroscope's rotations as known, their bias is wrong as far as it
+/// is unknown, and the result with it. The lens is taken as exact.
 struct Uncertainty {
   double sigma_px = 0;  ///< of a coordinate, from the residuals, unknowns counted
   int tracks = 0;       ///< on which it rests

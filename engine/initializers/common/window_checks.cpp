@@ -42,7 +42,8 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
   }
   if (window.inliers == Inliers::planes && window.planes.empty()) {
     return fmt::format(
-        "no plane: of {} tracks no set stands out that keeps to one homography a frame; the largest "
+        "no plane: of {} tracks no set stands out that keeps to one homography a frame; the "
+        "largest "
         "that was tried has {}",
         window.track_count(),
         window.largest_refused);

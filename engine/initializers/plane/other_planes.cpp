@@ -29,7 +29,10 @@ struct LinearSystem {
   int behind = 0;
 };
 
-LinearSystem system_at(const Window& window, const PlaneMotion& motion, int plane, const Vector3d& m) {
+LinearSystem system_at(const Window& window,
+                       const PlaneMotion& motion,
+                       int plane,
+                       const Vector3d& m) {
   const Matrix3d K_inverse = window.K.inverse();
   LinearSystem system;
   for (int i = 1; i < window.frame_count(); ++i) {
@@ -55,7 +58,9 @@ LinearSystem system_at(const Window& window, const PlaneMotion& motion, int plan
   return system;
 }
 
-std::optional<Vector3d> plane_from_cameras(const Window& window, const PlaneMotion& motion, int plane) {
+std::optional<Vector3d> plane_from_cameras(const Window& window,
+                                           const PlaneMotion& motion,
+                                           int plane) {
   Vector3d m = Vector3d::Zero();
   for (int round = 0; round < kRounds; ++round) {
     const LinearSystem system = system_at(window, motion, plane, m);

@@ -11,8 +11,8 @@ namespace gpo {
 
 /// The window's planes beside the leading one, each by linear least squares from the cameras:
 /// [x_i]x R_ciw tau_i (m.x_1) = [x_i]x R_ciw x_1 over its tracks and the frames (engine/method.md,
-/// eq. 3), weighted to pixels by a first solution. A plane that the cameras' motion does not tell, or
-/// that most of its tracks put behind the reference camera, is left out.
+/// eq. 3), weighted to pixels by a first solution. A plane that the cameras' motion does not tell,
+/// or that most of its tracks put behind the reference camera, is left out.
 std::vector<OtherPlane> other_planes(const Window& window, const PlaneMotion& motion);
 
 /// Their numbers.

@@ -37,9 +37,8 @@ std::optional<PlaneMotion> other_reading(const Window& window, const PlaneMotion
       motion.tau, {}, [](const Eigen::Vector3d& tau) { return tau.norm(); });
   const auto of_widest = readings_of(window, static_cast<int>(widest - motion.tau.begin()));
   if (of_widest.size() < 2) return std::nullopt;
-  const auto farthest = std::ranges::max_element(of_widest, {}, [&](const HomographyMotion& m) {
-    return angle_deg(m.normal, motion.normal);
-  });
+  const auto farthest = std::ranges::max_element(
+      of_widest, {}, [&](const HomographyMotion& m) { return angle_deg(m.normal, motion.normal); });
   if (angle_deg(farthest->normal, motion.normal) < kLeastTwin_deg) return std::nullopt;
   PlaneMotion other;
   other.normal = farthest->normal;

@@ -11,8 +11,8 @@ namespace gpo {
 
 /// The twin of a motion over a plane: of the two readings that the camera can see of each frame's
 /// homography, those whose normals agree with the one that `motion` did not take in its widest
-/// frame. Rotations, translations and normal are new; further planes are left out. Nothing where the
-/// widest frame has one reading only.
+/// frame. Rotations, translations and normal are new; further planes are left out. Nothing where
+/// the widest frame has one reading only.
 std::optional<PlaneMotion> other_reading(const Window& window, const PlaneMotion& motion);
 
 }  // namespace gpo

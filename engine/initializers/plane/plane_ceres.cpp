@@ -60,7 +60,8 @@ Rotation rotation_at(const Window& window,
   return rotation;
 }
 
-/// How a plane is parametrized: the leading one by the quaternion of its normal, a further one by m.
+/// How a plane is parametrized: the leading one by the quaternion of its normal, a further one by
+/// m.
 enum class PlaneBlock { direction, m };
 
 /// Transfer errors of one frame's tracks on one plane (engine/method.md, eq. 7): one block a frame,
@@ -111,11 +112,12 @@ class FrameCost : public ceres::CostFunction {
       if (!transfer.in_front) return false;
       const double weight = observations_.mask[k];
       Eigen::Map<Eigen::Vector2d> residual(residuals + 2 * k);
-      residual = weight * (transfer.pixel - Eigen::Vector2d(observations_.u[k], observations_.v[k]));
+      residual =
+          weight * (transfer.pixel - Eigen::Vector2d(observations_.u[k], observations_.v[k]));
       const auto write = [&](int block, const auto& J) {
         if (jacobians == nullptr || jacobians[block] == nullptr) return;
-        Eigen::Map<RowMajor<2, Eigen::Dynamic>>(
-            jacobians[block] + 2 * J.cols() * k, 2, J.cols()) = weight * J;
+        Eigen::Map<RowMajor<2, Eigen::Dynamic>>(jacobians[block] + 2 * J.cols() * k, 2, J.cols()) =
+            weight * J;
       };
       write(0, (transfer.d_normal * d_m).eval());
       write(1, transfer.d_tau);

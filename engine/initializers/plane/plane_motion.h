@@ -17,7 +17,7 @@ namespace gpo {
 
 /// A plane beside the leading one, m.P + 1 = 0.
 struct OtherPlane {
-  int number = 0;                                ///< in the window
+  int number = 0;                                 ///< in the window
   Eigen::Vector3d m = -Eigen::Vector3d::UnitZ();  ///< n / d [1 / distance of the leading plane]
 };
 
@@ -26,9 +26,9 @@ struct OtherPlane {
 /// two solutions with the same pictures, (n, tau) and (-n, -tau), `facing` is the one that is seen.
 struct PlaneMotion {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  std::vector<OtherPlane> others = {};       ///< further planes that are seen from these cameras
-  std::vector<Eigen::Vector3d> tau;          ///< one a frame, -p_wc
-  std::vector<Eigen::Matrix3d> R_wc;                     ///< one a frame
+  std::vector<OtherPlane> others = {};  ///< further planes that are seen from these cameras
+  std::vector<Eigen::Vector3d> tau;     ///< one a frame, -p_wc
+  std::vector<Eigen::Matrix3d> R_wc;    ///< one a frame
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< where the rotations depend on it
   double time_offset_s = 0;  ///< added to the gyroscope's own, where they depend on it
 };

@@ -14,7 +14,7 @@ namespace gpo {
 
 inline constexpr std::size_t kKernelWidth = 4;  ///< observations a step of the kernels takes
 
-inline constexpr int kMostOtherPlanes = 6;      ///< beside the leading one
+inline constexpr int kMostOtherPlanes = 6;  ///< beside the leading one
 
 /// The inliers of one frame, a structure of arrays for the vector units. Padded with copies of the
 /// first one, masked, to whole vectors.

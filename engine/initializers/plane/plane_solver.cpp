@@ -120,7 +120,7 @@ void add_plane(const FrameNormals& f,
 struct Linearized {
   std::vector<FrameNormals> frames;
   std::vector<std::vector<FrameNormals>> others;  ///< of each further plane
-  double cost = 0;  ///< with the priors' share
+  double cost = 0;                                ///< with the priors' share
   bool in_front = true;
 };
 
@@ -240,8 +240,8 @@ class PlaneProblem {
     for (int k = 0; kSeveral<S> && k < layout_.others; ++k) {
       const Eigen::Vector3d u_s = step.shared.segment(Layout::of_plane(k + 1), 3);
       const double length = from.others[k].m.norm();
-      to.others[k].m = length * std::exp(u_s(2)) *
-                       moved_normal(from.others[k].m / length, u_s.head<2>());
+      to.others[k].m =
+          length * std::exp(u_s(2)) * moved_normal(from.others[k].m / length, u_s.head<2>());
     }
     if (has_gyro()) to.bias_rad_s += step.shared.template segment<3>(layout_.of_gyro());
     if (has_clock()) to.time_offset_s += step.shared(layout_.of_gyro() + 3);
@@ -265,9 +265,9 @@ class PlaneProblem {
                           const FrameState& state,
                           Linearized& all) const {
     const bool rotating = S::kOwn == 6 || has_gyro();
-    FrameNormals normals =
-        f.weight.empty() ? frame_normals(f, state, rotating ? Rotating::yes : Rotating::no)
-                         : frame_normals_by_matrix(f, state);
+    FrameNormals normals = f.weight.empty()
+                               ? frame_normals(f, state, rotating ? Rotating::yes : Rotating::no)
+                               : frame_normals_by_matrix(f, state);
     all.cost += normals.cost;
     all.in_front = all.in_front && normals.in_front;
     return normals;
@@ -288,8 +288,7 @@ class PlaneProblem {
       const Eigen::Vector3d tau_c = motion.R_wc[frame].transpose() * motion.tau[frame];
       add_plane<S>(at.frames[frame], layout_, 0, plane_columns(0, tau_c, gyro), sum);
       for (int k = 0; k < layout_.others; ++k)
-        add_plane<S>(
-            at.others[k][frame], layout_, k + 1, plane_columns(k + 1, tau_c, gyro), sum);
+        add_plane<S>(at.others[k][frame], layout_, k + 1, plane_columns(k + 1, tau_c, gyro), sum);
       return sum;
     }
   }
@@ -298,8 +297,7 @@ class PlaneProblem {
     double cost = 0;
     if (has_gyro())
       cost += 0.5 * bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s).squaredNorm();
-    if (has_clock())
-      cost += 0.5 * offset_weight() * motion.time_offset_s * motion.time_offset_s;
+    if (has_clock()) cost += 0.5 * offset_weight() * motion.time_offset_s * motion.time_offset_s;
     return cost;
   }
 
@@ -309,8 +307,7 @@ class PlaneProblem {
       gradient.template segment<3>(layout_.of_gyro()) =
           bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s);
     }
-    if (has_clock())
-      gradient(layout_.of_gyro() + 3) = offset_weight() * motion.time_offset_s;
+    if (has_clock()) gradient(layout_.of_gyro() + 3) = offset_weight() * motion.time_offset_s;
     return gradient;
   }
 
@@ -400,10 +397,10 @@ PlaneSolution solve_plane(const Window& window,
   const bool several = !observations.others.empty();
   const bool free = unknowns.rotations == RotationModel::free;
   const auto solve = several ? (free ? solve_split<SeveralPlanesFree> : solve_split<SeveralPlanes>)
-                     : unknowns.rotations == RotationModel::known  ? solve_split<KnownRotations>
-                     : unknowns.rotations == RotationModel::free ? solve_split<FreeRotations>
-                     : unknowns.time_offset                      ? solve_split<UnknownBiasOffset>
-                                                                 : solve_split<UnknownBias>;
+                     : unknowns.rotations == RotationModel::known ? solve_split<KnownRotations>
+                     : unknowns.rotations == RotationModel::free  ? solve_split<FreeRotations>
+                     : unknowns.time_offset                       ? solve_split<UnknownBiasOffset>
+                                                                  : solve_split<UnknownBias>;
   PlaneSolution solution = solve(window, observations, start, unknowns, watch);
   solution.solver.residuals = 2 * observations.count();
   solution.solver.milliseconds =

@@ -40,7 +40,8 @@ PlaneSolution solve_plane(const Window& window,
                           const Watch& watch);
 
 /// The same minimum by Ceres, as the paper does it (dogleg, dense Schur, one analytic block a
-/// frame and plane); weights that are matrices are taken as one. It ends where the cost changes relatively less than the tolerance.
+/// frame and plane); weights that are matrices are taken as one. It ends where the cost changes
+/// relatively less than the tolerance.
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneObservations& observations,
                                      const PlaneMotion& start,

@@ -39,7 +39,8 @@ Pose pose_after(const PlaneMotion& motion, int frame, const Velocity& velocity, 
 }
 
 /// The plane of each track; nothing of one that lies on none.
-std::vector<std::optional<Plane>> planes_of_tracks(const Window& window, const PlaneMotion& motion) {
+std::vector<std::optional<Plane>> planes_of_tracks(const Window& window,
+                                                   const PlaneMotion& motion) {
   std::vector<std::optional<Plane>> planes(window.track_count());
   for (const std::vector<bool>& inlier : window.inlier)
     for (int j = 0; j < window.track_count(); ++j)

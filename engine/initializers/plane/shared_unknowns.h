@@ -30,8 +30,8 @@ using PlaneColumns = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7>;
 /// How so many of the gyroscope's unknowns turn a frame: phi = this times them.
 GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int frame, int unknowns);
 
-/// Moving m of a further plane along itself, dm = m ds, moves the picture as t = tau ds does, because
-/// what multiplies t is m.x_1 (engine/method.md, eq. 7b).
+/// Moving m of a further plane along itself, dm = m ds, moves the picture as t = tau ds does,
+/// because what multiplies t is m.x_1 (engine/method.md, eq. 7b).
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro);
 
 }  // namespace gpo

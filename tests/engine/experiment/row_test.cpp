@@ -62,9 +62,8 @@ std::map<std::string, std::string> cells_of(const Row& row) {
 
 TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
   const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
-  const auto inspection =
-      Inspector(recording).inspect(
-          {.frames = 6, .method = "gpo", .tracking = Tracking::frame_to_frame});
+  const auto inspection = Inspector(recording).inspect(
+      {.frames = 6, .method = "gpo", .tracking = Tracking::frame_to_frame});
   const Row row = make_row(*inspection);
   EXPECT_EQ(row.configuration, "gpo+frame-to-frame");
   EXPECT_EQ(row.settings.tracking, Tracking::frame_to_frame);

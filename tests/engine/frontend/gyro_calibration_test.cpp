@@ -49,7 +49,8 @@ double last_error_deg(const Rotations& rotations, const Simulation& s) {
 TEST(GyroCalibration, FindsTheBiasThatExplainsExactRotations) {
   const Simulation s = simulate({.motion = Motion::orbit, .seed = 4});
   const Gyroscope gyroscope = biased_gyroscope(s);
-  const Vector3d bias = fit_gyro_bias(gyroscope, s.window.timestamps_ns, {s.window.R_wc, ""}).bias_rad_s;
+  const Vector3d bias =
+      fit_gyro_bias(gyroscope, s.window.timestamps_ns, {s.window.R_wc, ""}).bias_rad_s;
   // The prior at zero draws it in by (0.001 rad / (0.01 rad/s x 0.58 s))^2.
   EXPECT_LT((bias - kBias).norm(), 0.08 * kBias.norm());
 }
@@ -58,7 +59,8 @@ TEST(GyroCalibration, AFewWrongVisualRotationsDoNotMoveTheBias) {
   const Simulation s = simulate({.motion = Motion::orbit, .seed = 4});
   std::vector<Matrix3d> R_wc = s.window.R_wc;
   for (const int i : {7, 15, 22}) R_wc[i] = R_wc[i] * so3_exp({0.2, -0.1, 0.1});
-  const Vector3d bias = fit_gyro_bias(biased_gyroscope(s), s.window.timestamps_ns, {R_wc, ""}).bias_rad_s;
+  const Vector3d bias =
+      fit_gyro_bias(biased_gyroscope(s), s.window.timestamps_ns, {R_wc, ""}).bias_rad_s;
   EXPECT_LT((bias - kBias).norm(), 0.15 * kBias.norm());
 }
 
@@ -67,7 +69,8 @@ TEST(GyroCalibration, ShortWindowKeepsTheBiasThatTheGyroscopeComesWith) {
   const std::span times(s.window.timestamps_ns.data(), 4);
   const std::vector<Matrix3d> R_wc(s.window.R_wc.begin(), s.window.R_wc.begin() + 4);
   // By the same ratio: 0.07 s, so that 0.33 of the bias remain.
-  EXPECT_LT(fit_gyro_bias(biased_gyroscope(s), times, {R_wc, ""}).bias_rad_s.norm(), 0.4 * kBias.norm());
+  EXPECT_LT(fit_gyro_bias(biased_gyroscope(s), times, {R_wc, ""}).bias_rad_s.norm(),
+            0.4 * kBias.norm());
 }
 
 // An approach says little of the normal, hence of the rotations: there it only must not harm.

@@ -8,7 +8,8 @@
 namespace gpo {
 namespace {
 
-/// Okabe-Ito's that stand for nothing else among tracks and planes: orange, reddish purple, blue; and ochre.
+/// Okabe-Ito's that stand for nothing else among tracks and planes: orange, reddish purple, blue;
+/// and ochre.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
 
 }  // namespace

@@ -209,7 +209,9 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
     rows.push_back(LegendRow{sign, color_of(role), std::move(text)});
   };
   if (inspection.initialization->ok && options.residuals)
-    add(Sign::line, Role::residual, fmt::format("residuals × {:g}", options.residual_magnification));
+    add(Sign::line,
+        Role::residual,
+        fmt::format("residuals × {:g}", options.residual_magnification));
   if (options.cube && inspection.cube)
     add(Sign::square, Role::cube_base, std::string("cube on the estimated plane"));
   if (options.cube && options.truth && canvas.true_cube())

@@ -55,7 +55,8 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
     start = held.motion;
     const PlaneSolution ours =
         solve_plane(window, plane_observations(window), start, GetParam(), {});
-    const PlaneSolution ceres = solve_plane_with_ceres(window, plane_observations(window), start, GetParam(), {}, 1e-16);
+    const PlaneSolution ceres =
+        solve_plane_with_ceres(window, plane_observations(window), start, GetParam(), {}, 1e-16);
     EXPECT_EQ(ours.solver.unknowns, ceres.solver.unknowns);
     EXPECT_EQ(ours.solver.termination, Termination::convergence) << seed;
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
