@@ -29,6 +29,7 @@ Settings with_preset(Settings settings, Preset preset) {
   chosen.start = settings.start;
   chosen.frames = settings.frames;
   chosen.ransac_threshold_px = settings.ransac_threshold_px;
+  chosen.plane = settings.plane;
   chosen.seed = settings.seed;
   chosen.exclude = std::move(settings.exclude);
   return chosen;
