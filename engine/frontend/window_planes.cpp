@@ -30,7 +30,8 @@ constexpr double kGoodDraws = 25;
 constexpr double kLeastOverChance = 4;
 constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane: that there are any is known
 constexpr int kSpentTracks = 4;                 // any four tracks have a homography
-constexpr double kWellExplained = 0.5;          // of the tracks, by planes
+constexpr double kNearlyAll = 0.9;      // of the tracks near one plane: they are noisy, not far
+constexpr double kWellExplained = 0.5;  // of the tracks, by planes
 constexpr double kFarMore = 1.3;
 
 /// Tracks in the reference picture and in a later one [px].
@@ -214,6 +215,8 @@ class Search {
     const auto just_off = std::ranges::count_if(free, [&](int j) {
       return found.rms_px[j] > found.gate_px && found.rms_px[j] <= 3 * found.gate_px;
     });
+    const auto near = static_cast<double>(found.tracks.size()) + static_cast<double>(just_off);
+    if (near >= kNearlyAll * track_count()) return true;
     const double chance = 0.5 * static_cast<double>(just_off);
     return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
