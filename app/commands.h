@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/camera_path.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings.h"
+#include "engine/inspection/report/camera_path.h"
+#include "engine/inspection/settings/settings.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -5,7 +5,7 @@
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
-#include "engine/inspection/recording_info.h"
+#include "engine/inspection/report/recording_info.h"
 
 #include <array>
 

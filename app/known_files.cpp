@@ -7,7 +7,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/pictures/picture_files.h"
-#include "ui/workbench/session_file.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include "app/progress_bar.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
-#include "ui/workbench/user_folders.h"
+#include "ui/workbench/session/user_folders.h"
 
 #include <string>
 #include <thread>

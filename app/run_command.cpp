@@ -5,9 +5,10 @@
 #include "app/recordings.h"
 #include "app/setting_options.h"
 #include "engine/files/json_text.h"
-#include "engine/inspection/camera_path.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report.h"
+#include "engine/inspection/report/camera_path.h"
+#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/report/result_text.h"
 
 #include <algorithm>
 #include <array>

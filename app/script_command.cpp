@@ -6,7 +6,7 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/script.h"
+#include "ui/workbench/session/script.h"
 #include "ui/workbench_host.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/setting_options.h"
 
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -11,7 +11,7 @@
 #include "ui/views/charts/figure_view.h"
 #include "ui/views/picture_compare.h"
 #include "ui/views/snapshot.h"
-#include "ui/workbench/picture_size.h"
+#include "ui/workbench/session/picture_size.h"
 #include "ui/workbench_window.h"
 
 #include <array>

@@ -11,9 +11,9 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/playing.h"
-#include "ui/workbench/recent_files.h"
-#include "ui/workbench/script.h"
-#include "ui/workbench/session_file.h"
+#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/script.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_host.h"
 
 #include <algorithm>

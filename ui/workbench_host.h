@@ -5,7 +5,7 @@
 #include "ui/context/gui.h"
 #include "ui/movie.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/worker_link.h"
+#include "ui/workbench/work/worker_link.h"
 
 #include <filesystem>
 #include <functional>

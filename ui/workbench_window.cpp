@@ -8,8 +8,8 @@
 #include "ui/context/theme.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/layout.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <span>
 #include <vector>

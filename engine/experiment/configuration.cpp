@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
 #include <array>

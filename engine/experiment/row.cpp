@@ -4,8 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/report.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/settings/setting_values.h"
 
 #include <vector>
 

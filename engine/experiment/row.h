@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings_table.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <optional>
 #include <span>

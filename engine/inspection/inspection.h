@@ -6,7 +6,7 @@
 #include "engine/initializers/common/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/motion.h"
-#include "engine/inspection/settings.h"
+#include "engine/inspection/settings/settings.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/stages.h"
-#include "engine/inspection/window_rotations.h"
+#include "engine/inspection/window/window_rotations.h"
 
 #include <utility>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/progress.h"
-#include "engine/inspection/settings.h"
+#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/window/progress.h"
 #include "engine/recording/recording.h"
 
 #include <memory>

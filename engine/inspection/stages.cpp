@@ -7,9 +7,9 @@
 #include "engine/frontend/make_window.h"
 #include "engine/initializers/certainty/growth.h"
 #include "engine/initializers/methods.h"
-#include "engine/inspection/setting_values.h"
-#include "engine/inspection/window_rotations.h"
-#include "engine/inspection/window_truth.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/window/window_rotations.h"
+#include "engine/inspection/window/window_truth.h"
 
 #include <algorithm>
 #include <chrono>

@@ -4,9 +4,9 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/kept.h"
-#include "engine/inspection/progress.h"
-#include "engine/inspection/window_tracks.h"
+#include "engine/inspection/window/kept.h"
+#include "engine/inspection/window/progress.h"
+#include "engine/inspection/window/window_tracks.h"
 
 #include <array>
 #include <memory>

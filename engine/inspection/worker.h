@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/progress.h"
+#include "engine/inspection/window/progress.h"
 
 #include <condition_variable>
 #include <cstdint>

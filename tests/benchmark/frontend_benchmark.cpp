@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/homography_ransac.h"
-#include "engine/frontend/tracker.h"
-#include "engine/frontend/tracking.h"
+#include "engine/frontend/tracking/tracker.h"
+#include "engine/frontend/tracking/tracking.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/benchmark/measure.h"

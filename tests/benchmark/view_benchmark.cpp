@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/normal_study.h"
+#include "engine/inspection/studies/normal_study.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
@@ -16,8 +16,8 @@
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/panes.h"
+#include "ui/workbench/work/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <thread>

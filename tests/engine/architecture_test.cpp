@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -40,6 +41,7 @@ const std::vector<Room> kRooms = {
     {"engine/initializers/certainty", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/plane"}},
     {"engine/initializers", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/"}},
     {"engine/evaluation", {"engine/geometry", "engine/window", "engine/truth", "engine/initializers/"}},
+    {"engine/frontend/tracking", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine/frontend", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine/files", {"engine/base"}},
     {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},
@@ -48,8 +50,12 @@ const std::vector<Room> kRooms = {
     {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
     {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
-    {"engine/inspection", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend", "engine/recording/"}},
-    {"engine/experiment", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend", "engine/initializers", "engine/recording/", "engine/inspection"}},
+    {"engine/inspection/window", {"engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/frontend/", "engine/recording/"}},
+    {"engine/inspection/settings", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/", "engine/frontend/", "engine/recording/", "engine/inspection/window"}},
+    {"engine/inspection", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection/window", "engine/inspection/settings"}},
+    {"engine/inspection/studies", {"engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection"}},
+    {"engine/inspection/report", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection", "engine/inspection/settings"}},
+    {"engine/experiment", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend/", "engine/initializers", "engine/recording/", "engine/inspection/"}},
     {"ui/look", {"engine/geometry"}},
     {"ui/context", {"engine/", "ui/look"}},
     {"ui/views/overlay", {"engine/", "ui/look", "ui/context"}},
@@ -60,7 +66,9 @@ const std::vector<Room> kRooms = {
     {"ui/views/normals", {"engine/", "ui/look", "ui/context", "ui/views/charts", "ui/views/overlay", "ui/views/picture", "ui/views/scene"}},
     {"ui/views", {"engine/", "ui/look", "ui/context", "ui/views/"}},
     {"ui/workbench", {"engine/", "ui/look"}},
-    {"ui/workbench/actions", {"engine/", "ui/look", "ui/workbench"}},
+    {"ui/workbench/session", {"engine/", "ui/workbench"}},
+    {"ui/workbench/work", {"engine/", "ui/workbench", "ui/workbench/session"}},
+    {"ui/workbench/actions", {"engine/", "ui/look", "ui/workbench/"}},
     {"ui/panels/facts", {"engine/", "ui/look", "ui/views/", "ui/workbench"}},
     {"ui/panels", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels/facts"}},
     {"ui/panels/drawers", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts"}},
@@ -83,6 +91,8 @@ const Names kLibrariesOfPicturesAndFiles = {
     "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib"};
 /// The engine needs no screen and no command line.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
+
+constexpr int kMostLines = 400;  // of a file that fits in a head
 
 struct Include {
   std::string from;  ///< a file, from the top of the tree
@@ -199,6 +209,22 @@ TEST(Architecture, TheMathematicsUseEigenAndCeresOnly) {
 
 TEST(Architecture, TheEngineNeedsNoScreen) {
   EXPECT_THAT(using_libraries(tree(), {"engine/"}, kLibrariesOfWindows), IsEmpty());
+}
+
+TEST(Architecture, NoFileIsTooLongToRead) {
+  std::map<std::string, int> long_ones;
+  for (const char* top : {"app", "engine", "ui", "tests"}) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::string(GPO_SOURCE_DIR) + "/" + top)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cpp") continue;
+      std::ifstream file(entry.path());
+      const auto lines = static_cast<int>(
+          std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
+      if (lines > kMostLines) long_ones[entry.path().filename().string()] = lines;
+    }
+  }
+  EXPECT_THAT(long_ones, IsEmpty());
 }
 
 // What the tests above would say of a tree that is not in order.

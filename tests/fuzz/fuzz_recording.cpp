@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Folders in all layouts that `info` describes, without videos, which FFmpeg reads.
-#include "engine/inspection/recording_info.h"
+#include "engine/inspection/report/recording_info.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/fuzz/fuzzed_folder.h"
 

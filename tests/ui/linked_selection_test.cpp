@@ -9,8 +9,8 @@
 #include "ui/views/picture/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/layout.h"
+#include "ui/workbench/work/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <Eigen/Geometry>

@@ -6,7 +6,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
+#include "ui/workbench/work/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
+#include "ui/workbench/work/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/views/picture_compare.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -13,8 +13,8 @@
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/picture_fetcher.h"
 #include "ui/workbench/state.h"
+#include "ui/workbench/work/picture_fetcher.h"
 
 #include <array>
 #include <map>

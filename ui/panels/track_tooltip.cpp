@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/track_tooltip.h"
 
-#include "engine/inspection/track_life.h"
+#include "engine/inspection/studies/track_life.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/tracks_in_view.h"

@@ -3,7 +3,7 @@
 #include "ui/workbench/compared.h"
 
 #include "engine/inspection/moved_cube.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
 #include <iterator>

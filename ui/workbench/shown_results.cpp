@@ -3,7 +3,7 @@
 #include "ui/workbench/shown_results.h"
 
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/compared.h"
 
 namespace gpo {

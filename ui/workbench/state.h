@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/normal_study.h"
-#include "engine/inspection/settings.h"
-#include "engine/inspection/survey.h"
+#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/survey.h"
 #include "engine/recording/recording.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"

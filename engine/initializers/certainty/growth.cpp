@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/growth.h"
 
-#include "engine/initializers/certainty/uncertainty.h"
+#include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/certainty/window_evidence.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/closed_form_motion.h"

@@ -5,7 +5,6 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/initializers/common/uncertainty.h"
-#include "engine/initializers/plane/plane_kernel.h"
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/plane/plane_observations.h"
 #include "engine/window/window.h"
@@ -16,22 +15,6 @@
 #include <Eigen/Core>
 
 namespace gpo {
-
-/// Information on what the frames share, the translations (and free rotations) marginalized, per
-/// square pixel of noise: over the normal's tangents u and, with an unknown bias, the bias.
-using SharedInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 5, 5>;
-
-/// What the prior says before the first frame.
-SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px);
-/// What one frame adds; `normals` with rotation.
-SharedInformation frame_information(const Window& window,
-                                    int frame,
-                                    const FrameNormals& normals,
-                                    RotationModel model);
-
-/// Standard deviation of the normal's angle, root of its covariance's trace [deg]; nothing where it
-/// is not determined.
-std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px);
 
 /// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.
 /// Nothing where the solution is not determined or a point lies behind a camera.

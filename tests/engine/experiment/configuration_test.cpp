@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/configuration.h"
 
-#include "engine/frontend/tracking.h"
+#include "engine/frontend/tracking/tracking.h"
 #include "engine/initializers/methods.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 #include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
-#include "engine/frontend/tracking.h"
+#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report.h"
+#include "engine/inspection/report/result_json.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/window.h"
 #include "tests/engine/experiment/made_rows.h"

@@ -3,10 +3,11 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/tracking.h"
+#include "engine/frontend/tracking/tracking.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/moved_cube.h"
-#include "engine/inspection/report.h"
+#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/report/result_text.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

@@ -9,8 +9,8 @@
 #include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/panes.h"
+#include "ui/workbench/work/adopt.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/actions/actions.h"
 
-#include "ui/workbench/adopt.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <set>
 

@@ -6,7 +6,7 @@
 #include "engine/initializers/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/adopt.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

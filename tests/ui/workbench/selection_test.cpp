@@ -5,8 +5,8 @@
 #include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

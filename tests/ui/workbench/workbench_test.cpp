@@ -3,10 +3,10 @@
 #include "engine/initializers/methods.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/playing.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/window_span.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/normal_study.h"
+#include "engine/inspection/studies/normal_study.h"
 
 #include <span>
 #include <string>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/track_life.h"
+#include "engine/inspection/studies/track_life.h"
 
 #include <cstddef>
 #include <list>

@@ -5,7 +5,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/methods.h"
-#include "engine/inspection/residuals.h"
+#include "engine/inspection/studies/residuals.h"
 #include "ui/context/theme.h"
 #include "ui/views/charts/axis_ticks.h"
 

@@ -4,7 +4,7 @@
 
 #include "engine/base/chart.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/track_life.h"
+#include "engine/inspection/studies/track_life.h"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/normal_study.h"
+#include "engine/inspection/studies/normal_study.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/palette.h"
 #include "ui/views/picture/picture_texture.h"

@@ -3,7 +3,7 @@
 #include "ui/views/picture/image_geometry.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/inspection/residuals.h"
+#include "engine/inspection/studies/residuals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/picture/track_highlight.h"
 
-#include "engine/inspection/plane_patches.h"
+#include "engine/inspection/studies/plane_patches.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"

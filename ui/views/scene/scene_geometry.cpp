@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
-#include "engine/inspection/plane_patches.h"
+#include "engine/inspection/studies/plane_patches.h"
 #include "engine/truth/truth.h"
 #include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/uncertainty_geometry.h"

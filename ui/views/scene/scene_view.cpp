@@ -3,7 +3,7 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/initializers/methods.h"
-#include "engine/inspection/plane_patches.h"
+#include "engine/inspection/studies/plane_patches.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/overlay/overlay.h"

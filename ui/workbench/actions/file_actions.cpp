@@ -3,12 +3,13 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
-#include "engine/inspection/camera_path.h"
-#include "engine/inspection/report.h"
+#include "engine/inspection/report/camera_path.h"
+#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/report/result_text.h"
 #include "ui/workbench/actions/tables.h"
-#include "ui/workbench/picture_size.h"
-#include "ui/workbench/recent_files.h"
-#include "ui/workbench/session_file.h"
+#include "ui/workbench/session/picture_size.h"
+#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
-#include "engine/inspection/setting_values.h"
+#include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/undo.h"
 

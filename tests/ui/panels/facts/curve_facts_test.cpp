@@ -5,9 +5,9 @@
 #include "engine/experiment/row.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/adopt.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/panes.h"
+#include "ui/workbench/work/adopt.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,187 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/anchors.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Vector2d;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A step of all tracks from a picture to the next.
+struct Step {
+  Anchors& anchors;
+  const cv::Mat& soft;
+  const Matrix2Xd& before_px;
+  const AnchorOptions& options;
+  Held held;
+
+  Step(Anchors& all, const cv::Mat& picture, const Matrix2Xd& before, const AnchorOptions& settings)
+      : anchors(all),
+        soft(picture),
+        before_px(before),
+        options(settings),
+        held{Matrix2Xd::Constant(2, before.cols(), kNaN),
+             std::vector<std::optional<TrackEnd>>(before.cols())} {}
+
+  bool was_seen(int j) const { return before_px.col(j).allFinite(); }
+  bool is_seen(int j) const { return held.raw_px.col(j).allFinite(); }
+  Vector2d motion_px(int j) const { return held.raw_px.col(j) - before_px.col(j); }
+
+  void take(int j, const Found& found) {
+    held.ends[j] = found.end;
+    if (found.end) {
+      held.raw_px.col(j).setConstant(kNaN);
+    } else {
+      anchors.warps[j] = found.warp;
+      held.raw_px.col(j) = found.warp(anchors.corners_px.col(j));
+    }
+  }
+};
+
+/// From the track's own warp in the picture before, moved.
+Found search_from(const Step& step, int j, const Vector2d& motion_px) {
+  const Sought& look = step.anchors.looks[j];
+  Warp start = step.anchors.warps[j];
+  start.center += motion_px;
+  const Found found = search(step.soft, look, start, Unknown::affine, step.options.search);
+  // What covers a part of the look may bend the rest out of shape.
+  return found.end ? search(step.soft, look, start, Unknown::shift, step.options.search) : found;
+}
+
+/// Of the neighbors that are seen.
+std::vector<Vector2d> motions_around(const Step& step, int j) {
+  std::vector<Vector2d> motions;
+  for (const int k : step.anchors.neighborhoods[j].neighbors)
+    if (step.is_seen(k)) motions.push_back(step.motion_px(k));
+  return motions;
+}
+
+/// Of each coordinate.
+Vector2d median_motion(std::vector<Vector2d> motions) {
+  Vector2d median;
+  const auto middle = motions.begin() + std::ssize(motions) / 2;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::ranges::nth_element(motions, middle, {}, [&](const Vector2d& m) { return m[axis]; });
+    median[axis] = (*middle)[axis];
+  }
+  return median;
+}
+
+/// Whether as many neighbors as are needed move as a track does, within `farthest_px`.
+bool has_company(const Step& step, int j) {
+  const double most = step.options.search.farthest_px * step.options.search.farthest_px;
+  const Vector2d motion = step.motion_px(j);
+  int alike = 0;
+  for (const int k : step.anchors.neighborhoods[j].neighbors) {
+    // Where one is lost, this is false.
+    if ((step.motion_px(k) - motion).squaredNorm() <= most) ++alike;
+    if (alike == step.options.least_alike) return true;
+  }
+  return false;
+}
+
+/// A track whose motion is like that of hardly any neighbor has jumped to another place that looks
+/// alike. Too few neighbors tell nothing.
+std::optional<TrackEnd> jump(const Step& step, int j) {
+  if (has_company(step, j)) return std::nullopt;
+  const std::vector<Vector2d> around = motions_around(step, j);
+  const int needed = step.options.least_alike;
+  if (std::ssize(around) < 2 * needed) return std::nullopt;
+  std::vector<double> off_px;
+  off_px.reserve(around.size());
+  for (const Vector2d& motion : around) off_px.push_back((motion - step.motion_px(j)).norm());
+  const auto decisive = off_px.begin() + needed - 1;
+  std::ranges::nth_element(off_px, decisive);
+  const double limit = std::max(step.options.search.farthest_px,
+                                step.options.most_unlike * median_motion(around).norm());
+  if (*decisive <= limit) return std::nullopt;
+  return TrackEnd{0, LossReason::look_far, *decisive, limit};
+}
+
+/// Those that are lost or have jumped get a second chance where their neighbors went.
+void follow_neighbors(Step& step) {
+  const Step first = step;
+  for (int j = 0; j < step.before_px.cols(); ++j) {
+    if (!step.was_seen(j)) continue;
+    if (step.is_seen(j)) {
+      const auto end = jump(first, j);
+      if (!end) continue;
+      step.take(j, {.end = end});
+    }
+    const std::vector<Vector2d> around = motions_around(first, j);
+    if (std::ssize(around) < 2 * step.options.least_alike) continue;
+    const std::optional<TrackEnd> end = step.held.ends[j];
+    step.take(j, search_from(step, j, median_motion(around)));
+    if (!step.is_seen(j) || jump(step, j)) step.take(j, {.end = end});
+  }
+}
+
+/// The look's own shape is uncertain; its neighbors' motion tells it better. With it, where it is.
+void take_shape(Step& step) {
+  const Camera& camera = step.anchors.camera;
+  Matrix2Xd undistorted_px = step.held.raw_px;
+  for (int j = 0; j < step.before_px.cols(); ++j)
+    if (step.is_seen(j)) undistorted_px.col(j) = undistort(camera, step.held.raw_px.col(j));
+  for (int j = 0; j < step.before_px.cols(); ++j) {
+    if (!step.is_seen(j)) continue;
+    const Warp start = shaped(camera,
+                              step.anchors.warps[j],
+                              undistorted_px,
+                              step.options.half_patch_px,
+                              step.anchors.neighborhoods[j],
+                              step.options.shape);
+    const Sought& look = step.anchors.looks[j];
+    step.take(j, search(step.soft, look, start, Unknown::shift, step.options.search));
+  }
+}
+
+void lose_what_slides(Step& step) {
+  const SearchOptions& options = step.options.search;
+  for (int j = 0; j < step.before_px.cols(); ++j) {
+    if (!step.is_seen(j) || !(step.anchors.looks[j].edge < options.edge)) continue;
+    const auto detail = detail_along_edge(step.soft, step.anchors.looks[j], step.anchors.warps[j]);
+    if (detail && !(*detail >= options.least_detail))
+      step.take(j, {.end = TrackEnd{0, LossReason::look_unlike, *detail, options.least_detail}});
+  }
+}
+
+}  // namespace
+
+Anchors make_anchors(const cv::Mat& soft,
+                     const Matrix2Xd& raw_px,
+                     const Camera& camera,
+                     const AnchorOptions& options) {
+  const int half = options.half_patch_px;
+  Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half, options.shape), {}};
+  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
+    const Vector2d middle = raw_px.col(j).array().round();
+    const cv::Point pixel(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
+    anchors.looks.push_back(make_sought(make_look(soft, pixel, half)));
+    anchors.corners_px.col(j) -= middle;
+    anchors.warps.push_back({middle});
+  }
+  return anchors;
+}
+
+Held hold(Anchors& anchors,
+          const cv::Mat& soft,
+          const Matrix2Xd& before_px,
+          const Matrix2Xd& flow_px,
+          const AnchorOptions& options) {
+  Step step(anchors, soft, before_px, options);
+  for (int j = 0; j < before_px.cols(); ++j)
+    if (step.was_seen(j)) step.take(j, search_from(step, j, flow_px.col(j)));
+  follow_neighbors(step);
+  take_shape(step);
+  lose_what_slides(step);
+  return std::move(step.held);
+}
+
+}  // namespace gpo

@@ -1,0 +1,192 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/coarse_flow.h"
+
+#include "engine/frontend/tracking/look_kernel.h"
+#include "engine/frontend/tracking/soft_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Cholesky>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix4d;
+using Eigen::Vector2d;
+using Eigen::Vector4d;
+
+constexpr int kCoarsest = 4;        // 1/16 of the size
+constexpr int kLeastSide_px = 24;   // of the smallest picture
+constexpr int kHalf = 8;            // half the side of what is compared [px]
+constexpr int kFarthest = 6;        // of the picture as a whole [px of the smallest picture]
+constexpr int kMostSteps = 8;       // of Gauss-Newton, on a level
+constexpr double kConverged = 0.1;  // length of its last step [px of the level]
+
+Look empty_look() {
+  Look look;
+  look.half = kHalf;
+  for (int v = -kHalf; v < kHalf; ++v) {
+    for (int u = -kHalf; u < kHalf; ++u) {
+      look.dx.push_back(static_cast<float>(u));
+      look.dy.push_back(static_cast<float>(v));
+    }
+  }
+  for (auto* values : {&look.slope_x, &look.slope_y, &look.brightness})
+    values->resize(look.dx.size());
+  look.one.assign(look.dx.size(), 1);
+  return look;
+}
+
+/// What is around a pixel; the normal matrix over slopes, brightness and 1.
+Matrix4d look_at(const cv::Mat& soft, int u, int v, Look& look) {
+  constexpr int kSide = 2 * kHalf;
+  for (int row = 0; row < kSide; ++row) {
+    const auto* here = soft.ptr<std::uint16_t>(v - kHalf + row) + u - kHalf;
+    const auto* above = soft.ptr<std::uint16_t>(v - kHalf + row - 1) + u - kHalf;
+    const auto* below = soft.ptr<std::uint16_t>(v - kHalf + row + 1) + u - kHalf;
+    const int k = row * kSide;
+    for (int i = 0; i < kSide; ++i) {
+      look.brightness[k + i] = here[i];
+      look.slope_x[k + i] = 0.5F * static_cast<float>(here[i + 1] - here[i - 1]);
+      look.slope_y[k + i] = 0.5F * static_cast<float>(below[i] - above[i]);
+    }
+  }
+  using Column = Eigen::Map<Eigen::Array<float, kSide * kSide, 1>>;
+  Column T(look.brightness.data());
+  const Column gx(look.slope_x.data());
+  const Column gy(look.slope_y.data());
+  T -= T.mean();
+  Matrix4d normal = Matrix4d::Zero();
+  normal.row(0) << (gx * gx).sum(), (gx * gy).sum(), (gx * T).sum(), gx.sum();
+  normal.row(1) << normal(0, 1), (gy * gy).sum(), (gy * T).sum(), gy.sum();
+  normal.row(2) << normal(0, 2), normal(1, 2), (T * T).sum(), T.sum();
+  normal.row(3) << normal(0, 3), normal(1, 3), normal(2, 3), kSide * kSide;
+  return normal;
+}
+
+/// Of what is around `from_px` on a level, starting at `guess_px`; that where it finds no better.
+Vector2d moved(const cv::Mat& from,
+               const cv::Mat& to,
+               const Vector2d& from_px,
+               const Vector2d& guess_px,
+               Look& look) {
+  // Near the edge what moves with it is looked at in its place.
+  const Vector2d least = (Vector2d::Constant(kHalf + 1) - guess_px).cwiseMax(kHalf + 1);
+  const Vector2d most =
+      (Vector2d(from.cols, from.rows) - Vector2d::Constant(kHalf + 3))
+          .cwiseMin(Vector2d(from.cols, from.rows) - guess_px - Vector2d::Constant(kHalf + 3));
+  const Vector2d middle = from_px.cwiseMax(least.array().ceil().matrix())
+                              .cwiseMin(most.array().floor().matrix())
+                              .array()
+                              .round();
+  if (!((middle - least).minCoeff() >= 0)) return guess_px;
+  const Matrix4d normal =
+      look_at(from, static_cast<int>(middle.x()), static_cast<int>(middle.y()), look);
+  const Eigen::LDLT<Matrix4d> solver(normal);
+  const double n = normal(3, 3);
+  Vector2d moved_px = guess_px;
+  Vector2d best_px = guess_px;
+  double best = -1;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Warp warp{middle + moved_px};
+    if (!is_inside(to.size(), look, warp)) break;
+    const LookSums sums = shifted_sums(to, look, warp.center);
+    const Vector4d b(sums.products[0], sums.products[1], sums.products[6], sums.products[7]);
+    const double variances = (sums.squares - b[3] * b[3] / n) * normal(2, 2);
+    const double correlation = variances > 0 ? b[2] / std::sqrt(variances) : 0;
+    if (correlation > best) {
+      best = correlation;
+      best_px = moved_px;
+    }
+    const Vector4d solution = solver.solve(b);
+    if (!(solution[2] > 0)) break;
+    const Vector2d step_px = -solution.head<2>() / solution[2];
+    if (!(step_px.norm() < kHalf)) break;
+    moved_px += step_px;
+    if (step_px.norm() < kConverged) return moved_px;
+  }
+  return best_px;
+}
+
+/// In whole numbers, so that what is added up is the same in any order: deviations from the mean in
+/// 64ths of the standard deviation, whatever gain and offset the exposure has. CV_16SC1.
+cv::Mat standardized(const cv::Mat& soft) {
+  cv::Scalar mean;
+  cv::Scalar deviation;
+  cv::meanStdDev(soft, mean, deviation);
+  const double scale = deviation[0] > 0 ? 64 / deviation[0] : 0;
+  cv::Mat result;
+  soft.convertTo(result, CV_16S, scale, -scale * mean[0]);
+  return result;
+}
+
+/// Mean square difference where `to` is moved by so many whole pixels.
+double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
+  const cv::Rect common = cv::Rect({0, 0}, to.size()) & cv::Rect(by, from.size());
+  std::int64_t sum = 0;
+  for (int v = common.y; v < common.y + common.height; ++v) {
+    const auto* a = from.ptr<std::int16_t>(v - by.y) + common.x - by.x;
+    const auto* b = to.ptr<std::int16_t>(v) + common.x;
+    std::int32_t row = 0;
+    for (int u = 0; u < common.width; ++u) {
+      const std::int32_t d = a[u] - b[u];
+      row += d * d;
+    }
+    sum += row;
+  }
+  return static_cast<double>(sum) / common.area();
+}
+
+/// By how much the picture as a whole moves: what each place starts from, so that a jolt does not
+/// lose those near the edge, around which the next picture has little.
+Vector2d picture_motion(const cv::Mat& from, const cv::Mat& to) {
+  const cv::Mat a = standardized(from);
+  const cv::Mat b = standardized(to);
+  const int farthest = std::min({kFarthest, from.cols / 3, from.rows / 3});
+  cv::Point best(0, 0);
+  double least = difference(a, b, best);
+  for (int v = -farthest; v <= farthest; ++v) {
+    for (int u = -farthest; u <= farthest; ++u) {
+      const double now = difference(a, b, {u, v});
+      if (now < least) {
+        least = now;
+        best = {u, v};
+      }
+    }
+  }
+  return {best.x, best.y};
+}
+
+}  // namespace
+
+SoftPyramid soft_pyramid(const cv::Mat& gray) {
+  SoftPyramid pyramid{soften(gray)};
+  for (int level = 1; level <= kCoarsest; ++level) {
+    if (std::min(pyramid.back().cols, pyramid.back().rows) / 2 < kLeastSide_px) break;
+    pyramid.push_back(halved(pyramid.back()));
+  }
+  return pyramid;
+}
+
+Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
+                             const SoftPyramid& to,
+                             const Eigen::Matrix2Xd& raw_px) {
+  Look look = empty_look();
+  const Vector2d start =
+      picture_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
+  Eigen::Matrix2Xd flow = start.replicate(1, raw_px.cols());
+  for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
+    for (auto level = static_cast<int>(from.size()) - 1; level >= 1; --level) {
+      const double scale = std::ldexp(1.0, -level);
+      // The middle of the first pixel of a level is the middle of four.
+      const Vector2d px = scale * (raw_px.col(j).array() + 0.5) - 0.5;
+      flow.col(j) = moved(from[level], to[level], px, scale * flow.col(j), look) / scale;
+    }
+  }
+  return flow;
+}
+
+}  // namespace gpo

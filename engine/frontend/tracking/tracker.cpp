@@ -1,0 +1,269 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/tracker.h"
+
+#include "engine/frontend/tracking/coarse_flow.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace gpo {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
+  // FAST looks at a circle of radius 3 around each pixel: the cell is widened to not lose its rim.
+  const cv::Rect wide = cv::Rect(cell.x - 3, cell.y - 3, cell.width + 6, cell.height + 6) &
+                        cv::Rect(0, 0, gray.cols, gray.rows);
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(gray(wide), corners, threshold, true);
+  for (cv::KeyPoint& corner : corners) corner.pt += cv::Point2f(wide.tl());
+  std::erase_if(corners, [&](const cv::KeyPoint& k) { return !cell.contains(cv::Point(k.pt)); });
+  return corners;
+}
+
+std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray,
+                                          const cv::Rect& cell,
+                                          const DetectorOptions& options) {
+  std::vector<cv::KeyPoint> corners = fast_corners(gray, cell, options.threshold);
+  if (corners.empty()) corners = fast_corners(gray, cell, options.weak_threshold);
+  std::ranges::sort(corners, [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
+    return std::tuple(-a.response, a.pt.y, a.pt.x) < std::tuple(-b.response, b.pt.y, b.pt.x);
+  });
+  return corners;
+}
+
+Eigen::Matrix2Xd to_matrix(const std::vector<cv::Point2f>& points) {
+  Eigen::Matrix2Xd matrix(2, points.size());
+  for (std::size_t j = 0; j < points.size(); ++j) matrix.col(j) << points[j].x, points[j].y;
+  return matrix;
+}
+
+using Pyramid = std::vector<cv::Mat>;
+
+Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
+  Pyramid pyramid;
+  cv::buildOpticalFlowPyramid(
+      gray, pyramid, cv::Size(options.window_px, options.window_px), options.pyramid_levels);
+  return pyramid;
+}
+
+/// Where points of one picture are in another one.
+struct Flow {
+  std::vector<cv::Point2f> points;  ///< NaN where KLT gives up or leaves the picture
+  std::vector<bool> left;           ///< the picture
+};
+
+Flow flow(const Pyramid& from,
+          const Pyramid& to,
+          const std::vector<cv::Point2f>& points,
+          const TrackerOptions& options) {
+  Flow result;
+  std::vector<cv::Point2f>& found = result.points;
+  std::vector<unsigned char> status;
+  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
+  cv::calcOpticalFlowPyrLK(from,
+                           to,
+                           points,
+                           found,
+                           status,
+                           cv::noArray(),
+                           cv::Size(options.window_px, options.window_px),
+                           options.pyramid_levels,
+                           until);
+  const cv::Size size = to.front().size();
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    // KLT reports success for some points outside of the picture (OpenCV issue 4799).
+    const bool inside = found[j].x >= 0 && found[j].y >= 0 &&
+                        found[j].x <= static_cast<float>(size.width - 1) &&
+                        found[j].y <= static_cast<float>(size.height - 1);
+    result.left.push_back(!inside);
+    if (status[j] == 0 || !inside) found[j] = cv::Point2f(std::nanf(""), std::nanf(""));
+  }
+  return result;
+}
+
+/// The tracks in the next picture.
+struct Followed {
+  Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
+  Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
+  std::vector<std::optional<TrackEnd>> ends;  ///< of those that are lost on the way to it
+};
+
+/// Why one is lost that was found there (NaN: nowhere), so far from its beginning on the way back.
+std::optional<TrackEnd> end_of(const cv::Point2f& there,
+                               bool left,
+                               double distance_px,
+                               const TrackerOptions& options) {
+  if (std::isnan(there.x))
+    return TrackEnd{.reason = left ? LossReason::left_picture : LossReason::no_flow};
+  if (std::isnan(distance_px)) return TrackEnd{.reason = LossReason::no_flow};
+  if (distance_px <= options.forward_backward_px) return std::nullopt;
+  return TrackEnd{.reason = LossReason::forward_backward,
+                  .value = distance_px,
+                  .limit = options.forward_backward_px};
+}
+
+/// Follows the living tracks into the next picture.
+Followed follow(const Pyramid& from,
+                const Pyramid& to,
+                const Eigen::Matrix2Xd& before,
+                const TrackerOptions& options) {
+  std::vector<int> living;
+  std::vector<cv::Point2f> points;
+  for (int j = 0; j < before.cols(); ++j) {
+    if (!before.col(j).allFinite()) continue;
+    living.push_back(j);
+    points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
+  }
+  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN),
+                 Eigen::VectorXd::Constant(before.cols(), kNaN),
+                 std::vector<std::optional<TrackEnd>>(before.cols())};
+  if (living.empty()) return after;
+  const Flow forward = flow(from, to, points, options);
+  std::vector<cv::Point2f> safe = forward.points;  // KLT does not expect NaN
+  std::ranges::replace_if(
+      safe, [](const cv::Point2f& p) { return std::isnan(p.x); }, cv::Point2f(0, 0));
+  const Flow back = flow(to, from, safe, options);
+  for (std::size_t k = 0; k < living.size(); ++k) {
+    const int j = living[k];
+    const cv::Point2f& there = forward.points[k];
+    const double distance_px = cv::norm(back.points[k] - points[k]);
+    if (!std::isnan(there.x)) after.forward_backward_px[j] = distance_px;
+    after.ends[j] = end_of(there, forward.left[k], distance_px, options);
+    if (!after.ends[j]) after.raw_px.col(j) << there.x, there.y;
+  }
+  return after;
+}
+
+/// Finds the looks of the living tracks in the next picture.
+Followed follow(const SoftPyramid& from,
+                const SoftPyramid& to,
+                const Eigen::Matrix2Xd& before,
+                const AnchorOptions& options,
+                Anchors& anchors) {
+  std::vector<int> living;
+  for (int j = 0; j < before.cols(); ++j)
+    if (before.col(j).allFinite()) living.push_back(j);
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
+  Held held = hold(anchors, to.front(), before, flow_px, options);
+  return {
+      std::move(held.raw_px), Eigen::VectorXd::Constant(before.cols(), kNaN), std::move(held.ends)};
+}
+
+void append(Followed followed, Tracks& tracks) {
+  for (std::size_t j = 0; j < followed.ends.size(); ++j) {
+    if (!followed.ends[j]) continue;
+    tracks.ends[j] = followed.ends[j];
+    tracks.ends[j]->frame = tracks.frame_count();
+  }
+  tracks.raw_px.push_back(std::move(followed.raw_px));
+  tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
+}
+
+/// Takes tracks from the picture that it was shown before, if any, to the next one.
+using Follower = std::function<Followed(const cv::Mat& gray, const Eigen::Matrix2Xd& before)>;
+
+Follower frame_to_frame_follower(const TrackerOptions& options) {
+  return [options, from = Pyramid()](const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
+    Pyramid to = build_pyramid(gray, options);
+    Followed followed = from.empty() ? Followed{} : follow(from, to, before, options);
+    from = std::move(to);
+    return followed;
+  };
+}
+
+Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
+  return [camera, options, from = SoftPyramid(), anchors = Anchors()](
+             const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
+    SoftPyramid to = soft_pyramid(gray);
+    Followed followed;
+    if (from.empty()) {
+      anchors = make_anchors(to.front(), before, camera, options);
+    } else {
+      followed = follow(from, to, before, options, anchors);
+    }
+    from = std::move(to);
+    return followed;
+  };
+}
+
+/// The corners of the reference frame.
+Tracks beginning(const cv::Mat& gray, int start, const DetectorOptions& options) {
+  Tracks tracks;
+  tracks.start = start;
+  tracks.raw_px.push_back(detect_corners(gray, options));
+  for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
+  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
+  tracks.ends.resize(tracks.track_count());
+  return tracks;
+}
+
+}  // namespace
+
+Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options) {
+  const double spacing_px = options.spacing * gray.cols;
+  std::vector<cv::Point2f> kept;
+  const auto is_free = [&](const cv::Point2f& p) {
+    return std::ranges::none_of(kept,
+                                [&](const cv::Point2f& q) { return cv::norm(p - q) < spacing_px; });
+  };
+  const int width = gray.cols - 2 * options.border_px;
+  const int height = gray.rows - 2 * options.border_px;
+  for (int row = 0; row < options.grid_rows; ++row) {
+    for (int column = 0; column < options.grid_columns; ++column) {
+      const cv::Point tl(options.border_px + width * column / options.grid_columns,
+                         options.border_px + height * row / options.grid_rows);
+      const cv::Point br(options.border_px + width * (column + 1) / options.grid_columns,
+                         options.border_px + height * (row + 1) / options.grid_rows);
+      int taken = 0;
+      for (const cv::KeyPoint& corner : corners_of_cell(gray, cv::Rect(tl, br), options)) {
+        if (taken == options.most_per_cell) break;
+        if (!is_free(corner.pt)) continue;
+        kept.push_back(corner.pt);
+        ++taken;
+      }
+    }
+  }
+  if (kept.empty()) return Eigen::Matrix2Xd(2, 0);
+  const int half = options.subpixel_half_px;
+  cv::cornerSubPix(gray,
+                   kept,
+                   cv::Size(half, half),
+                   cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.01));
+  return to_matrix(kept);
+}
+
+std::optional<Tracks> track_window(const GrayPictures& gray_at,
+                                   const Camera& camera,
+                                   int start,
+                                   int frames,
+                                   const TrackerOptions& options,
+                                   const std::stop_token& stop,
+                                   const FrameProgress& progress) {
+  Tracks tracks;
+  const auto follower = options.tracking == Tracking::anchored
+                            ? anchored_follower(camera, options.anchor)
+                            : frame_to_frame_follower(options);
+  for (int i = 0; i < frames; ++i) {
+    if (stop.stop_requested()) return std::nullopt;
+    const cv::Mat gray = gray_at(start + i);
+    if (i == 0) tracks = beginning(gray, start, options.detector);
+    Followed followed = follower(gray, tracks.raw_px.back());
+    if (i > 0) append(std::move(followed), tracks);
+    if (progress) progress(i + 1, frames);
+  }
+  return tracks;
+}
+
+}  // namespace gpo

@@ -1,0 +1,78 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/certainty/shared_information.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace gpo {
+namespace {
+
+using OwnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+using MixedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+int shared_size(RotationModel model) { return model == RotationModel::bias ? 5 : 2; }
+
+/// A frame's information over what it shares (normal, bias) and what is its own (phi where the
+/// rotations are free, translation last).
+struct SplitInformation {
+  SharedInformation ss;
+  MixedMatrix so;
+  OwnMatrix oo;
+};
+
+SplitInformation split(const Window& window,
+                       int frame,
+                       const FrameNormals& normals,
+                       RotationModel model) {
+  const auto& F = normals.JtJ;
+  if (model == RotationModel::free)
+    return {F.topLeftCorner<2, 2>(), F.topRightCorner<2, 6>(), F.bottomRightCorner<6, 6>()};
+  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, 5> M;
+  M.setZero(5, shared_size(model));
+  M.topLeftCorner<2, 2>().setIdentity();
+  if (model == RotationModel::bias) M.bottomRightCorner<3, 3>() = window.gyro->d_bias[frame];
+  return {M.transpose() * F.topLeftCorner<5, 5>() * M,
+          M.transpose() * F.topRightCorner<5, 3>(),
+          F.bottomRightCorner<3, 3>()};
+}
+
+}  // namespace
+
+SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px) {
+  const int size = shared_size(model);
+  SharedInformation prior = SharedInformation::Zero(size, size);
+  if (model == RotationModel::bias) {
+    const double ratio = sigma_px / window.gyro->prior_sigma_rad_s;
+    prior.diagonal().tail<3>().setConstant(ratio * ratio);
+  }
+  return prior;
+}
+
+SharedInformation frame_information(const Window& window,
+                                    int frame,
+                                    const FrameNormals& normals,
+                                    RotationModel model) {
+  const SplitInformation f = split(window, frame, normals, model);
+  return f.ss - f.so * f.oo.ldlt().solve(f.so.transpose());
+}
+
+std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px) {
+  const auto covariance = inverse_information(information);
+  if (!covariance) return std::nullopt;
+  return degrees(sigma_px * std::sqrt(covariance->topLeftCorner<2, 2>().trace()));
+}
+
+std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return std::nullopt;
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  if (!(eigen.eigenvalues()(0) > 1e-12)) return std::nullopt;
+  const Eigen::MatrixXd inverse = eigen.eigenvectors() *
+                                  eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+}  // namespace gpo

@@ -1,0 +1,306 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/report/recording_info.h"
+
+#include "engine/recording/board/board_truth.h"
+#include "engine/recording/layouts/calibration_file.h"
+#include "engine/window/timestamps.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+
+namespace {
+
+constexpr int kMostFramesExamined = 300;
+constexpr int kSample = 60;
+constexpr double kFrameGap = 1.5;  // median periods
+constexpr double kGyroGap = 5;
+
+double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+/// `label(i)` names sample i.
+template <class Label>
+std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
+                          double periods,
+                          std::int64_t origin,
+                          Label label) {
+  const double longest = periods * static_cast<double>(median_period_ns(times));
+  std::vector<TimeGap> found;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const auto length = times[i] - times[i - 1];
+    if (static_cast<double>(length) > longest) {
+      found.push_back({label(i - 1), in_seconds(times[i - 1] - origin), in_seconds(length)});
+    }
+  }
+  return found;
+}
+
+GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& recording) {
+  const auto& times = gyroscope.timestamps_ns;
+  const auto& frames = recording.timestamps_ns;
+  const auto offset = gyroscope.time_offset_ns;
+  GyroscopeInfo info;
+  info.samples = static_cast<int>(times.size());
+  info.rate_hz = gpo::rate_hz(times);
+  info.bias_rad_s = gyroscope.bias_rad_s;
+  info.bias_source = gyroscope.bias_source;
+  info.time_offset_ms = static_cast<double>(offset) * 1e-6;
+  info.covers_frames =
+      times.front() <= frames.front() + offset && times.back() >= frames.back() + offset;
+  info.gaps =
+      gaps(times, kGyroGap, frames.front() + offset, [&](auto i) { return gyroscope.lines[i]; });
+  return info;
+}
+
+int known_count(const GroundTruth& truth) {
+  return static_cast<int>(std::count_if(
+      truth.poses.begin(), truth.poses.end(), [](const auto& pose) { return pose.has_value(); }));
+}
+
+TruthInfo examine_board(const Recording& recording) {
+  const int frames = recording.frame_count();
+  const int count = frames <= kMostFramesExamined ? frames : kSample;
+  std::vector<int> sample;
+  for (int i = 0; i < count; ++i) {
+    sample.push_back(count == 1 ? 0
+                                : static_cast<int>(std::int64_t{i} * (frames - 1) / (count - 1)));
+  }
+  const GroundTruth truth = board_truth(recording, sample);
+  return {truth.source + " (board.yaml)",
+          known_count(truth),
+          count,
+          median_uncertainty(truth.uncertainties)};
+}
+
+std::optional<TruthInfo> describe_truth(const Recording& recording) {
+  if (recording.truth) {
+    return TruthInfo{recording.truth->source,
+                     known_count(*recording.truth),
+                     static_cast<int>(recording.truth->poses.size())};
+  }
+  if (recording.board && recording.pictures) return examine_board(recording);
+  return std::nullopt;
+}
+
+std::optional<TracksInfo> describe_tracks(const Recording& recording) {
+  if (recording.tracks.empty()) return std::nullopt;
+  std::map<std::int64_t, int> lengths;
+  for (const auto& observation : recording.tracks) ++lengths[observation.track];
+  TracksInfo info{static_cast<int>(lengths.size()), static_cast<int>(recording.tracks.size()), 0};
+  for (const auto& [track, length] : lengths) info.longest = std::max(info.longest, length);
+  return info;
+}
+
+nlohmann::json to_json(const std::vector<TimeGap>& gaps, const char* after) {
+  auto list = nlohmann::json::array();
+  for (const auto& gap : gaps) {
+    list.push_back({{after, gap.after}, {"at_s", gap.at_s}, {"length_s", gap.length_s}});
+  }
+  return list;
+}
+
+nlohmann::json to_json(const Camera& camera) {
+  return {{"model", "pinhole"},
+          {"resolution", {camera.width, camera.height}},
+          {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
+          {"distortion_model", distortion_name(camera.distortion)},
+          {"distortion_coefficients", camera.coefficients}};
+}
+
+nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Lines of "name   value", aligned.
+class Table {
+ public:
+  void row(const char* name, const std::string& value) {
+    text_ += fmt::format("{:<14}{}\n", name, value);
+  }
+  void gaps(const std::vector<TimeGap>& gaps, const char* after) {
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 0; i < std::min(gaps.size(), kShown); ++i) {
+      row(i == 0 ? "  gaps" : "",
+          fmt::format("{:.3f} s after {} {} (at {:.3f} s)",
+                      gaps[i].length_s,
+                      after,
+                      gaps[i].after,
+                      gaps[i].at_s));
+    }
+    if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
+  }
+  std::string text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void add_camera(Table& table, const Camera& camera) {
+  table.row("resolution", fmt::format("{}x{} px", camera.width, camera.height));
+  table.row("camera",
+            fmt::format("pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+                        camera.fx,
+                        camera.fy,
+                        camera.cx,
+                        camera.cy));
+  std::string distortion = distortion_name(camera.distortion);
+  for (const double k : camera.coefficients) distortion += fmt::format(" {:g}", k);
+  table.row("distortion", distortion);
+}
+
+void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) {
+  if (!gyroscope) return table.row("gyroscope", "none");
+  const auto& b = gyroscope->bias_rad_s;
+  table.row("gyroscope",
+            fmt::format("{:.1f} Hz, {} samples{}",
+                        gyroscope->rate_hz,
+                        gyroscope->samples,
+                        gyroscope->covers_frames ? "" : ", not over all frames"));
+  table.row(
+      "  bias",
+      fmt::format("{:g}, {:g}, {:g} rad/s ({})", b.x(), b.y(), b.z(), gyroscope->bias_source));
+  if (gyroscope->time_offset_ms != 0) {
+    table.row("  offset", fmt::format("{:.3f} ms ahead of the camera", gyroscope->time_offset_ms));
+  }
+  table.gaps(gyroscope->gaps, "line");
+}
+
+void add_truth(Table& table, const RecordingInfo& info) {
+  if (!info.truth) return table.row("ground truth", "none");
+  const bool sampled = info.truth->examined < info.frames;
+  table.row("ground truth",
+            fmt::format("{}, {} of {} frames{}",
+                        info.truth->source,
+                        info.truth->frames,
+                        info.truth->examined,
+                        sampled ? " looked at" : ""));
+  if (const auto& u = info.truth->uncertainty) table.row("  certain to", uncertainty_text(*u));
+}
+
+std::string board_text(const Board& board) {
+  const std::string counts = fmt::format(
+      "{} x {} inner corners, squares of {:g} mm", board.columns, board.rows, board.square_m * 1e3);
+  if (!board.markers) return fmt::format("chessboard, {}", counts);
+  return fmt::format("ChArUco, {}, markers of {:g} mm from {}",
+                     counts,
+                     board.markers->side_m * 1e3,
+                     board.markers->dictionary);
+}
+
+nlohmann::json to_json(const Board& board) {
+  nlohmann::json json = {{"pattern", board.markers ? "charuco" : "chessboard"},
+                         {"columns", board.columns},
+                         {"rows", board.rows},
+                         {"square_m", board.square_m}};
+  if (board.markers) {
+    json["marker_m"] = board.markers->side_m;
+    json["dictionary"] = board.markers->dictionary;
+  }
+  return json;
+}
+
+}  // namespace
+
+RecordingInfo describe(const Recording& recording) {
+  const auto& times = recording.timestamps_ns;
+  RecordingInfo info;
+  info.path = recording.path.string();
+  info.name = recording.name;
+  info.layout = recording.layout;
+  info.pictures = recording.pictures != nullptr;
+  info.frames = recording.frame_count();
+  info.duration_s = in_seconds(times.back() - times.front());
+  info.rate_hz = gpo::rate_hz(times);
+  info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
+  info.camera = recording.camera;
+  if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
+  info.truth = describe_truth(recording);
+  info.plane = recording.plane;
+  info.board = recording.board;
+  info.tracks = describe_tracks(recording);
+  info.notes = recording.notes;
+  return info;
+}
+
+nlohmann::json to_json(const RecordingInfo& info) {
+  nlohmann::json json = {{"recording", info.path},
+                         {"name", info.name},
+                         {"layout", info.layout},
+                         {"pictures", info.pictures},
+                         {"frames", info.frames},
+                         {"duration_s", info.duration_s},
+                         {"rate_hz", info.rate_hz},
+                         {"gaps", to_json(info.gaps, "after_frame")},
+                         {"camera", to_json(info.camera)},
+                         {"notes", info.notes}};
+  if (const auto& gyroscope = info.gyroscope) {
+    json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
+                         {"samples", gyroscope->samples},
+                         {"bias_rad_s", to_json(gyroscope->bias_rad_s)},
+                         {"bias_source", gyroscope->bias_source},
+                         {"time_offset_ms", gyroscope->time_offset_ms},
+                         {"covers_frames", gyroscope->covers_frames},
+                         {"gaps", to_json(gyroscope->gaps, "after_line")}};
+  }
+  if (const auto& truth = info.truth) {
+    json["ground_truth"] = {
+        {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
+    if (const auto& u = truth->uncertainty) {
+      json["ground_truth"]["rms_px"] = u->rms_px;
+      json["ground_truth"]["position_sigma_m"] = u->position_sigma_m;
+      json["ground_truth"]["rotation_sigma_deg"] = u->rotation_sigma_deg;
+      json["ground_truth"]["normal_sigma_deg"] = u->normal_sigma_deg;
+    }
+  }
+  if (info.plane) {
+    json["plane"] = {{"normal", to_json(info.plane->normal)}, {"distance", info.plane->distance}};
+  }
+  if (info.board) json["board"] = to_json(*info.board);
+  if (const auto& tracks = info.tracks) {
+    json["tracks"] = {{"count", tracks->tracks},
+                      {"observations", tracks->observations},
+                      {"longest", tracks->longest}};
+  }
+  return json;
+}
+
+std::string to_text(const RecordingInfo& info) {
+  Table table;
+  table.row("recording", info.path);
+  table.row("layout", info.layout + (info.pictures ? "" : ", without pictures"));
+  table.row("frames",
+            fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
+  table.gaps(info.gaps, "frame");
+  add_camera(table, info.camera);
+  add_gyroscope(table, info.gyroscope);
+  add_truth(table, info);
+  if (info.plane) {
+    const auto& n = info.plane->normal;
+    table.row("plane",
+              fmt::format("normal {:.6f}, {:.6f}, {:.6f}, distance {:.6f} m",
+                          n.x(),
+                          n.y(),
+                          n.z(),
+                          info.plane->distance));
+  } else {
+    table.row("plane", "unknown");
+  }
+  table.row("board", info.board ? board_text(*info.board) : "none");
+  if (info.tracks) {
+    table.row("tracks",
+              fmt::format("{}, {} observations, the longest {} frames",
+                          info.tracks->tracks,
+                          info.tracks->observations,
+                          info.tracks->longest));
+  }
+  for (std::size_t i = 0; i < info.notes.size(); ++i) {
+    table.row(i == 0 ? "notes" : "", info.notes[i]);
+  }
+  return table.text();
+}
+
+}  // namespace gpo

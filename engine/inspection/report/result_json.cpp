@@ -1,0 +1,284 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/report/result_json.h"
+
+#include "engine/files/json_text.h"
+#include "engine/initializers/methods.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "engine/recording/board/board_truth.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
+
+#include <algorithm>
+#include <array>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json vector_json(const auto& v) {
+  return ordered_json(std::vector<double>(v.begin(), v.end()));
+}
+
+Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return (q.w() < 0 ? -1.0 : 1.0) * q.normalized().coeffs();
+}
+
+ordered_json settings_json(const Inspection& inspection) {
+  const Settings used = settings_used(inspection);
+  ordered_json json;
+  for (const Setting& setting : settings_table()) {
+    constexpr std::array kToldElsewhere{"start", "frames", "method"};
+    if (std::ranges::find(kToldElsewhere, setting.key) != kToldElsewhere.end()) continue;
+    const ordered_json value = value_json(setting.get(used));
+    const bool no_ids = setting.kind == SettingKind::ids && value.empty();
+    if (!no_ids) json[setting.key] = value;
+  }
+  return json;
+}
+
+/// Keys of the settings that changed nothing.
+ordered_json unused_json(const Inspection& inspection) {
+  ordered_json unused = ordered_json::array();
+  for (const Setting& setting : settings_table())
+    if (!why_idle(setting, inspection.settings, inspection.recording.get()).empty())
+      unused.push_back(setting.key);
+  return unused;
+}
+
+ordered_json frames_json(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  ordered_json frames = ordered_json::array();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    ordered_json frame = {{"index", window.start + i},
+                          {"timestamp_ns", window.timestamps_ns[i]},
+                          {"p_wc", nullptr},
+                          {"q_wc_xyzw", nullptr},
+                          {"inliers", window.inlier_count(i)}};
+    if (inspection.initialization->ok) {
+      const Pose& pose = inspection.initialization->cameras[i];
+      frame["p_wc"] = vector_json(pose.p_wc);
+      frame["q_wc_xyzw"] = vector_json(quaternion_xyzw(pose.R_wc));
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+ordered_json points_json(const Inspection& inspection) {
+  ordered_json points = ordered_json::array();
+  for (const MapPoint& point : inspection.initialization->points) {
+    points.push_back({{"track", inspection.tracks->ids[point.track]},
+                      {"position", vector_json(point.position)}});
+  }
+  return points;
+}
+
+ordered_json candidates_json(const Inspection& inspection) {
+  ordered_json candidates = ordered_json::array();
+  for (const HomographyCandidate& candidate : inspection.initialization->candidates) {
+    const HomographyMotion& motion = candidate.motion;
+    candidates.push_back({{"frame", inspection.window->start + candidate.frame},
+                          {"decomposition", key_of(candidate.algorithm)},
+                          {"normal", vector_json(motion.normal)},
+                          {"tau", vector_json(motion.tau)},
+                          {"q_21_xyzw", vector_json(quaternion_xyzw(motion.R_21))},
+                          {"score", candidate.score},
+                          {"rejected", candidate.rejected}});
+  }
+  return candidates;
+}
+
+ordered_json matrix_json(const auto& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(Eigen::VectorXd(row)));
+  return rows;
+}
+
+ordered_json optional_matrix_json(const std::optional<Eigen::Matrix3d>& matrix) {
+  return matrix ? matrix_json(*matrix) : ordered_json(nullptr);
+}
+
+/// The window's planes, the leading one first; without normal and distance where the method failed,
+/// or the cameras do not tell them.
+ordered_json planes_json(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  ordered_json planes = ordered_json::array();
+  const auto add = [&](int number, const PlaneEstimate* estimate) {
+    std::vector<std::int64_t> ids;
+    for (const int j : window.planes[number].tracks) ids.push_back(inspection.tracks->ids[j]);
+    ordered_json plane = {{"number", number + 1}, {"normal", nullptr}, {"distance", nullptr}};
+    if (estimate != nullptr) {
+      plane["normal"] = vector_json(estimate->plane.normal);
+      plane["distance"] = estimate->plane.distance;
+      plane["normal_covariance_rad2"] = optional_matrix_json(estimate->normal_covariance);
+      plane["distance_sigma"] = optional_json(estimate->distance_sigma);
+    }
+    plane["share"] = static_cast<double>(ids.size()) / window.track_count();
+    plane["tracks"] = ids;
+    planes.push_back(std::move(plane));
+  };
+  const std::vector<PlaneEstimate>& found = inspection.initialization->planes;
+  for (const PlaneEstimate& one : found) add(one.number, &one);
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (std::ranges::find(found, k, &PlaneEstimate::number) == found.end()) add(k, nullptr);
+  return planes;
+}
+
+ordered_json metrics_json(const Evaluation& evaluation) {
+  return {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
+          {"scale", optional_json(evaluation.scale)},
+          {"ate_m", optional_json(evaluation.ate_m)},
+          {"pne_deg", optional_json(evaluation.pne_deg)},
+          {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
+          {"pde_m", optional_json(evaluation.pde_m)},
+          {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+}
+
+ordered_json dropped_json(const Inspection& inspection) {
+  ordered_json dropped = ordered_json::array();
+  for (const int j : inspection.initialization->dropped)
+    dropped.push_back(
+        {{"track", inspection.tracks->ids[j]}, {"reason", "beyond the plane's horizon"}});
+  return dropped;
+}
+
+/// Medians of the uncertainties over the window; absent where the truth is from a file.
+ordered_json truth_json(const WindowTruth& truth) {
+  const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
+  ordered_json json = {{"source", truth.source},
+                       {"frames", std::ranges::count_if(truth.cameras, known)}};
+  if (const auto uncertainty = median_uncertainty(truth.uncertainties)) {
+    json["rms_px"] = uncertainty->rms_px;
+    json["position_sigma_m"] = uncertainty->position_sigma_m;
+    json["rotation_sigma_deg"] = uncertainty->rotation_sigma_deg;
+    json["normal_sigma_deg"] = uncertainty->normal_sigma_deg;
+  }
+  return json;
+}
+
+/// World = reference camera, plane distance 1; one center covariance and distance ratio a frame.
+ordered_json uncertainty_json(const Initialization& result) {
+  const Uncertainty& u = *result.uncertainty;
+  ordered_json centers = ordered_json::array();
+  for (const Eigen::Matrix3d& covariance : u.center_covariances)
+    centers.push_back(matrix_json(covariance));
+  ordered_json ratios = ordered_json::array();
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
+                      {"sigma", u.distance_ratio_sigmas[i]}});
+  }
+  ordered_json json = {{"rotations", to_string(u.rotations)},
+                       {"sigma_px", u.sigma_px},
+                       {"tracks", u.tracks},
+                       {"lens", "taken as exact"},
+                       {"normal_sigma_deg", u.normal_sigma_deg},
+                       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
+                       {"distance_ratios", ratios},
+                       {"center_covariances", centers}};
+  if (u.bias_covariance) json["bias_covariance_rad2_s2"] = matrix_json(*u.bias_covariance);
+  json["bounds_deg"] = {{"known_rotations", optional_json(u.bound_known_rotations_deg)},
+                        {"unknown_bias", optional_json(u.bound_unknown_bias_deg)}};
+  return json;
+}
+
+ordered_json verdict_json(const Verdict& verdict) {
+  return {{"readiness", to_string(verdict.readiness)},
+          {"reason", verdict.reason},
+          {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)},
+          {"rotation_rms_px", optional_json(verdict.rotation_rms_px)},
+          {"noise_px", optional_json(verdict.noise_px)},
+          {"largest_translation", optional_json(verdict.largest_translation)},
+          {"scene", to_string(verdict.scene)},
+          {"plane_shares", verdict.plane_shares}};
+}
+
+ordered_json growth_json(const Inspection& inspection) {
+  ordered_json growth = ordered_json::array();
+  for (std::size_t k = 0; k < inspection.growth.size(); ++k) {
+    growth.push_back({{"frames", k + 2},
+                      {"readiness", to_string(inspection.growth[k].readiness)},
+                      {"normal_sigma_deg", optional_json(inspection.growth[k].normal_sigma_deg)}});
+  }
+  return growth;
+}
+
+}  // namespace
+
+Settings settings_used(const Inspection& inspection) {
+  Settings used = inspection.settings;
+  used.rotations = inspection.rotations_used;
+  used.ransac = uses_ransac(used);
+  used.inliers = inspection.window->inliers;
+  return used;
+}
+
+ordered_json value_json(const SettingValue& value) {
+  return std::visit(
+      [](const auto& plain) {
+        using Plain = std::decay_t<decltype(plain)>;
+        if constexpr (std::is_same_v<Plain, std::monostate>)
+          return ordered_json(nullptr);
+        else
+          return ordered_json(plain);
+      },
+      value);
+}
+
+ordered_json to_json(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const Window& window = *inspection.window;
+  const SolverReport& solver = result.solver;
+  const Timing& t = inspection.timing;
+  ordered_json json;
+  json["recording"] = inspection.recording->path.string();
+  json["method"] = inspection.settings.method;
+  json["status"] = result.ok ? "ok" : "failed";
+  json["reason"] = result.reason;
+  json["window"] = {{"start", window.start},
+                    {"frames", window.frame_count()},
+                    {"tracks", window.track_count()},
+                    {"inliers", window.inlier_count(0)}};
+  json["settings"] = settings_json(inspection);
+  json["unused_settings"] = unused_json(inspection);
+  if (inspection.gyroscope_bias_rad_s)
+    json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
+  json["planes"] = planes_json(inspection);
+  json["plane"] = nullptr;
+  if (result.ok) {
+    json["plane"] = {{"normal", vector_json(result.plane.normal)},
+                     {"distance", result.plane.distance}};
+  }
+  json["frames"] = frames_json(inspection);
+  json["points"] = points_json(inspection);
+  if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
+  if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
+  if (result.uncertainty) json["uncertainty"] = uncertainty_json(result);
+  if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
+  if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
+  if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
+  if (!result.dropped.empty()) json["dropped"] = dropped_json(inspection);
+  json["solver"] = {{"iterations", solver.iterations},
+                    {"initial_cost", solver.initial_cost},
+                    {"final_cost", solver.final_cost},
+                    {"unknowns", solver.unknowns},
+                    {"residuals", solver.residuals},
+                    {"termination", to_string(solver.termination)}};
+  json["timing_ms"] = {{"track", t.track},
+                       {"ransac", t.ransac},
+                       {"rotations", t.rotations},
+                       {"initialize", t.initialize},
+                       {"optimize", t.optimize},
+                       {"total", t.total}};
+  if (inspection.truth) json["truth"] = truth_json(*inspection.truth);
+  if (inspection.evaluation) json["metrics"] = metrics_json(*inspection.evaluation);
+  return json;
+}
+
+}  // namespace gpo

@@ -1,0 +1,160 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/report/result_text.h"
+
+#include "engine/initializers/methods.h"
+#include "engine/recording/board/board_truth.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+std::string row(const char* name, const std::string& value) {
+  return fmt::format("{:<12}{}\n", name, value);
+}
+
+std::string with_unit(const std::optional<double>& value,
+                      double factor,
+                      int digits,
+                      const char* unit) {
+  return value ? fmt::format("{:.{}f} {}", *value * factor, digits, unit) : "-";
+}
+
+std::string rotations_text(const Inspection& inspection) {
+  const char* source = to_string(inspection.rotations_used);
+  if (!inspection.gyroscope_bias_rad_s) return source;
+  const Eigen::Vector3d& b = *inspection.gyroscope_bias_rad_s;
+  return fmt::format("{} (bias {:.4f} {:.4f} {:.4f} rad/s: {})",
+                     source,
+                     b.x(),
+                     b.y(),
+                     b.z(),
+                     inspection.rotations_used == RotationSource::gyro
+                         ? inspection.recording->gyroscope->bias_source
+                         : "estimated from the window");
+}
+
+std::string uncertainty_text(const Initialization& result) {
+  std::string text;
+  if (result.uncertainty) {
+    text += row("certain to",
+                fmt::format("{:.3f} deg (one standard deviation, rotations {})",
+                            result.uncertainty->normal_sigma_deg,
+                            result.uncertainty->rotations == RotationModel::known
+                                ? "held"
+                                : to_string(result.uncertainty->rotations)));
+  }
+  if (result.bias_rad_s) {
+    const Eigen::Vector3d& b = *result.bias_rad_s;
+    text += row("bias", fmt::format("{:.5f} {:.5f} {:.5f} rad/s", b.x(), b.y(), b.z()));
+  }
+  if (result.time_offset_s)
+    text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
+  if (result.row_delay_s) {
+    text += row("shutter", fmt::format("rolling, {:.2f} us a row", 1e6 * *result.row_delay_s));
+  }
+  return text;
+}
+
+/// Nothing of a method that solves nothing.
+std::string solver_text(const SolverReport& solver) {
+  if (solver.unknowns == 0) return "";
+  return row("solver",
+             fmt::format("{} iterations, {} unknowns, {} residuals",
+                         solver.iterations,
+                         solver.unknowns,
+                         solver.residuals));
+}
+
+std::string metrics_text(const Evaluation& e) {
+  const char* alignment = e.alignment == Alignment::ok ? "ok"
+                          : e.alignment == Alignment::line
+                              ? "degenerate (the true path is a line)"
+                              : "degenerate (the true path is a point)";
+  return row("alignment", alignment) + row("ATE", with_unit(e.ate_m, 1e3, 2, "mm")) +
+         row("PNE",
+             with_unit(e.pne_deg, 1, 3, "deg") + "  (bound " +
+                 with_unit(e.pne_bound_deg, 1, 3, "deg") + ", after alignment " +
+                 with_unit(e.pne_aligned_deg, 1, 3, "deg") + ")") +
+         row("PDE", with_unit(e.pde_m, 1e3, 2, "mm"));
+}
+
+std::string truth_text(const WindowTruth& truth) {
+  const auto uncertainty = median_uncertainty(truth.uncertainties);
+  return row("truth",
+             uncertainty
+                 ? fmt::format("{}, certain to {}", truth.source, uncertainty_text(*uncertainty))
+                 : truth.source);
+}
+
+}  // namespace
+
+std::string to_text(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const Window& window = *inspection.window;
+  const Timing& t = inspection.timing;
+  std::string text = row("recording", inspection.recording->name) +
+                     row("window",
+                         fmt::format("frames {} to {} ({})",
+                                     window.start,
+                                     window.start + window.frame_count() - 1,
+                                     window.frame_count())) +
+                     row("method", find_method(inspection.settings.method).title) +
+                     row("rotations", rotations_text(inspection)) +
+                     row("status", result.ok ? "ok" : "failed: " + result.reason) +
+                     row("inliers",
+                         fmt::format("{} of {} {}",
+                                     window.inlier_count(0),
+                                     window.track_count(),
+                                     inliers_note(inspection)));
+  if (result.verdict) {
+    text +=
+        row("verdict",
+            fmt::format("{}: {}", to_string(result.verdict->readiness), result.verdict->reason));
+  }
+  if (result.ok) {
+    const Eigen::Vector3d& n = result.plane.normal;
+    text +=
+        row("normal",
+            fmt::format(
+                "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
+        uncertainty_text(result) + row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
+        solver_text(result.solver);
+  }
+  text += row("time",
+              fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
+                          "{:.1f}, of it solver {:.1f})",
+                          t.total,
+                          t.track,
+                          t.ransac,
+                          t.rotations,
+                          t.initialize,
+                          t.optimize));
+  if (inspection.evaluation) {
+    text += metrics_text(*inspection.evaluation) + truth_text(*inspection.truth);
+  }
+  return text;
+}
+
+std::string to_ply(const Inspection& inspection) {
+  const auto& points = inspection.initialization->points;
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\ncomment world = reference camera (x right, y down, z forward); unit "
+      "= distance of the plane\n"
+      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
+      "track\nend_header\n",
+      points.size());
+  for (const MapPoint& point : points) {
+    text += fmt::format("{:.9f} {:.9f} {:.9f} {}\n",
+                        point.position.x(),
+                        point.position.y(),
+                        point.position.z(),
+                        inspection.tracks->ids[point.track]);
+  }
+  return text;
+}
+
+}  // namespace gpo

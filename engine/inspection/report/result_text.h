@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+
+#include <string>
+
+namespace gpo {
+
+/// The short table that `run` prints, with units.
+std::string to_text(const Inspection& inspection);
+
+/// Map points, ASCII PLY with the track's id; the very points that the views draw.
+std::string to_ply(const Inspection& inspection);
+
+}  // namespace gpo

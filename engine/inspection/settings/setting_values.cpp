@@ -1,0 +1,169 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/settings/setting_values.h"
+
+#include "engine/base/error.h"
+#include "engine/files/text_file.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+constexpr const char* kDefault = "default";
+constexpr const char* kNone = "none";
+constexpr double kLargestId = 9e15;
+
+[[noreturn]] void refuse(const Setting& setting,
+                         const std::string& text,
+                         const std::string& expected) {
+  throw SettingError(setting.key, fmt::format("'{}', expected {}", text, expected));
+}
+
+template <class Number>
+SettingValue in_range(const Setting& setting,
+                      const std::string& text,
+                      const std::optional<Number>& number,
+                      double least,
+                      double most) {
+  const double value = number ? static_cast<double>(*number) : least - 1;
+  if (!(value >= least && value <= most))
+    refuse(setting, text, fmt::format("a number from {:g} to {:g}", least, most));
+  return *number;
+}
+
+SettingValue ids_from(const Setting& setting, const std::string& text) {
+  std::vector<std::int64_t> ids;
+  for (std::size_t at = 0; text != kNone && at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string one = text.substr(at, end - at);
+    const auto id = in_range(setting, one, parse_integer(one), 0, kLargestId);
+    ids.push_back(std::get<std::int64_t>(id));
+    at = end + 1;
+  }
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+SettingValue choice_from(const Setting& setting, const std::string& text) {
+  std::vector<std::string> known;
+  for (const SettingChoice& one : setting.choices) {
+    if (one.key == text) return text;
+    known.push_back(one.key);
+  }
+  throw SettingError(
+      setting.key,
+      fmt::format("unknown value '{}', expected one of {}", text, fmt::join(known, ", ")));
+}
+
+std::string who_reads(const Setting& setting) {
+  const std::vector<std::string> readers = readers_of(setting.key);
+  return fmt::format(
+      "Only {} let{} one choose this", fmt::join(readers, " and "), readers.size() == 1 ? "s" : "");
+}
+
+}  // namespace
+
+std::string value_text(const SettingValue& value) {
+  struct Text {
+    std::string operator()(std::monostate) const { return kDefault; }
+    std::string operator()(bool on) const { return on ? "on" : "off"; }
+    std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::string& key) const { return key; }
+    std::string operator()(const std::vector<std::int64_t>& ids) const {
+      return ids.empty() ? kNone : fmt::format("{}", fmt::join(ids, ","));
+    }
+  };
+  return std::visit(Text{}, value);
+}
+
+SettingValue value_from(const Setting& setting, const std::string& text) {
+  using enum SettingKind;
+  if (setting.optional && text == kDefault) return {};
+  switch (setting.kind) {
+    case on_off:
+      if (text != "on" && text != "off") refuse(setting, text, "on or off");
+      return text == "on";
+    case whole:
+      return in_range(setting, text, parse_integer(text), setting.least, setting.most);
+    case number:
+      return in_range(setting, text, parse_number(text), setting.least, setting.most);
+    case choice:
+      return choice_from(setting, text);
+    case ids:
+      return ids_from(setting, text);
+  }
+  return {};
+}
+
+std::string setting_text(const Settings& settings, const std::string& key) {
+  return value_text(find_setting(key).get(settings));
+}
+
+Settings with_setting(Settings settings, const std::string& key, const std::string& text) {
+  const Setting& setting = find_setting(key);
+  setting.set(settings, value_from(setting, text));
+  return settings;
+}
+
+Settings with_default(Settings settings, const std::string& key) {
+  const Setting& setting = find_setting(key);
+  setting.set(settings, setting.get(Settings{}));
+  return settings;
+}
+
+Settings with_defaults(const Settings& settings) {
+  Settings defaults;
+  defaults.start = settings.start;
+  defaults.frames = settings.frames;
+  defaults.method = settings.method;
+  return defaults;
+}
+
+bool is_read(const Setting& setting, const std::string& method) {
+  const auto& options = find_method(method).reads;
+  return setting.reader != SettingReader::method ||
+         std::ranges::find(options, setting.key) != options.end();
+}
+
+std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording) {
+  switch (setting.reader) {
+    case SettingReader::all:
+      return "";
+    case SettingReader::tracker:
+      return recording != nullptr && !recording->tracks.empty()
+                 ? "The recording brings its own tracks"
+                 : "";
+    case SettingReader::inlier_test:
+      return !uses_ransac(settings) && find_method(settings.method).needs_plane
+                 ? "Without RANSAC every track counts as an inlier"
+                 : "";
+    case SettingReader::method:
+      return is_read(setting, settings.method) ? "" : who_reads(setting);
+  }
+  return "";
+}
+
+Settings as_used(Settings settings) {
+  const Settings given = settings;
+  for (const Setting& setting : settings_table()) {
+    if (setting.used != nullptr) setting.set(settings, setting.used(given));
+    if (!is_read(setting, given.method)) setting.set(settings, setting.get(Settings{}));
+  }
+  return settings;
+}
+
+Settings acting_until(SettingStage stage, const Settings& settings) {
+  Settings acting = as_used(settings);
+  for (const Setting& setting : settings_table())
+    if (setting.stage > stage) setting.set(acting, setting.get(Settings{}));
+  return acting;
+}
+
+}  // namespace gpo

@@ -1,0 +1,52 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/settings/settings.h"
+
+#include "engine/initializers/methods.h"
+
+#include <utility>
+
+namespace gpo {
+namespace {
+
+Settings paper() {
+  Settings settings;
+  settings.method = "gpo";
+  settings.rotations = RotationSource::raw;
+  settings.tracking = Tracking::frame_to_frame;
+  settings.inliers = Inliers::per_frame;
+  settings.initializer = {.solver = Solver::ceres,
+                          .loss = Loss::squared,
+                          .shutter = Shutter::global,
+                          .planes = Planes::one};
+  return settings;
+}
+
+}  // namespace
+
+Settings with_preset(Settings settings, Preset preset) {
+  Settings chosen = preset == Preset::best ? Settings{} : paper();
+  chosen.start = settings.start;
+  chosen.frames = settings.frames;
+  chosen.ransac_threshold_px = settings.ransac_threshold_px;
+  chosen.plane = settings.plane;
+  chosen.seed = settings.seed;
+  chosen.exclude = std::move(settings.exclude);
+  return chosen;
+}
+
+std::optional<Preset> preset_of(const Settings& settings) {
+  for (const Preset preset : {Preset::best, Preset::paper})
+    if (settings == with_preset(settings, preset)) return preset;
+  return std::nullopt;
+}
+
+bool uses_ransac(const Settings& settings) {
+  return settings.ransac.value_or(find_method(settings.method).needs_plane);
+}
+
+Inliers inliers_used(const Settings& settings) {
+  return settings.inliers.value_or(find_method(settings.method).inliers);
+}
+
+}  // namespace gpo

@@ -1,0 +1,261 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/settings/settings_table.h"
+
+#include "engine/base/error.h"
+#include "engine/initializers/methods.h"
+#include "engine/inspection/window/window_rotations.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+template <class T>
+struct Plain {
+  using Type = T;
+  static constexpr bool kOptional = false;
+};
+template <class T>
+struct Plain<std::optional<T>> {
+  using Type = T;
+  static constexpr bool kOptional = true;
+};
+
+template <class T>
+constexpr bool kIsWhole = std::is_integral_v<T> && !std::is_same_v<T, bool>;
+
+template <class T>
+constexpr SettingKind kind_of() {
+  if constexpr (Choice<T> || std::is_same_v<T, std::string>) return SettingKind::choice;
+  if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
+  if constexpr (std::is_same_v<T, double>) return SettingKind::number;
+  return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
+}
+
+template <class T>
+SettingValue value_of(const T& field) {
+  if constexpr (Plain<T>::kOptional) {
+    return field ? value_of(*field) : SettingValue();
+  } else if constexpr (Choice<T>) {
+    return std::string(to_string(field));
+  } else if constexpr (kIsWhole<T>) {
+    return static_cast<std::int64_t>(field);
+  } else {
+    return field;
+  }
+}
+
+template <class T>
+void set_field(T& field, const SettingValue& value) {
+  if constexpr (Plain<T>::kOptional) {
+    field.reset();
+    if (!std::holds_alternative<std::monostate>(value)) set_field(field.emplace(), value);
+  } else if constexpr (Choice<T>) {
+    field = choice<T>(std::get<std::string>(value));
+  } else if constexpr (kIsWhole<T>) {
+    field = static_cast<T>(std::get<std::int64_t>(value));
+  } else {
+    field = std::get<T>(value);
+  }
+}
+
+/// The row with what follows from the field that `Field` finds in settings: its kind, whether it is
+/// optional, the choices of an enumeration, how it is read and set.
+template <class Field>
+Setting row(Field, Setting setting) {
+  using Stored = std::decay_t<decltype(Field{}(std::declval<Settings&>()))>;
+  using Value = typename Plain<Stored>::Type;
+  setting.kind = kind_of<Value>();
+  setting.optional = Plain<Stored>::kOptional;
+  if constexpr (Choice<Value>) {
+    for (const char* key : ChoiceKeys<Value>::keys) setting.choices.push_back({key, key});
+  }
+  setting.get = [](const Settings& s) { return value_of(Field{}(s)); };
+  setting.set = [](Settings& s, const SettingValue& value) { set_field(Field{}(s), value); };
+  return setting;
+}
+
+std::vector<SettingChoice> method_choices() {
+  std::vector<SettingChoice> choices;
+  for (const Method& method : methods()) choices.push_back({method.key, method.title, method.rgb});
+  return choices;
+}
+
+std::vector<Setting> window_rows() {
+  using enum SettingStage;
+  std::vector<Setting> rows;
+  rows.push_back(row([](auto& s) -> auto& { return s.start; },
+                     {.key = "start",
+                      .title = "Start",
+                      .unit = "frame",
+                      .help = "First frame of the window, its reference frame",
+                      .most = 1e9,
+                      .stage = tracks}));
+  rows.push_back(row([](auto& s) -> auto& { return s.frames; },
+                     {.key = "frames",
+                      .title = "Frames",
+                      .help = "Length of the window",
+                      .least = 2,
+                      .most = 1000,
+                      .stage = tracks}));
+  rows.push_back(row([](auto& s) -> auto& { return s.method; },
+                     {.key = "method",
+                      .title = "Method",
+                      .help = "Initializer",
+                      .stage = initialization,
+                      .choices = method_choices()}));
+  rows.push_back(
+      row([](auto& s) -> auto& { return s.rotations; },
+          {.key = "rotations",
+           .title = "Rotations",
+           .help = "Where the camera rotations come from",
+           .stage = rotations,
+           .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
+                     {"raw", "raw", "with rotations as they are", 0x7788AA},
+                     {"gyro", "gyro", "with gyroscope", 0x117733},
+                     {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
+                     {"averaging", "averaging", "with averaged rotations", 0xAA7711},
+                     {"truth", "truth", "with true rotations", 0x666666}},
+           .why_not = [](const Recording& recording, const std::string& key) {
+             return why_no_rotations(recording, choice<RotationSource>(key));
+           }}));
+  rows.push_back(row(
+      [](auto& s) -> auto& { return s.tracking; },
+      {.key = "tracking",
+       .title = "Tracking",
+       .help = "How the built-in front end follows corners",
+       .reader = SettingReader::tracker,
+       .stage = tracks,
+       .words = {{"frame-to-frame", "frame-to-frame", "with tracks from frame to frame", 0xDDCC77},
+                 {"anchored", "anchored", "with anchored tracks", 0x44AA99}}}));
+  return rows;
+}
+
+void add_inlier_rows(std::vector<Setting>& rows) {
+  using enum SettingStage;
+  rows.push_back(row([](auto& s) -> auto& { return s.ransac; },
+                     {.key = "ransac",
+                      .title = "RANSAC",
+                      .help = "Reject tracks off the plane by a homography from the reference "
+                              "frame; default: as the method does",
+                      .leads = true,
+                      .words = {{"ransac", "on", "with RANSAC", 0x882255},
+                                {"no-ransac", "off", "without RANSAC", 0xBB3355}},
+                      .used = [](const Settings& s) { return value_of(uses_ransac(s)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.ransac_threshold_px; },
+                     {.key = "ransac_threshold_px",
+                      .title = "Threshold",
+                      .unit = "px",
+                      .help = "Largest transfer error of an inlier",
+                      .least = 0.1,
+                      .most = 50,
+                      .reader = SettingReader::inlier_test}));
+  rows.push_back(
+      row([](auto& s) -> auto& { return s.inliers; },
+          {.key = "inliers",
+           .title = "Inliers",
+           .help = "Tracks on the plane: told frame by frame, consistent over the window, "
+                   "or those of one of the window's planes",
+           .reader = SettingReader::inlier_test,
+           .advanced = true,
+           .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
+                     {"consistent", "consistent", "with consistent inliers", 0x999933},
+                     {"planes", "planes", "with inliers by plane", 0x88AA55}},
+           .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.plane; },
+                     {.key = "plane",
+                      .title = "Plane",
+                      .help = "Which of the window's planes leads: 1 has most tracks",
+                      .least = 1,
+                      .most = 9,
+                      .reader = SettingReader::inlier_test}));
+  rows.push_back(row([](auto& s) -> auto& { return s.seed; },
+                     {.key = "seed",
+                      .title = "Seed",
+                      .help = "Seed of every random choice",
+                      .most = 1e9,
+                      .advanced = true}));
+  rows.push_back(row([](auto& s) -> auto& { return s.exclude; },
+                     {.key = "exclude",
+                      .title = "Excluded",
+                      .help = "Tracks left out by hand, by their ids",
+                      .advanced = true}));
+}
+
+void add_option_rows(std::vector<Setting>& rows) {
+  const auto add = [&](auto field, Setting setting) {
+    setting.reader = SettingReader::method;
+    setting.stage = SettingStage::initialization;
+    setting.advanced = true;
+    setting.help += fmt::format(" ({})", fmt::join(readers_of(setting.key), ", "));
+    rows.push_back(row(field, std::move(setting)));
+  };
+  add([](auto& s) -> auto& { return s.initializer.solver; },
+      {.key = "solver",
+       .title = "Solver",
+       .help = "Who minimizes: our own Schur solver, or Ceres",
+       .words = {{"schur", "schur", "by our own solver", 0x332288},
+                 {"ceres", "ceres", "by Ceres", 0xAA4499}}});
+  add([](auto& s) -> auto& { return s.initializer.error; },
+      {.key = "error",
+       .title = "Error",
+       .help = "One-sided transfer error, or Sampson's",
+       .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
+                 {"sampson", "sampson", "with Sampson's error", 0x997700}}});
+  add([](auto& s) -> auto& { return s.initializer.loss; },
+      {.key = "loss",
+       .title = "Loss",
+       .help = "Squared, or Huber's, linear for outliers",
+       .words = {{"squared", "squared", "with squared loss", 0x004488},
+                 {"huber", "huber", "with Huber's loss", 0xEE99AA}}});
+  add([](auto& s) -> auto& { return s.initializer.shutter; },
+      {.key = "shutter",
+       .title = "Shutter",
+       .help = "Rows read one after another at an estimated pace, or all at once",
+       .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
+                 {"global-shutter", "global", "with global shutter", 0xEECC66}}});
+  add([](auto& s) -> auto& { return s.initializer.planes; },
+      {.key = "planes",
+       .title = "Planes",
+       .help = "All planes of the window at once, or the leading one alone",
+       .words = {{"all-planes", "all", "with all planes", 0x557733},
+                 {"one-plane", "one", "with one plane", 0xCC8899}}});
+  add([](auto& s) -> auto& { return s.initializer.time_offset; },
+      {.key = "time_offset",
+       .title = "Time offset",
+       .help = "Estimate the offset between the clocks of camera and gyroscope",
+       .words = {{"time-offset", "on", "with time offset", 0x225555},
+                 {"no-time-offset", "off", "without time offset", 0x77AADD}}});
+}
+
+}  // namespace
+
+std::span<const Setting> settings_table() {
+  static const std::vector<Setting> table = [] {
+    std::vector<Setting> rows = window_rows();
+    add_inlier_rows(rows);
+    add_option_rows(rows);
+    return rows;
+  }();
+  return table;
+}
+
+std::vector<std::string> setting_keys() {
+  std::vector<std::string> keys;
+  for (const Setting& setting : settings_table()) keys.push_back(setting.key);
+  return keys;
+}
+
+const Setting& find_setting(std::string_view key) {
+  const auto found = std::ranges::find(settings_table(), key, &Setting::key);
+  if (found != settings_table().end()) return *found;
+  throw InputError(fmt::format(
+      "no setting is called '{}', expected one of {}", key, fmt::join(setting_keys(), ", ")));
+}
+
+}  // namespace gpo

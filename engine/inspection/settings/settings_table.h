@@ -1,0 +1,75 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/settings/settings.h"
+#include "engine/recording/recording.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace gpo {
+
+/// A setting's value; nothing: left to the method. A choice is told by its key.
+using SettingValue = std::
+    variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
+
+/// How a setting is typed, shown and stored.
+enum class SettingKind { on_off, whole, number, choice, ids };
+
+/// Who heeds a setting: all; the built-in front end; the test whether a track is an inlier; the
+/// methods that name it among their options (`Method::reads`).
+enum class SettingReader { all, tracker, inlier_test, method };
+
+/// The stages of an inspection in their order. A setting acts from its stage on.
+enum class SettingStage { tracks, inliers, rotations, initialization };
+
+struct SettingChoice {
+  std::string key;
+  std::string title;      ///< for people
+  std::uint32_t rgb = 0;  ///< 0xRRGGBB, of a method
+};
+
+/// How a configuration names a value of a setting (`gpo+no-ransac`).
+struct SettingWord {
+  const char* word;   ///< no two are the same in the whole table
+  const char* value;  ///< as `setting_text` writes it
+  const char* title;  ///< after the method's: "without RANSAC"
+  std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
+};
+
+/// One setting: the command line, the JSON result, results.csv, sessions, scripts, the settings
+/// panel, comparisons and what an Inspector keeps all read its row.
+struct Setting {
+  std::string key = {};    ///< in files and scripts; on the command line with dashes
+  std::string title = {};  ///< in the window
+  std::string unit = {};   ///< empty: none
+  std::string help = {};   ///< one sentence
+  double least = 0;        ///< range of a number
+  double most = 0;
+  SettingReader reader = SettingReader::all;
+  SettingStage stage = SettingStage::inliers;
+  bool advanced = false;                            ///< what few people change
+  bool leads = false;                               ///< its word stands before the others' in a key
+  std::vector<SettingWord> words = {};              ///< empty: no configuration names it
+  std::vector<SettingChoice> choices = {};          ///< of a choice
+  SettingValue (*used)(const Settings&) = nullptr;  ///< what is left to the method comes to
+  /// Why a choice is not to be had in a recording, one line; empty: it is. Null: all are.
+  std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
+  // Of its field in `Settings`:
+  SettingKind kind = SettingKind::whole;
+  bool optional = false;  ///< may be left to the method
+  SettingValue (*get)(const Settings&) = nullptr;
+  void (*set)(Settings&, const SettingValue&) = nullptr;  ///< unchecked
+};
+
+std::span<const Setting> settings_table();
+std::vector<std::string> setting_keys();
+/// Throws InputError that names the known ones.
+const Setting& find_setting(std::string_view key);
+
+}  // namespace gpo

@@ -1,0 +1,308 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/anchors.h"
+
+#include "engine/frontend/tracking/soft_picture.h"
+#include "engine/frontend/tracking/tracker.h"
+#include "engine/frontend/tracking/tracking.h"
+#include "engine/geometry/statistics.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/window/tracks.h"
+#include "tests/engine/frontend/corner_scene.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+constexpr int kFrames = 30;
+constexpr int kLast = kFrames - 1;
+
+std::shared_ptr<const Recording> desk() { return open_recording(GPO_SOURCE_DIR "/sequences/desk"); }
+
+Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
+  TrackerOptions options;
+  options.tracking = tracking;
+  return *track_window(
+      [&](int frame) { return pictures.gray(frame); }, recording.camera, 0, kFrames, options);
+}
+
+/// The recording's pictures, each changed in place.
+FrameCache changed(const std::shared_ptr<const Recording>& recording,
+                   const std::function<void(int frame, cv::Mat& bgr)>& change) {
+  return FrameCache(kFrames, [recording, change](int i) {
+    cv::Mat bgr = recording->pictures->bgr(i).clone();
+    change(i, bgr);
+    return bgr;
+  });
+}
+
+/// Distance of a track from where the true poses and the true plane take its corner [px].
+double error_px(const Recording& recording, const Tracks& tracks, int frame, int track) {
+  const Pose& first = *recording.truth->poses[0];
+  const Pose& now = *recording.truth->poses[frame];
+  const Eigen::Vector2d corner = undistort(recording.camera, tracks.raw_px[0].col(track));
+  const Eigen::Vector3d ray =
+      first.R_wc * intrinsic_matrix(recording.camera).inverse() * corner.homogeneous();
+  const Plane& plane = *recording.plane;
+  const double depth = -(plane.normal.dot(first.p_wc) + plane.distance) / plane.normal.dot(ray);
+  const Eigen::Vector3d point_c = to_camera(now, first.p_wc + depth * ray);
+  return (project(recording.camera, point_c) - tracks.raw_px[frame].col(track)).norm();
+}
+
+/// Of the living tracks, also the few off the plane, whose error is their parallax.
+double median_error_px(const Recording& recording, const Tracks& tracks, int frame) {
+  std::vector<double> errors;
+  for (int j = 0; j < tracks.track_count(); ++j) {
+    if (tracks.seen(frame, j)) errors.push_back(error_px(recording, tracks, frame, j));
+  }
+  return median(std::move(errors));
+}
+
+int living(const Tracks& tracks, int frame) {
+  int count = 0;
+  for (int j = 0; j < tracks.track_count(); ++j) count += tracks.seen(frame, j) ? 1 : 0;
+  return count;
+}
+
+TEST(Anchors, TakeTheDriftFromTracks) {
+  const auto recording = desk();
+  const Tracks drifting = tracked(*recording, *recording->pictures, Tracking::frame_to_frame);
+  const Tracks held = tracked(*recording, *recording->pictures, Tracking::anchored);
+  EXPECT_EQ(held.raw_px[0], drifting.raw_px[0]);
+  EXPECT_GT(median_error_px(*recording, drifting, kLast), 0.5);
+  for (int i = 1; i < kFrames; ++i) EXPECT_LT(median_error_px(*recording, held, i), 0.05) << i;
+  EXPECT_GT(living(held, kLast), 0.95 * living(drifting, kLast));
+}
+
+TEST(Anchors, SurviveExposureAndBlur) {
+  const auto recording = desk();
+  const FrameCache pictures = changed(recording, [](int i, cv::Mat& bgr) {
+    bgr.convertTo(bgr, -1, 1 - 0.012 * i, 0.5 * i);
+    if (i >= 10 && i < 15) cv::GaussianBlur(bgr, bgr, {}, 1.5);
+  });
+  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  EXPECT_LT(median_error_px(*recording, held, 12), 0.15);
+  EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
+  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  EXPECT_GT(living(held, kLast), 0.85 * living(undisturbed, kLast));
+}
+
+TEST(Anchors, SurviveAJumpOfTheExposure) {
+  const auto recording = desk();
+  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  for (const double gain : {0.7, 0.85, 1.2}) {
+    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+      if (i >= 10 && i < 20) bgr.convertTo(bgr, -1, gain);
+    });
+    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    EXPECT_LT(median_error_px(*recording, held, kLast), 0.05) << gain;
+    EXPECT_GE(living(held, 10), 0.95 * living(undisturbed, 10)) << gain;
+    EXPECT_GE(living(held, kLast), 0.9 * living(undisturbed, kLast)) << gain;
+  }
+}
+
+TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
+  const auto recording = desk();
+  const cv::Rect hidden(200, 140, 200, 180);
+  const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+    if (i >= 10 && i < 20) bgr(hidden).setTo(cv::Scalar(40, 60, 90));
+  });
+  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  for (int j = 0; j < held.track_count(); ++j) {
+    for (int i = 1; i < kFrames; ++i) EXPECT_LE(held.seen(i, j), held.seen(i - 1, j)) << i;
+    const cv::Rect inner(hidden.x + 15, hidden.y + 15, hidden.width - 30, hidden.height - 30);
+    if (!held.seen(9, j)) continue;
+    const Eigen::Vector2d before = held.raw_px[9].col(j);
+    if (inner.contains(cv::Point(int(before.x()), int(before.y())))) {
+      EXPECT_FALSE(held.seen(kLast, j)) << j;
+    }
+  }
+  EXPECT_LT(living(held, kLast), living(held, 9) - 20);
+  EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
+  // Nothing that lives took hold of what hid it: where it is, it also is without.
+  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  for (int j = 0; j < held.track_count(); ++j) {
+    if (!held.seen(kLast, j) || !undisturbed.seen(kLast, j)) continue;
+    EXPECT_LT((held.raw_px[kLast].col(j) - undisturbed.raw_px[kLast].col(j)).norm(), 1) << j;
+  }
+}
+
+// At rest, so that all that is in the picture is found where it was.
+TEST(Anchors, WhatIsNotInThePictureIsNotFoundThere) {
+  const auto recording = desk();
+  const cv::Mat soft = soften(recording->pictures->gray(0));
+  Camera camera = recording->camera;
+  camera.distortion = Distortion::none;
+  camera.coefficients = {};
+  Eigen::Matrix2Xd corners(2, 44);
+  for (int k = 0; k < 40; ++k) corners.col(k) << 60 + 60 * (k % 8), 60 + 70 * (k / 8);
+  corners.rightCols<4>() << -40, 300, soft.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
+      100, soft.rows + 60, 50, 20;
+  Anchors anchors = make_anchors(soft, corners, camera);
+  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 44));
+  int found = 0;
+  for (int k = 0; k < 40; ++k) found += held.raw_px.col(k).allFinite() ? 1 : 0;
+  EXPECT_GT(found, 20);
+  for (int k = 40; k < 43; ++k) {
+    EXPECT_FALSE(held.raw_px.col(k).allFinite()) << k;
+    ASSERT_TRUE(held.ends[k]) << k;
+    EXPECT_EQ(held.ends[k]->reason, LossReason::left_picture) << k;
+  }
+  EXPECT_FALSE(held.raw_px.col(43).allFinite());
+  EXPECT_FALSE(held.ends[43]);
+}
+
+TEST(Anchors, AreTheSameInEveryRun) {
+  const auto recording = desk();
+  const Tracks once = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks again = tracked(*recording, *recording->pictures, Tracking::anchored);
+  for (int i = 0; i < kFrames; ++i) {
+    for (int j = 0; j < once.track_count(); ++j) {
+      ASSERT_EQ(once.seen(i, j), again.seen(i, j));
+      if (!once.seen(i, j)) continue;
+      ASSERT_EQ(once.raw_px[i].col(j), again.raw_px[i].col(j));
+    }
+  }
+}
+
+TEST(Anchors, LeaveTheLostLostAndFindTheOthersFromARoughGuess) {
+  const auto recording = desk();
+  const cv::Mat gray = recording->pictures->gray(0);
+  const Eigen::Matrix2Xd corners = detect_corners(gray);
+  Eigen::Matrix2Xd before = corners;
+  before.col(0).setConstant(std::nan(""));
+  Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
+  for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
+  Anchors anchors = make_anchors(soften(gray), corners, recording->camera);
+  const Held held = hold(anchors, soften(gray), before, flow);
+  EXPECT_FALSE(held.raw_px.col(0).allFinite());
+  EXPECT_FALSE(held.ends[0]);
+  int found = 0;
+  for (int j = 1; j < corners.cols(); ++j) {
+    if (!held.raw_px.col(j).allFinite()) continue;
+    ++found;
+    EXPECT_LT((held.raw_px.col(j) - corners.col(j)).norm(), 0.01) << j;
+  }
+  EXPECT_GT(found, 0.98 * static_cast<double>(corners.cols() - 1));
+}
+
+// Everything looks the same a period farther.
+TEST(Anchors, OfATrackThatJumpsToALookAlikeFollowItsNeighbors) {
+  cv::Mat gray(240, 320, CV_8UC1);
+  for (int v = 0; v < gray.rows; ++v)
+    for (int u = 0; u < gray.cols; ++u)
+      gray.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(
+          128 + 50 * std::sin(u * CV_PI / 8) + 50 * std::sin(v * CV_PI / 8));
+  const Camera camera{320, 240, 300, 300, 160, 120, Distortion::none, {}};
+  Eigen::Matrix2Xd corners(2, 30);
+  for (int k = 0; k < 30; ++k) corners.col(k) << 40 + 48 * (k % 6), 40 + 40 * (k / 6);
+  Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, 30);
+  flow.col(14) << 16, 0;
+  Anchors anchors = make_anchors(soften(gray), corners, camera);
+  EXPECT_LT((hold(anchors, soften(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
+            0.01);
+  AnchorOptions alone;
+  alone.least_alike = 30;
+  Anchors others = make_anchors(soften(gray), corners, camera, alone);
+  const Held jumped = hold(others, soften(gray), corners, flow, alone);
+  EXPECT_NEAR(jumped.raw_px(0, 14) - corners(0, 14), 16, 0.1);
+}
+
+TEST(Anchors, HoldTracksOnEverySurface) {
+  const test::CornerScene scene;
+  TrackerOptions options;
+  options.tracking = Tracking::anchored;
+  const Tracks tracks = *track_window([&](int frame) { return scene.gray(frame); },
+                                      scene.camera(),
+                                      0,
+                                      test::CornerScene::kFrames,
+                                      options);
+  const int last = test::CornerScene::kFrames - 1;
+  for (const int plane : {0, 1}) {
+    std::vector<double> errors;
+    for (int j = 0; j < tracks.track_count(); ++j) {
+      const Eigen::Vector2d corner = tracks.raw_px[0].col(j);
+      // A look that shows both is neither's.
+      const bool whole = scene.plane_at(corner + Eigen::Vector2d(0, 14)) == plane &&
+                         scene.plane_at(corner - Eigen::Vector2d(0, 14)) == plane;
+      if (whole && tracks.seen(last, j))
+        errors.push_back((scene.moved(corner, last) - tracks.raw_px[last].col(j)).norm());
+    }
+    ASSERT_GT(errors.size(), 40U) << plane;
+    std::ranges::sort(errors);
+    EXPECT_LT(quantile(errors, 0.9), 0.1) << plane;
+    EXPECT_LT(median(std::move(errors)), 0.03) << plane;
+  }
+}
+
+TEST(Anchors, SurviveAnyExposureGammaAndVignette) {
+  const auto recording = desk();
+  const int before = living(tracked(*recording, *recording->pictures, Tracking::anchored), kLast);
+  for (const double gamma : {1.0, 1.4}) {
+    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+      if (i < 10) return;
+      for (int v = 0; v < bgr.rows; ++v) {
+        for (int u = 0; u < bgr.cols; ++u) {
+          const double r2 = (std::pow(u - 320, 2) + std::pow(v - 240, 2)) / (320 * 320);
+          for (int c = 0; c < 3; ++c) {
+            auto& value = bgr.at<cv::Vec3b>(v, u)[c];
+            value = cv::saturate_cast<std::uint8_t>(255 * 0.7 * (1 - 0.3 * r2) *
+                                                    std::pow(value / 255.0, gamma));
+          }
+        }
+      }
+    });
+    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    EXPECT_GE(living(held, kLast), 0.95 * before) << gamma;
+    EXPECT_LT(median_error_px(*recording, held, kLast), 0.06) << gamma;
+  }
+}
+
+TEST(Anchors, TellWhyALookIsNotFound) {
+  const auto recording = desk();
+  const cv::Rect hidden(200, 140, 200, 180);
+  const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+    if (i >= 10) bgr(hidden).setTo(cv::Scalar(40, 60, 90));
+  });
+  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  std::map<LossReason, int> ended;
+  for (int j = 0; j < held.track_count(); ++j) {
+    const std::optional<TrackEnd>& end = held.ends[j];
+    ASSERT_EQ(end.has_value(), !held.seen(kLast, j));
+    if (!end) continue;
+    EXPECT_TRUE(held.seen(end->frame - 1, j) && !held.seen(end->frame, j));
+    ++ended[end->reason];
+    if (end->reason == LossReason::look_far) {
+      EXPECT_GT(end->value, end->limit);
+    }
+    if (end->reason == LossReason::look_unlike) {
+      EXPECT_LT(end->value, end->limit);
+    }
+  }
+  EXPECT_GT(ended[LossReason::look_unlike] + ended[LossReason::look_far] +
+                ended[LossReason::look_not_found],
+            0);
+}
+
+TEST(Anchors, NeedNoNeighbors) {
+  const auto recording = desk();
+  const cv::Mat soft = soften(recording->pictures->gray(0));
+  const Eigen::Matrix2Xd corners = detect_corners(recording->pictures->gray(0)).leftCols(3);
+  Anchors anchors = make_anchors(soft, corners, recording->camera);
+  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 3));
+  EXPECT_LT((held.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
+  const Eigen::Matrix2Xd none(2, 0);
+  Anchors empty = make_anchors(soft, none, recording->camera);
+  EXPECT_EQ(hold(empty, soft, none, none).raw_px.cols(), 0);
+}
+
+}  // namespace
+}  // namespace gpo

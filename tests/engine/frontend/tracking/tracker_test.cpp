@@ -1,0 +1,187 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/tracker.h"
+
+#include "engine/frontend/make_window.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
+
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+const Camera kCamera{kWidth, kHeight, 300, 300, 160, 120, Distortion::none, {}};
+
+/// A picture in closed form, so that a shift is exact: smooth blobs on a jittered grid.
+cv::Mat blobs(double shift_x, double shift_y) {
+  cv::Mat picture(kHeight, kWidth, CV_64F, cv::Scalar(90));
+  for (int row = -1; row <= 12; ++row) {
+    for (int column = -1; column <= 16; ++column) {
+      const double x = 20 * column + 5 * std::sin(7.0 * row + 3 * column) + shift_x;
+      const double y = 20 * row + 5 * std::cos(5.0 * column + 2 * row) + shift_y;
+      const double height = (row + column) % 2 == 0 ? 110 : -70;
+      for (int v = std::max(0, int(y) - 10); v < std::min(kHeight, int(y) + 11); ++v) {
+        for (int u = std::max(0, int(x) - 10); u < std::min(kWidth, int(x) + 11); ++u) {
+          const double r2 = (u - x) * (u - x) + (v - y) * (v - y);
+          picture.at<double>(v, u) += height * std::exp(-r2 / (2 * 2.5 * 2.5));
+        }
+      }
+    }
+  }
+  cv::Mat gray;
+  picture.convertTo(gray, CV_8U);
+  return gray;
+}
+
+const GrayPictures moving_picture = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
+
+TEST(Detector, SpreadsCornersOverThePictureAndKeepsThemApart) {
+  const cv::Mat gray = blobs(0, 0);
+  const DetectorOptions options;
+  const Eigen::Matrix2Xd corners = detect_corners(gray, options);
+  EXPECT_GT(corners.cols(), 60);
+  std::array<int, 4> quadrants{};
+  for (const auto& c : corners.colwise())
+    ++quadrants[(c.x() > 160 ? 1 : 0) + (c.y() > 120 ? 2 : 0)];
+  for (const int count : quadrants) EXPECT_GT(count, corners.cols() / 8);
+  for (int j = 0; j < corners.cols(); ++j) {
+    for (int k = 0; k < j; ++k) EXPECT_GT((corners.col(j) - corners.col(k)).norm(), 1.0);
+  }
+}
+
+TEST(Detector, FindsNothingInAnEmptyPicture) {
+  EXPECT_EQ(detect_corners(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(128))).cols(), 0);
+}
+
+TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
+  const auto tracks = track_window(moving_picture, kCamera, 0, 10);
+  ASSERT_TRUE(tracks);
+  EXPECT_EQ(tracks->frame_count(), 10);
+  double squares = 0;
+  int alive = 0;
+  for (int j = 0; j < tracks->track_count(); ++j) {
+    if (!tracks->seen(9, j)) continue;
+    const Eigen::Vector2d moved = tracks->raw_px[9].col(j) - tracks->raw_px[0].col(j);
+    squares += (moved - Eigen::Vector2d(1.3 * 9, -0.7 * 9)).squaredNorm();
+    ++alive;
+  }
+  EXPECT_GT(alive, tracks->track_count() / 2);
+  EXPECT_LT(std::sqrt(squares / alive), 0.1);
+}
+
+TEST(Tracker, DropsWhatLeavesThePictureForGood) {
+  const auto tracks = track_window(moving_picture, kCamera, 0, 30);
+  for (int j = 0; j < tracks->track_count(); ++j) {
+    bool lost = false;
+    for (int i = 0; i < 30; ++i) {
+      if (!tracks->seen(i, j)) {
+        lost = true;
+        continue;
+      }
+      EXPECT_FALSE(lost);
+      EXPECT_GE(tracks->raw_px[i](0, j), 0);
+      EXPECT_LE(tracks->raw_px[i](0, j), kWidth - 1);
+    }
+  }
+}
+
+TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
+  const auto tracks = track_window(moving_picture, kCamera, 0, 30);
+  ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
+  std::map<LossReason, int> ended;
+  for (int j = 0; j < tracks->track_count(); ++j) {
+    const std::optional<TrackEnd>& end = tracks->ends[j];
+    EXPECT_EQ(end.has_value(), !tracks->seen(29, j));
+    if (!end) continue;
+    EXPECT_TRUE(tracks->seen(end->frame - 1, j));
+    EXPECT_FALSE(tracks->seen(end->frame, j));
+    ++ended[end->reason];
+    if (end->reason == LossReason::forward_backward) {
+      EXPECT_EQ(end->limit, 0.5);
+      EXPECT_GT(end->value, 0.5);
+      EXPECT_EQ(end->value, tracks->forward_backward_px[end->frame][j]);
+    } else {
+      EXPECT_TRUE(std::isnan(end->value));
+    }
+  }
+  EXPECT_GT(ended[LossReason::left_picture], 10);  // it moves by 38 px to the right
+}
+
+TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
+  const auto tracks = track_window(moving_picture, kCamera, 0, 10);
+  ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
+  EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
+  for (int i = 1; i < 10; ++i) {
+    for (int j = 0; j < tracks->track_count(); ++j) {
+      if (tracks->seen(i, j)) {
+        EXPECT_LE(tracks->forward_backward_px[i][j], 0.5);
+      }
+    }
+  }
+}
+
+TEST(Tracker, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(track_window(moving_picture, kCamera, 0, 3, {}, source.get_token()));
+}
+
+TEST(Tracker, TellsItsProgress) {
+  std::vector<int> told;
+  track_window(moving_picture, kCamera, 0, 3, {}, {}, [&](int done, int of) {
+    EXPECT_EQ(of, 3);
+    told.push_back(done);
+  });
+  EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
+}
+
+TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
+  const std::vector<TrackObservation> observations{{0, 7, {1, 1}},
+                                                   {1, 7, {2, 2}},
+                                                   {1, 8, {5, 5}},
+                                                   {2, 8, {6, 6}},
+                                                   {3, 7, {4, 4}},
+                                                   {3, 8, {7, 7}}};
+  const Tracks tracks = select_tracks(observations, 1, 3);
+  ASSERT_EQ(tracks.ids, (std::vector<std::int64_t>{7, 8}));
+  EXPECT_EQ(tracks.raw_px[0].col(0), Eigen::Vector2d(2, 2));
+  EXPECT_FALSE(tracks.seen(1, 0));
+  EXPECT_EQ(tracks.raw_px[2].col(0), Eigen::Vector2d(4, 4));
+  EXPECT_EQ(tracks.raw_px[2].col(1), Eigen::Vector2d(7, 7));
+  EXPECT_TRUE(tracks.forward_backward_px.empty() && tracks.ends.empty());
+}
+
+TEST(MakeWindow, UndistortsAndMarksInliers) {
+  const auto tracks = track_window(moving_picture, kCamera, 0, 6);
+  const Camera camera{
+      kWidth, kHeight, 300, 300, 160, 120, Distortion::radial_tangential, {0.1, 0, 0, 0}};
+  const std::vector<std::int64_t> times{0, 1, 2, 3, 4, 5};
+  const Window window = make_window(*tracks, camera, times, {});
+  for (int j = 0; j < window.track_count(); ++j) {
+    EXPECT_LT((window.points_px[0].col(j) - undistort(camera, tracks->raw_px[0].col(j))).norm(),
+              1e-12);
+    for (int i = 1; i < 6; ++i) EXPECT_LE(window.inlier[i][j], tracks->seen(i, j));
+  }
+  EXPECT_GT(window.inlier_count(0), window.track_count() / 2);
+  const Window all = make_window(*tracks, camera, times, {.enabled = false});
+  for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
+}
+
+TEST(Without, LeavesTheTracksOutAndTheColumnsWhereTheyAre) {
+  const Tracks tracks{0, {3, 5, 8}, {Eigen::Matrix2Xd::Ones(2, 3), Eigen::Matrix2Xd::Ones(2, 3)}};
+  const Tracks left = without(tracks, std::vector<std::int64_t>{5});
+  EXPECT_EQ(left.ids, tracks.ids);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(left.seen(i, 1));
+    EXPECT_EQ(left.raw_px[i].col(2), tracks.raw_px[i].col(2));
+  }
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,216 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/settings/settings_table.h"
+
+#include "engine/initializers/methods.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/window/window_rotations.h"
+#include "tests/engine/test_folder.h"
+
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using testing::HasSubstr;
+
+/// A value that is not what the setting comes to in `base`.
+std::string other_value(const Setting& setting, const Settings& base = {}) {
+  const SettingValue normal = setting.used != nullptr ? setting.used(base) : setting.get(base);
+  switch (setting.kind) {
+    case SettingKind::on_off:
+      return value_text(normal) == "on" ? "off" : "on";
+    case SettingKind::whole:
+    case SettingKind::number:
+      return value_text(normal) == "7" ? "8" : "7";
+    case SettingKind::choice:
+      return value_text(normal) == setting.choices.back().key ? setting.choices.front().key
+                                                              : setting.choices.back().key;
+    case SettingKind::ids:
+      return "3,17";
+  }
+  return "";
+}
+
+TEST(SettingsTable, EveryRowIsWholeAndOnce) {
+  std::set<std::string> keys;
+  for (const Setting& setting : settings_table()) {
+    EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
+    EXPECT_FALSE(setting.title.empty() || setting.help.empty()) << setting.key;
+    EXPECT_EQ(setting.kind == SettingKind::choice, !setting.choices.empty()) << setting.key;
+    EXPECT_EQ(setting.optional, setting.used != nullptr) << setting.key;
+    const bool number = setting.kind == SettingKind::whole || setting.kind == SettingKind::number;
+    EXPECT_EQ(number, setting.least < setting.most) << setting.key;
+  }
+}
+
+TEST(SettingsTable, EveryRowHasAFieldOfItsOwn) {
+  for (const Setting& setting : settings_table()) {
+    const Settings changed = with_setting({}, setting.key, other_value(setting));
+    for (const Setting& one : settings_table())
+      EXPECT_EQ(one.get(changed) != one.get(Settings{}), one.key == setting.key)
+          << setting.key << " " << one.key;
+  }
+}
+
+TEST(SettingsTable, WordsAreOnceAndNameValues) {
+  std::set<std::string> words;
+  std::set<std::uint32_t> colors;
+  for (const Method& method : methods()) colors.insert(method.rgb);
+  for (const Setting& setting : settings_table()) {
+    for (const SettingWord& word : setting.words) {
+      EXPECT_TRUE(words.insert(word.word).second) << word.word;
+      EXPECT_TRUE(colors.insert(word.rgb).second) << word.word;
+      EXPECT_EQ(setting_text(with_setting({}, setting.key, word.value), setting.key), word.value);
+    }
+    const std::size_t values = setting.kind == SettingKind::on_off ? 2 : setting.choices.size();
+    if (!setting.words.empty()) {
+      EXPECT_EQ(setting.words.size(), values) << setting.key;
+    }
+  }
+}
+
+TEST(SettingsTable, MethodsReadOptionsThatThereAre) {
+  for (const Method& method : methods())
+    for (const std::string& option : method.reads)
+      EXPECT_EQ(find_setting(option).reader, SettingReader::method) << method.key;
+  for (const Setting& setting : settings_table())
+    EXPECT_EQ(setting.reader == SettingReader::method, !readers_of(setting.key).empty())
+        << setting.key;
+}
+
+TEST(SettingValues, AreReadBackAsTheyWereWritten) {
+  Settings settings;
+  for (const Setting& setting : settings_table())
+    settings = with_setting(settings, setting.key, other_value(setting));
+  Settings read;
+  for (const std::string& key : setting_keys())
+    read = with_setting(read, key, setting_text(settings, key));
+  EXPECT_EQ(read, settings);
+  EXPECT_NE(read, Settings{});
+  for (const std::string& key : setting_keys()) read = with_default(read, key);
+  EXPECT_EQ(read, Settings{});
+  EXPECT_EQ(setting_text({}, "ransac"), "default");
+  EXPECT_EQ(with_defaults({.start = 3, .frames = 20, .method = "ba", .seed = 4}),
+            (Settings{.start = 3, .frames = 20, .method = "ba"}));
+}
+
+TEST(SettingValues, ErrorsNameTheSettingAndWhatIsExpected) {
+  const auto refusal = [](const std::string& key, const std::string& text) {
+    return error_of([&] { with_setting({}, key, text); });
+  };
+  EXPECT_EQ(refusal("frames", "1"), "frames: '1', expected a number from 2 to 1000");
+  EXPECT_EQ(refusal("frames", "2.5"), "frames: '2.5', expected a number from 2 to 1000");
+  EXPECT_EQ(refusal("ransac_threshold_px", "nan"),
+            "ransac_threshold_px: 'nan', expected a number from 0.1 to 50");
+  EXPECT_EQ(refusal("ransac", "yes"), "ransac: 'yes', expected on or off");
+  EXPECT_EQ(refusal("time_offset", "default"), "time_offset: 'default', expected on or off");
+  EXPECT_EQ(refusal("loss", "cauchy"),
+            "loss: unknown value 'cauchy', expected one of squared, huber");
+  EXPECT_THAT(refusal("method", "gpoo"), HasSubstr("method: unknown value 'gpoo'"));
+  EXPECT_THAT(refusal("exclude", "3,x"), HasSubstr("exclude: 'x', expected a number"));
+  EXPECT_THAT(refusal("nonsense", "3"), HasSubstr("no setting is called 'nonsense'"));
+  EXPECT_THROW(with_setting({}, "frames", "1"), SettingError);
+}
+
+TEST(SettingValues, ExcludedTracksAreAscendingAndOnce) {
+  EXPECT_EQ(with_setting({}, "exclude", "9,3,9").exclude, (std::vector<std::int64_t>{3, 9}));
+  EXPECT_TRUE(with_setting({.exclude = {3}}, "exclude", "none").exclude.empty());
+}
+
+TEST(SettingValues, ThatDoNothingSayWhy) {
+  const auto why = [](const Settings& settings, const std::string& key) {
+    return why_idle(find_setting(key), settings, nullptr);
+  };
+  Settings settings{.method = "gpo"};
+  for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"})
+    EXPECT_EQ(why(settings, key), "") << key;
+  for (const char* key : {"error", "loss", "shutter", "planes", "time_offset"})
+    EXPECT_EQ(why(settings, key), "Only gpo_joint lets one choose this") << key;
+  settings.ransac = false;
+  EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
+  EXPECT_THAT(why(settings, "inliers"), HasSubstr("RANSAC"));
+  settings.method = "ba";  // takes all tracks, and still counts inliers
+  EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
+  EXPECT_EQ(why(settings, "solver"), "Only gpo and gpo_joint let one choose this");
+  Recording recording;
+  EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");
+  recording.tracks.emplace_back();
+  EXPECT_THAT(why_idle(find_setting("tracking"), settings, &recording), HasSubstr("own tracks"));
+}
+
+TEST(SettingValues, AsUsedAreEqualWhereTheyComeToTheSame) {
+  Settings said{.method = "ba"};
+  said.ransac = false;
+  said.inliers = Inliers::planes;
+  said.initializer.loss = Loss::squared;
+  EXPECT_EQ(as_used(said), as_used({.method = "ba"}));
+  said.method = "gpo_joint";
+  EXPECT_EQ(as_used(said).initializer.loss, Loss::squared);
+}
+
+TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
+  using enum SettingStage;
+  for (const Setting& setting : settings_table()) {
+    if (setting.key == "method") continue;  // chooses RANSAC and inliers, too
+    const Settings base{.method = "gpo_joint"};
+    const Settings changed = with_setting(base, setting.key, other_value(setting, base));
+    for (const SettingStage stage : {tracks, inliers, rotations, initialization})
+      EXPECT_EQ(acting_until(stage, changed) != acting_until(stage, base), setting.stage <= stage)
+          << setting.key;
+  }
+  EXPECT_EQ(acting_until(rotations, {.method = "gpo"}), acting_until(rotations, {.method = "pnp"}));
+  EXPECT_NE(acting_until(inliers, {.method = "gpo"}), acting_until(inliers, {.method = "ba"}));
+}
+
+TEST(RotationSources, WhatTheRecordingLacksIsExplained) {
+  Recording recording;
+  recording.name = "desk";
+  recording.gyroscope = Gyroscope{};
+  recording.truth = GroundTruth{};
+  for (const char* key : ChoiceKeys<RotationSource>::keys)
+    EXPECT_EQ(why_no_rotations(recording, choice<RotationSource>(key)), "") << key;
+  recording.gyroscope.reset();
+  recording.truth.reset();
+  EXPECT_EQ(why_no_rotations(recording, RotationSource::automatic), "");
+  EXPECT_EQ(why_no_rotations(recording, RotationSource::averaging), "");
+  EXPECT_EQ(why_no_rotations(recording, RotationSource::gyro), "desk has no gyroscope");
+  EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("no ground truth"));
+}
+
+TEST(RotationSources, ABoardWithoutPicturesIsNoTruth) {
+  Recording recording;
+  recording.board = Board{};
+  EXPECT_NE(why_no_rotations(recording, RotationSource::truth), "");
+  EXPECT_THROW(rotation_source_used(recording, RotationSource::truth), SettingError);
+}
+
+TEST(Presets, AreTheDefaultsAndThePaper) {
+  EXPECT_EQ(with_preset({}, Preset::best), Settings{});
+  EXPECT_EQ(preset_of({}), Preset::best);
+  const Settings paper = with_preset({}, Preset::paper);
+  EXPECT_EQ(preset_of(paper), Preset::paper);
+  EXPECT_EQ(paper.method, "gpo");
+  EXPECT_EQ(setting_text(paper, "tracking"), "frame-to-frame");
+  EXPECT_EQ(setting_text(paper, "inliers"), "per-frame");
+  EXPECT_EQ(setting_text(paper, "rotations"), "raw");
+  EXPECT_EQ(setting_text(paper, "solver"), "ceres");
+  EXPECT_EQ(preset_of(with_setting(paper, "solver", "schur")), std::nullopt);
+}
+
+TEST(Presets, LeaveTheWindowAlone) {
+  Settings settings{.start = 7, .frames = 12};
+  settings.exclude = {3};
+  settings.seed = 5;
+  const Settings paper = with_preset(settings, Preset::paper);
+  EXPECT_EQ(paper.start, 7);
+  EXPECT_EQ(paper.frames, 12);
+  EXPECT_EQ(paper.exclude, settings.exclude);
+  EXPECT_EQ(with_preset(paper, Preset::best), settings);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,189 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/session/session_file.h"
+
+#include "engine/base/error.h"
+#include "engine/files/output_file.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/work/adopt.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::shared_ptr<const Recording> recording_at(const fs::path& path) {
+  auto recording = std::make_shared<Recording>();
+  recording->path = path;
+  recording->name = path.filename();
+  for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
+  return recording;
+}
+
+class SessionFile : public testing::Test {
+ protected:
+  SessionFile() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "desk");
+    setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
+    adopt(state_, recording_at(folder_ / "desk"));
+  }
+  fs::path write(const std::string& text) {
+    write_file(folder_ / "a.json", text);
+    return folder_ / "a.json";
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      read_session(write(text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// Of its own: tests run side by side.
+  fs::path folder_ = fs::path(GPO_TEST_OUTPUT_DIR) / "sessions" /
+                     testing::UnitTest::GetInstance()->current_test_info()->name();
+  WorkbenchState state_;
+};
+
+TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
+  for (const char* line : {"method pba",
+                           "set ransac_threshold_px 3.5",
+                           "set exclude 3,17",
+                           "frame 12",
+                           "bookmark \"the cube leans\"",
+                           "speed 2",
+                           "loop on",
+                           "theme light",
+                           "tails off",
+                           "view normals",
+                           "view curves",
+                           "compare gpo,ba+no-ransac",
+                           "zoom 3"})
+    run_line(state_, line);
+  state_.orbit = OrbitCamera{.yaw_deg = 33};
+  state_.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
+  state_.selection = selected(std::vector<std::int64_t>{5, 2});
+  const std::string text = session_text(state_);
+  const SavedSession session = read_session(write(text));
+  EXPECT_EQ(session.recording, folder_ / "desk");
+  WorkbenchState other;
+  other.waiting_session = session;
+  adopt(other, state_.recording);
+  EXPECT_EQ(session_text(other), text);
+  EXPECT_EQ(other.settings, state_.settings);
+  EXPECT_EQ(other.selection.focus, 2);
+  EXPECT_THAT(other.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
+}
+
+/// As the program wrote it when it kept no table of a session's fields.
+constexpr const char* kOldSession = R"({
+  "kind": "gpo-inspector session",
+  "version": 1,
+  "recording": "/nowhere/desk",
+  "settings": {"start": "3", "frames": "20", "method": "pba", "ransac_threshold_px": "3.5"},
+  "frame": 12,
+  "speed": 2.0,
+  "loop": true,
+  "theme": "light",
+  "view": {"tracks": true, "tails": false, "residuals": true, "cube": false, "truth": true,
+           "uncertainty": 10},
+  "panes": {"side": "normals", "compare": true, "drawer": "timing"},
+  "compared": ["ba", "gpo+no-ransac"],
+  "hidden_curves": ["pba"],
+  "compare_zoom": {"factor": 2.0, "center": [0.25, 0.75]},
+  "cube_side": 0.5,
+  "cube_ray": [0.125, 0.25, 1.0],
+  "picture_zoom": {"factor": 4.0, "center": [0.5, 0.25]},
+  "normals_zoom": {"factor": 2.0, "center": [0.25, -0.125]},
+  "orbit": {"target": [0.0, 0.5, 1.0], "up": [0.0, -1.0, 0.0], "front": [0.0, 0.0, 1.0],
+            "yaw_deg": 33.0, "pitch_deg": 10.0, "distance": 2.5, "view_angle_deg": 30.0},
+  "selection": {"tracks": [2, 5], "focus": 2},
+  "bookmarks": [{"frame": 12, "note": "the cube leans"}]
+})";
+
+TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
+  WorkbenchState other;
+  other.waiting_session = read_session(write(kOldSession));
+  adopt(other, state_.recording);
+  const auto before = nlohmann::ordered_json::parse(kOldSession);
+  const auto after = nlohmann::ordered_json::parse(session_text(other));
+  std::vector<std::string> keys_before, keys_after;
+  for (const auto& [key, value] : before.items()) {
+    keys_before.push_back(key);
+    if (key != "recording" && key != "settings") {
+      EXPECT_EQ(after.at(key), value) << key;
+    }
+  }
+  for (const auto& [key, value] : after.items()) keys_after.push_back(key);
+  EXPECT_EQ(keys_after, keys_before);
+  for (const auto& [key, value] : before.at("settings").items())
+    EXPECT_EQ(after.at("settings").at(key), value) << key;
+  EXPECT_EQ(other.panes.drawer, find_drawer("timing"));
+  EXPECT_EQ(other.view.uncertainty, 10);
+}
+
+TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
+  const SavedSession session =
+      read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
+                             "orbit": null, "view": {"tails": false}, "panes": {}})"));
+  const WorkbenchState fresh;
+  EXPECT_EQ(session.state->speed, 2);
+  EXPECT_FALSE(session.state->view.tails);
+  EXPECT_EQ(session.state->view.cube, fresh.view.cube);
+  EXPECT_EQ(session.state->panes, fresh.panes);
+  EXPECT_EQ(session.state->settings, fresh.settings);
+  EXPECT_FALSE(session.state->orbit);
+}
+
+TEST_F(SessionFile, FindsARecordingThatMovedTogetherWithIt) {
+  const fs::path moved = folder_ / "elsewhere";
+  fs::create_directories(moved);
+  write_file(moved / "s.json", session_text(state_));
+  fs::rename(folder_ / "desk", moved / "desk");
+  EXPECT_EQ(read_session(moved / "s.json").recording, moved / "desk");
+}
+
+TEST_F(SessionFile, SaysWhatIsWrongWithIt) {
+  EXPECT_THAT(refusal("nonsense"), HasSubstr("a.json: not valid JSON"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("a.json: expected an object"));
+  EXPECT_THAT(refusal("{}"), HasSubstr("kind: ''"));
+  const auto with = [&](const std::string& rest) {
+    return refusal(R"({"kind": "gpo-inspector session", "version": 1, )" + rest + "}");
+  };
+  EXPECT_THAT(with(R"("frame": "x")"), HasSubstr("frame: \"x\" is not a value for it"));
+  EXPECT_THAT(with(R"("frame": -1)"), HasSubstr("frame: -1"));
+  EXPECT_THAT(with(R"("settings": {"method": "nobody"})"), HasSubstr("nobody"));
+  EXPECT_THAT(with(R"("panes": {"side": "cellar"})"), HasSubstr("cellar"));
+  EXPECT_THAT(with(R"("orbit": {"distance": 0})"), HasSubstr("distance: 0"));
+  EXPECT_THAT(with(R"("compared": ["gpo+sideways"])"), HasSubstr("sideways"));
+}
+
+TEST_F(SessionFile, RecentFilesAreRememberedOnceTheLastOneFirst) {
+  fs::create_directories(folder_ / "other");
+  remember_file(folder_ / "desk");
+  remember_file(folder_ / "other");
+  remember_file(folder_ / "desk");
+  remember_file(folder_ / "gone");
+  EXPECT_THAT(recent_files(), ElementsAre(folder_ / "desk", folder_ / "other"));
+}
+
+TEST_F(SessionFile, IsToldFromOtherFiles) {
+  EXPECT_TRUE(is_session(write(session_text(state_))));
+  EXPECT_FALSE(is_session(write("{}")));
+  EXPECT_FALSE(is_session(folder_));
+}
+
+}  // namespace
+}  // namespace gpo

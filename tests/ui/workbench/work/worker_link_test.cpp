@@ -1,0 +1,175 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/work/worker_link.h"
+
+#include "engine/base/error.h"
+#include "tests/engine/test_folder.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/session/recent_files.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A workbench with a worker whose computation only remembers what it was asked for, and lasts
+/// until it is stopped while `hold` is set.
+class WorkerLinkTest : public testing::Test {
+ protected:
+  Worker::Opened open(const std::filesystem::path& path) {
+    if (path.filename() == "bad") throw InputError("bad: no such folder");
+    auto recording = std::make_shared<Recording>();
+    recording->name = path.string();
+    for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
+    return {recording,
+            [this, recording](const Settings& settings, std::stop_token stop, const Progress&) {
+              {
+                const std::lock_guard lock(mutex_);
+                starts_.push_back(settings.start);
+              }
+              while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+              auto inspection = std::make_shared<Inspection>();
+              inspection->recording = recording;
+              inspection->settings = settings;
+              return inspection;
+            }};
+  }
+  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, "example"); }
+  void settle() {
+    do {
+      synchronize();
+    } while (link_.worker.busy);
+    synchronize();
+  }
+  std::vector<int> starts() {
+    const std::lock_guard lock(mutex_);
+    return starts_;
+  }
+
+  std::atomic<bool> hold_ = false;
+  std::mutex mutex_;
+  std::vector<int> starts_;
+  WorkbenchState state_;
+  WorkerLink link_;
+  Survey survey_;
+  Worker worker_{[this](const std::filesystem::path& path) { return open(path); }};
+};
+
+TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  ASSERT_NE(state_.recording, nullptr);
+  EXPECT_EQ(state_.recording->name, "desk");
+  EXPECT_EQ(state_.frame, 29);
+  ASSERT_NE(state_.inspection, nullptr);
+  EXPECT_EQ(state_.inspection->settings, state_.settings);
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0));
+}
+
+TEST_F(WorkerLinkTest, OpensTheExample) {
+  apply(state_, RunAction{"open-example"});
+  settle();
+  EXPECT_EQ(state_.recording->name, "example");
+}
+
+TEST_F(WorkerLinkTest, RemembersWhatCouldBeOpened) {
+  const test::TestFolder folder;
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  link_.remembers_files = true;
+  for (const char* name : {"good", "bad", "better"}) {
+    std::filesystem::create_directories(folder.path() / name);
+    apply(state_, OpenPath{folder.path() / name});
+    settle();
+  }
+  apply(state_, RunAction{"open-example"});
+  settle();
+  EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
+}
+
+TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  apply(state_, GoToFrame{7});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0));
+  apply(state_, RunAction{"window-start"});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0, 7));
+  apply(state_, RunAction{"compute"});
+  settle();
+  EXPECT_THAT(starts(), ElementsAre(0, 7, 7));
+}
+
+TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  hold_ = true;
+  apply(state_, GoToFrame{7});
+  apply(state_, RunAction{"window-start"});
+  synchronize();
+  EXPECT_TRUE(link_.worker.busy);
+  apply(state_, RunAction{"escape"});
+  settle();
+  EXPECT_EQ(state_.inspection->settings.start, 0);
+  EXPECT_EQ(state_.settings.start, 7);
+  EXPECT_EQ(state_.message, "canceled; F5 computes again");
+}
+
+TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  apply(state_, OpenPath{"bad"});
+  settle();
+  EXPECT_EQ(state_.recording->name, "desk");
+  EXPECT_EQ(link_.worker.error, "bad: no such folder");
+  ASSERT_NE(state_.inspection, nullptr);
+}
+
+TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
+  std::atomic<int> tried = 0;
+  Survey survey({}, [&](const Inspection&, const std::stop_token&) {
+    ++tried;
+    throw InputError("no frame has enough tracks");
+    return std::shared_ptr<const NormalStudy>();
+  });
+  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, "example"); };
+  apply(state_, OpenPath{"desk"});
+  do {
+    turn();
+  } while (link_.busy() || !state_.inspection);
+  apply(state_, RunAction{"view candidates"});
+  do {
+    turn();
+  } while (!state_.study);
+  for (int i = 0; i < 5; ++i) turn();
+  EXPECT_FALSE(link_.busy());
+  EXPECT_EQ(tried, 1);
+  const auto says_so = [](const LogLine& line) {
+    return line.severity == Severity::error && line.text.ends_with("no frame has enough tracks");
+  };
+  EXPECT_EQ(std::ranges::count_if(state_.log, says_so), 1);
+}
+
+TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
+  state_.wishes.quit = state_.wishes.compute = true;
+  state_.wishes.screenshots.push_back({});
+  synchronize();
+  EXPECT_TRUE(state_.wishes.quit);
+  EXPECT_EQ(state_.wishes.screenshots.size(), 1U);
+  EXPECT_FALSE(state_.wishes.compute);
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,227 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/session/session_fields.h"
+
+#include "engine/experiment/configuration.h"
+#include "engine/inspection/settings/setting_values.h"
+
+#include <algorithm>
+#include <concepts>
+#include <type_traits>
+
+namespace gpo {
+namespace {
+
+using Json = SessionJson;
+using State = WorkbenchState;
+
+// Values that are written as an object: `use(key, part, limits...)` for each of their parts, to be
+// written and to be read alike.
+
+template <class T, class Value>
+concept Is = std::same_as<std::remove_const_t<T>, Value>;
+template <class T>
+concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera>;
+
+void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
+  use("factor", zoom.factor, 1, 64);
+  use("center", zoom.center);
+}
+
+void each_part(Is<NormalsZoom> auto& zoom, auto&& use) {
+  use("factor", zoom.factor, 1, kLargestNormalsZoom);
+  use("center", zoom.center);
+}
+
+void each_part(Is<OrbitCamera> auto& orbit, auto&& use) {
+  use("target", orbit.target);
+  use("up", orbit.up);
+  use("front", orbit.front);
+  use("yaw_deg", orbit.yaw_deg, -1e6, 1e6);
+  use("pitch_deg", orbit.pitch_deg, -89, 89);
+  use("distance", orbit.distance, 1e-6, 1e6);
+  use("view_angle_deg", orbit.view_angle_deg, 1, 170);
+}
+
+/// Each kind of value as a session writes it.
+struct ToJson {
+  template <class T>
+  Json operator()(const T& value) const {
+    return value;
+  }
+  template <int N>
+  Json operator()(const Eigen::Matrix<double, N, 1>& vector) const {
+    return std::vector<double>(vector.data(), vector.data() + N);
+  }
+  template <class T>
+  Json operator()(const std::optional<T>& value) const {
+    return value ? (*this)(*value) : Json();
+  }
+  template <Object T>
+  Json operator()(const T& value) const {
+    Json json;
+    each_part(value,
+              [&](const char* key, const auto& part, auto...) { json[key] = (*this)(part); });
+    return json;
+  }
+  Json operator()(const Settings& settings) const {
+    Json json;
+    for (const std::string& key : setting_keys()) json[key] = setting_text(settings, key);
+    return json;
+  }
+  Json operator()(const Theme& theme) const { return theme == Theme::light ? "light" : "dark"; }
+  Json operator()(const ViewToggles& view) const {
+    Json json;
+    for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
+    json["uncertainty"] = view.uncertainty;
+    return json;
+  }
+  Json operator()(const Panes& panes) const {
+    Json json = {{"side", panes.side->key}, {"compare", panes.compare}};
+    json["drawer"] = panes.drawer == nullptr ? Json() : Json(panes.drawer->key);
+    return json;
+  }
+  Json operator()(const Selection& selection) const {
+    return {{"tracks", selection.tracks}, {"focus", (*this)(selection.focus)}};
+  }
+  Json operator()(const std::vector<Bookmark>& bookmarks) const {
+    Json json = Json::array();
+    for (const Bookmark& one : bookmarks)
+      json.push_back({{"frame", one.frame}, {"note", one.note}});
+    return json;
+  }
+};
+
+/// The same, read; within limits, where there are any. Throws InputError that names the key.
+struct FromJson {
+  const SessionReader& read;
+
+  template <class T>
+  void operator()(const char* key, T& value, auto... limits) const {
+    read(key, value, limits...);
+  }
+  template <class T>
+  void operator()(const char* key, std::optional<T>& value) const {
+    (*this)(key, value.emplace());
+  }
+  template <Object T>
+  void operator()(const char* key, T& value) const {
+    const SessionReader parts = read.object(key);
+    each_part(value, [&](const char* part_key, auto& part, auto... limits) {
+      FromJson{parts}(part_key, part, limits...);
+    });
+    if constexpr (std::same_as<T, NormalsZoom>) value = within_limits(value);
+  }
+  void operator()(const char* key, Settings& settings) const {
+    const SessionReader all = read.object(key);
+    for (const auto& [one, value] : all.json().items()) {
+      if (!value.is_string()) all.refuse(one.c_str());
+      try {
+        settings = with_setting(settings, one, value.template get<std::string>());
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", all.where(), error.what()));
+      }
+    }
+  }
+  void operator()(const char* key, Theme& theme) const {
+    std::string name;
+    read(key, name);
+    if (name != "dark" && name != "light") read.refuse(key);
+    theme = name == "light" ? Theme::light : Theme::dark;
+  }
+  void operator()(const char* key, ViewToggles& view) const {
+    const SessionReader toggles = read.object(key);
+    for (const ViewToggle& one : kViewToggles) toggles(one.key, view.*one.shown);
+    toggles("uncertainty", view.uncertainty, 0, 100);
+  }
+  void operator()(const char* key, Panes& panes) const {
+    const SessionReader open = read.object(key);
+    std::string side = panes.side->key, drawer;
+    open("side", side);
+    open("drawer", drawer);
+    open("compare", panes.compare);
+    const Pane* found = find_side_pane(side);
+    if (found == nullptr) open.refuse("side");
+    panes.side = found;
+    if (drawer.empty()) return;
+    panes.drawer = find_drawer(drawer);
+    if (panes.drawer == nullptr) open.refuse("drawer");
+  }
+  void operator()(const char* key, Selection& selection) const {
+    const SessionReader picked = read.object(key);
+    std::vector<std::int64_t> tracks;
+    if (picked.has("tracks")) {
+      const auto whole = [](const Json& one) { return one.is_number_integer(); };
+      if (!std::ranges::all_of(picked.json().at("tracks"), whole)) picked.refuse("tracks");
+    }
+    picked("tracks", tracks);
+    selection = selected(tracks);
+    if (!picked.has("focus")) return;
+    if (!picked.json().at("focus").is_number_integer()) picked.refuse("focus");
+    std::int64_t focus = 0;
+    picked("focus", focus);
+    if (selection.contains(focus)) selection.focus = focus;
+  }
+  void operator()(const char* key, std::vector<Bookmark>& bookmarks) const {
+    for (const Json& json : read.json().at(key)) {
+      Bookmark one;
+      const SessionReader entry(json, read.where() + ": " + key);
+      entry("frame", one.frame, 0, 1'000'000'000);
+      entry("note", one.note);
+      bookmarks.push_back(one);
+    }
+  }
+};
+
+/// A member of the state; `limits`, where there are any: the least and the largest that it can be.
+template <class T>
+SessionField field(const char* key, T State::*member, auto... limits) {
+  return {key,
+          [member](const State& state) { return ToJson{}(state.*member); },
+          [key, member, limits...](const SessionReader& read, State& state) {
+            FromJson{read}(key, state.*member, limits...);
+          },
+          [member](const State& from, State& to) { to.*member = from.*member; }};
+}
+
+/// ... that is put right once it is read.
+template <class T>
+SessionField field_with(const char* key, T State::*member, void (*put_right)(T&)) {
+  SessionField made = field(key, member);
+  made.read = [read = made.read, member, put_right](const SessionReader& from, State& state) {
+    read(from, state);
+    put_right(state.*member);
+  };
+  return made;
+}
+
+/// As keys are written today. Throws InputError for one that is unknown.
+void rewrite_keys(std::vector<std::string>& compared) {
+  for (std::string& one : compared) one = key_of(parse_configuration(one));
+}
+
+}  // namespace
+
+std::span<const SessionField> session_fields() {
+  static const std::vector<SessionField> table = {
+      field("settings", &State::settings),
+      field("frame", &State::frame, 0, 1'000'000'000),
+      field("speed", &State::speed, 0.01, 100.0),
+      field("loop", &State::loop),
+      field("theme", &State::theme),
+      field("view", &State::view),
+      field("panes", &State::panes),
+      field_with("compared", &State::compared, rewrite_keys),
+      field("hidden_curves", &State::hidden_curves),
+      field("compare_zoom", &State::compare_zoom),
+      field("cube_side", &State::cube_side, 0.0, 2.0),
+      field("cube_ray", &State::cube_ray),
+      field("picture_zoom", &State::picture_zoom),
+      field("normals_zoom", &State::normals_zoom),
+      field("orbit", &State::orbit),
+      field("selection", &State::selection),
+      field("bookmarks", &State::bookmarks)};
+  return table;
+}
+
+}  // namespace gpo

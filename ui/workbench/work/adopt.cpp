@@ -1,0 +1,49 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/work/adopt.h"
+
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench/window_span.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gpo {
+
+void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
+  state.recording = std::move(recording);
+  state.inspection.reset();
+  state.surveyed = std::make_shared<const SurveyResults>();
+  state.study.reset();
+  state.selection = {};
+  state.hover = {};
+  state.cube_ray.reset();
+  state.bookmarks.clear();
+  state.settings.exclude.clear();
+  state.undo.clear();
+  state.redo.clear();
+  state.playing = false;
+  state.play_seconds = 0;
+  state.picture_zoom = {};
+  state.compare_zoom.reset();
+  state.normals_zoom = {};
+  state.orbit.reset();
+  const Settings fitting = fit_window(state.settings, state.frame_count());
+  state.message.clear();
+  for (const std::string& note : state.recording->notes) say(state, note);
+  if (!state.recording->notes.empty()) state.message = state.recording->notes.front();
+  if (fitting.start != state.settings.start) {
+    say(state,
+        "start " + std::to_string(state.settings.start) + " does not fit: the last of " +
+            std::to_string(state.frame_count()) + " frames is " +
+            std::to_string(state.frame_count() - 1),
+        Severity::warning);
+  }
+  state.settings = fitting;
+  state.time_span = first_time_span(fitting, state.frame_count());
+  state.frame = std::max(0, fitting.start + std::min(fitting.frames, state.frame_count()) - 1);
+  if (const auto session = std::exchange(state.waiting_session, {}))
+    continue_session(state, *session);
+}
+
+}  // namespace gpo

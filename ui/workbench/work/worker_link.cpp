@@ -1,0 +1,136 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/work/worker_link.h"
+
+#include "engine/base/error.h"
+#include "engine/experiment/results_file.h"
+#include "engine/inspection/moved_cube.h"
+#include "ui/workbench/compared.h"
+#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench/work/adopt.h"
+
+#include <utility>
+
+namespace gpo {
+namespace {
+
+/// The inspection with its cube where the ray points; itself where nobody moved it.
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c) {
+  if (!inspection || !ray_c) return inspection;
+  Inspection moved = *inspection;
+  move_cubes(moved, *ray_c);
+  return std::make_shared<const Inspection>(std::move(moved));
+}
+
+/// Takes over what was published. Whether that is another recording.
+bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
+  // The status first: one that says "idle" then never comes with a result that is not there yet.
+  link.worker = worker.status();
+  link.survey = survey.status();
+  const Published published = worker.latest();
+  const bool opened = published.recording && published.recording != state.recording;
+  if (opened) {
+    adopt(state, published.recording);
+    survey.open(published.recording);
+    if (link.remembers_files && !link.opening.empty()) remember_file(link.opening);
+  }
+  if (published.inspection && published.inspection != link.published)
+    survey.add(published.inspection);
+  if (published.inspection != link.published || state.cube_ray != link.cube_ray)
+    state.inspection = with_cube(published.inspection, state.cube_ray);
+  link.published = published.inspection;
+  link.cube_ray = state.cube_ray;
+  state.surveyed = survey.results();
+  const auto study = survey.latest_study();
+  if (study && study != state.study && !study->error.empty())
+    say(state, "the window's normals could not be studied: " + study->error, Severity::error);
+  state.study = study;
+  if (link.worker.error != link.error) {
+    link.error = link.worker.error;
+    if (!link.error.empty()) say(state, link.error, Severity::error);
+  }
+  return opened;
+}
+
+/// Whose normals the open pane shows; null: none does.
+std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
+  return needs_of(state.panes).study ? state.inspection : nullptr;
+}
+
+/// Shows the figures of a results.csv.
+void open_results(WorkbenchState& state, const std::filesystem::path& file) {
+  try {
+    state.experiment = std::make_shared<const std::vector<Row>>(read_results(file));
+  } catch (const InputError& error) {
+    return say(state, error.what(), Severity::error);
+  }
+  state.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.panes.drawer = find_drawer("curves");
+  say(state, std::to_string(state.experiment->size()) + " results in " + file.string());
+}
+
+/// A session's recording is opened first; one that has moved is asked for. Whether the worker has
+/// something to do.
+bool open_path(WorkbenchState& state, Worker& worker, const std::filesystem::path& path) {
+  if (is_results(path)) {
+    open_results(state, path);
+    return false;
+  }
+  auto& waiting = state.waiting_session;
+  if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
+  std::filesystem::path recording = path;
+  try {
+    if (is_session(path)) {
+      state.waiting_session = read_session(path);
+      recording = state.waiting_session->recording;
+    }
+  } catch (const InputError& error) {
+    say(state, error.what(), Severity::error);
+    return false;
+  }
+  std::error_code none;
+  if (is_session(path) && !std::filesystem::exists(recording, none)) {
+    say(state,
+        recording.string() + " has moved: open it where it is now, and the session goes on",
+        Severity::warning);
+    return false;
+  }
+  worker.open(recording);
+  return true;
+}
+
+}  // namespace
+
+void synchronize(WorkbenchState& state,
+                 WorkerLink& link,
+                 Worker& worker,
+                 Survey& survey,
+                 const std::filesystem::path& example) {
+  const bool opened = receive(state, link, worker, survey);
+  const bool open_example = std::exchange(state.wishes.open_example, false);
+  const auto open = std::exchange(state.wishes.open, {});
+  const bool again = std::exchange(state.wishes.compute, false);
+  if (std::exchange(state.wishes.cancel, false) && link.busy()) {
+    worker.cancel();
+    link.survey_canceled = true;
+    say(state, "canceled; F5 computes again");
+  }
+  const bool compute = state.recording && (opened || again || state.settings != link.requested);
+  if (open_example) worker.open(example);
+  const bool opening = open && open_path(state, worker, *open);
+  if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
+  if (compute) {
+    worker.request(state.settings);
+    link.requested = state.settings;
+  }
+  if (compute) link.survey_canceled = false;
+  survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
+  survey.study(link.survey_canceled ? nullptr : to_study(state));
+  link.survey = survey.status();
+  // Busy until the next call has seen what became of it.
+  if (open_example || opening || compute) link.worker = {true, "", 0, 0, ""};
+}
+
+}  // namespace gpo

@@ -1,0 +1,38 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/studies/survey.h"
+#include "engine/inspection/worker.h"
+#include "ui/workbench/state.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace gpo {
+
+/// Between the workbench and who computes for it: what was asked for, and how far it is.
+struct WorkerLink {
+  Settings requested;                           ///< last ones
+  std::shared_ptr<const Inspection> published;  ///< before its cube was moved
+  std::optional<Eigen::Vector3d> cube_ray;      ///< to where it was moved
+  WorkerStatus worker;
+  SurveyStatus survey;
+  std::string error;              ///< the worker's last one that was said
+  std::filesystem::path opening;  ///< what is being opened; remembered once it is open
+  bool remembers_files = false;   ///< in the user's list of recent files
+  bool survey_canceled = false;   ///< until something else is computed
+
+  bool busy() const { return worker.busy || survey.busy(); }
+};
+
+/// Hands the state's new settings and wishes (open, open_example, compute, cancel) to the worker,
+/// what the open views ask for to the survey, and takes over what they have published. Returns at
+/// once. `example`: the recording that comes with the program.
+void synchronize(WorkbenchState& state,
+                 WorkerLink& link,
+                 Worker& worker,
+                 Survey& survey,
+                 const std::filesystem::path& example);
+
+}  // namespace gpo
