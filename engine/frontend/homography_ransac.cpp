@@ -27,17 +27,6 @@ std::vector<bool> agreeing(const Matrix3d& H,
   return inlier;
 }
 
-/// The homography that takes three points to three points and a fourth one, their sum once they are
-/// scaled, to the fourth one. Not fit for use where three are in a line.
-Matrix3d through_four(const Matrix2Xd& from, const Matrix2Xd& to, const std::array<int, 4>& four) {
-  const auto basis = [&four](const Matrix2Xd& x) -> Matrix3d {
-    Matrix3d three;
-    for (int k = 0; k < 3; ++k) three.col(k) = x.col(four[k]).homogeneous();
-    return three * (three.inverse() * x.col(four[3]).homogeneous()).asDiagonal();
-  };
-  return basis(to) * basis(from).inverse();
-}
-
 /// Whether more than `most` pairs agree with H, up to rounding; ends as soon as they cannot. For
 /// the many samples that are to be refused, at a tenth of the time of fitting and `agreeing`.
 bool more_agree(const Matrix3d& H,
@@ -100,7 +89,12 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
   int needed = options.most_iterations;
   for (int iteration = 0; iteration < needed; ++iteration) {
     const std::array<int, 4> sample = draw_four(random, n);
-    if (!more_agree(through_four(from, to, sample), from, to, options.threshold_px, most)) continue;
+    if (!more_agree(homography_through_four(from(Eigen::all, sample), to(Eigen::all, sample)),
+                    from,
+                    to,
+                    options.threshold_px,
+                    most))
+      continue;
     const auto H = fit_homography(from(Eigen::all, sample), to(Eigen::all, sample));
     if (!H) continue;
     std::vector<bool> inlier = agreeing(*H, from, to, options.threshold_px);

@@ -74,16 +74,6 @@ ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd
   return (depth * H(2, 2) > 0).select(u * u + v * v, infinity).transpose();
 }
 
-/// The homography that takes three points to three points and a fourth one, too.
-Matrix3d through_four(const Pairs& pairs, const std::array<int, 4>& four) {
-  const auto basis = [&four](const Matrix2Xd& x) -> Matrix3d {
-    Matrix3d three;
-    for (int k = 0; k < 3; ++k) three.col(k) = x.col(four[k]).homogeneous();
-    return three * (three.inverse() * x.col(four[3]).homogeneous()).asDiagonal();
-  };
-  return basis(pairs.to) * basis(pairs.from).inverse();
-}
-
 /// For each pair the others, the nearest quarter of them in the reference picture.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
@@ -129,7 +119,8 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
       const int drawn = near[seed][draw(near[seed].size())];
       if (std::ranges::find(four, drawn) == four.end()) four[k++] = drawn;
     }
-    const Matrix3d H = through_four(pairs, four);
+    const Matrix3d H =
+        homography_through_four(pairs.from(Eigen::all, four), pairs.to(Eigen::all, four));
     if (!H.allFinite()) continue;
     const ArrayXd errors = squared_errors(H, pairs.from, pairs.to);
     // Not how many agree, but how closely (MSAC, Torr and Zisserman 2000): at little parallax one

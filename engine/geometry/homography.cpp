@@ -73,6 +73,16 @@ std::optional<Matrix3d> fit_homography(const Matrix2Xd& from, const Matrix2Xd& t
   return Matrix3d(H / H.norm());
 }
 
+Eigen::Matrix3d homography_through_four(const Eigen::Matrix<double, 2, 4>& from,
+                                        const Eigen::Matrix<double, 2, 4>& to) {
+  // The basis in which the first three are the axes and the fourth is (1, 1, 1).
+  const auto basis = [](const Eigen::Matrix<double, 2, 4>& x) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d three = x.leftCols<3>().colwise().homogeneous();
+    return three * (three.inverse() * x.col(3).homogeneous()).asDiagonal();
+  };
+  return basis(to) * basis(from).inverse();
+}
+
 Matrix3d refine_homography(const Matrix3d& H_start, const Matrix2Xd& from, const Matrix2Xd& to) {
   using Vector8d = Eigen::Matrix<double, 8, 1>;
   const Matrix3d T_from = normalization(from);

