@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <opencv2/imgproc.hpp>
+
 namespace gpo {
 namespace {
 
@@ -17,6 +19,18 @@ Eigen::Matrix2Xd undistort_all(const Camera& camera, const Eigen::Matrix2Xd& raw
   Eigen::Matrix2Xd points(2, raw_px.cols());
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) points.col(j) = undistort(camera, raw_px.col(j));
   return points;
+}
+
+std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Camera& camera, const Window& window) {
+  const std::size_t parameters = camera.sigmas.size();
+  std::vector moves(parameters, window.points_px);
+  for (int i = 0; parameters > 0 && i < window.frame_count(); ++i) {
+    for (Eigen::Index j = 0; j < window.track_count(); ++j) {
+      const Eigen::Matrix2Xd of_point = undistortion_sigmas_px(camera, window.points_px[i].col(j));
+      for (std::size_t k = 0; k < parameters; ++k) moves[k][i].col(j) = of_point.col(k);
+    }
+  }
+  return moves;
 }
 
 void add_homography(Window& window, int frame, const RansacOptions& ransac) {
@@ -70,14 +84,28 @@ WindowPlane plane_of(const Window& window, const std::vector<int>& tracks, doubl
   return plane;
 }
 
+/// Of the picture's area, what the convex hull of some tracks covers in the reference frame.
+double picture_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
+  if (tracks.size() < 3 || camera.width == 0) return 0;
+  std::vector<cv::Point2f> points, hull;
+  for (const int j : tracks)
+    points.emplace_back(static_cast<float>(window.points_px[0](0, j)),
+                        static_cast<float>(window.points_px[0](1, j)));
+  cv::convexHull(points, hull);
+  return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
+}
+
 /// The planes of the window; the leading one's tracks are the inliers.
-void find_planes(Window& window, const RansacOptions& ransac, int leader) {
+void find_planes(Window& window, const Camera& camera, const RansacOptions& ransac, int leader) {
   window.inliers = Inliers::planes;
   const PlaneOptions options{.gate_px = ransac.threshold_px, .seed = ransac.seed};
   const TrackPlanes found = window_planes(window.points_px, options);
   window.largest_refused = found.largest_refused;
-  for (const std::vector<int>& tracks : found.planes)
-    window.planes.push_back(plane_of(window, tracks, ransac.threshold_px));
+  for (std::size_t k = 0; k < found.planes.size(); ++k) {
+    window.planes.push_back(plane_of(window, found.planes[k], ransac.threshold_px));
+    window.planes.back().picture_share = picture_share(window, found.planes[k], camera);
+    window.planes.back().stability = found.stability[k];
+  }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac.threshold_px));
   window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
   window.H_i1 = window.planes[window.leader].H_i1;
@@ -100,8 +128,9 @@ Window make_window(const Tracks& tracks,
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
+  window.lens_moves_px = lens_moves(camera, window);
   if (inliers == Inliers::planes && ransac.enabled) {
-    find_planes(window, ransac, leader);
+    find_planes(window, camera, ransac, leader);
   } else {
     window.H_i1.push_back(Eigen::Matrix3d::Identity());
     window.inlier.emplace_back(tracks.track_count(), false);

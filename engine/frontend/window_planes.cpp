@@ -212,6 +212,23 @@ class Search {
     return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
 
+  /// Share of a plane's tracks that stay where the gate is halved, its homographies refitted.
+  double stability(const std::vector<int>& tracks) const {
+    const ArrayXd rms_px = errors_from(tracks);
+    std::vector<double> own;
+    for (const int j : tracks) own.push_back(rms_px[j]);
+    const double gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
+                                      options_.least_gate * options_.gate_px,
+                                      options_.gate_px);
+    std::vector<int> near;
+    for (const int j : tracks)
+      if (rms_px[j] <= gate_px / 2) near.push_back(j);
+    const ArrayXd refitted_px = errors_from(near);
+    const auto stay =
+        std::ranges::count_if(tracks, [&](int j) { return refitted_px[j] <= gate_px / 2; });
+    return static_cast<double>(stay) / static_cast<double>(tracks.size());
+  }
+
   TrackPlanes planes() const {
     std::vector<int> judged;
     for (const Pairs& pairs : frames_)
@@ -236,6 +253,7 @@ class Search {
     }
     std::ranges::stable_sort(planes,
                              [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    for (const std::vector<int>& plane : planes) result.stability.push_back(stability(plane));
     return result;
   }
 

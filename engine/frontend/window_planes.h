@@ -25,7 +25,8 @@ struct PlaneOptions {
 
 struct TrackPlanes {
   std::vector<std::vector<int>> planes;
-  int largest_refused = 0;  ///< tracks of the set that ended the search; 0: there was none
+  std::vector<double> stability;  ///< of each: share of its tracks that stay at half its gate [-]
+  int largest_refused = 0;        ///< tracks of the set that ended the search; 0: there was none
 };
 
 /// The planes of a window: sets of tracks each of which keeps to one homography a frame, over the

@@ -3,8 +3,10 @@
 #include "engine/geometry/camera.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -19,6 +21,12 @@ Lens lens_of(const Camera& camera) { return {camera.distortion, camera.coefficie
 
 Vector2d from_pixel(const Camera& camera, const Vector2d& px) {
   return {(px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy};
+}
+
+/// By its place among (fx, fy, cx, cy, coefficients).
+double& parameter(Camera& camera, std::size_t k) {
+  double* const pinhole[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
+  return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
 }
 
 }  // namespace
@@ -42,6 +50,34 @@ Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   const double tolerance = 1e-10 / std::max(camera.fx, camera.fy);
   return to_pixel(camera,
                   undistort_normalized(lens_of(camera), from_pixel(camera, raw_px), tolerance));
+}
+
+Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera, const Vector2d& undistorted_px) {
+  constexpr double kStep = 1e-5;  // normalized; and of a standard deviation
+  const Vector2d x = from_pixel(camera, undistorted_px);
+  const auto raw = [](const Camera& by, const Vector2d& at) {
+    return to_pixel(by, distort_normalized(lens_of(by), at));
+  };
+  // The picture's point stays: 0 = d raw / d parameter + (d raw / d x) dx.
+  Eigen::Matrix2d slope;
+  for (int k = 0; k < 2; ++k) {
+    const Vector2d step = kStep * Vector2d::Unit(k);
+    slope.col(k) = (raw(camera, x + step) - raw(camera, x - step)) / (2 * kStep);
+  }
+  const Eigen::Matrix2d inverse = slope.inverse();
+  Eigen::Matrix2Xd moves(2, camera.sigmas.size());
+  Camera other = camera;
+  for (std::size_t k = 0; k < camera.sigmas.size(); ++k) {
+    const double value = parameter(other, k);
+    const double step = kStep * camera.sigmas[k];
+    parameter(other, k) = value + step;
+    const Vector2d more = raw(other, x);
+    parameter(other, k) = value - step;
+    const Vector2d dx = -(inverse * (more - raw(other, x))) / (2 * kStep);
+    parameter(other, k) = value;
+    moves.col(static_cast<Eigen::Index>(k)) = dx.cwiseProduct(Vector2d(camera.fx, camera.fy));
+  }
+  return moves;
 }
 
 }  // namespace gpo

@@ -22,6 +22,8 @@ struct Camera {
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
   std::vector<double> coefficients;  ///< as `Lens` orders them; missing ones are zero
+  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty: nobody says.
+  std::vector<double> sigmas = {};
 
   bool operator==(const Camera&) const = default;
 };
@@ -38,5 +40,10 @@ Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted
 /// Undistorted pixel of a raw one; the inverse of `distort`, by Newton's method to 1e-10 px. NaN
 /// where the model has no inverse within its valid radius (far outside of what was calibrated).
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
+
+/// How far the undistorted pixel of a picture's point moves, seen through the same K, for one
+/// standard deviation of each parameter of which there is one; 2 x that many, first order.
+Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera,
+                                        const Eigen::Vector2d& undistorted_px);
 
 }  // namespace gpo

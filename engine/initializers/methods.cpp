@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/initializers/ba.h"
+#include "engine/initializers/certainty/scene_evidence.h"
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/certainty/window_evidence.h"
 #include "engine/initializers/closed_form.h"
@@ -74,7 +75,9 @@ Initialization assessed(const Method& method, const Window& window, Initializati
                           judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
                           travel / result.plane.distance);
   result.verdict->scene = scene_of(window);
-  result.verdict->plane_shares = plane_shares(window);
+  result.verdict->planes = plane_evidence(window);
+  result.verdict->criterion =
+      scene_criterion(window, result.cameras, result.verdict->noise_px.value_or(0));
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   if (method.rotations)
     result.uncertainty = uncertainty_of(window, result.plane, result.cameras, *method.rotations);

@@ -58,6 +58,8 @@ struct WindowPlane {
   std::vector<int> tracks;                ///< ascending; no track is in two planes
   std::vector<Eigen::Matrix3d> H_i1;      ///< one a frame, of these tracks [px]; NaN: too few
   std::vector<std::vector<bool>> inlier;  ///< one a frame and track: seen, and agrees with H_i1
+  double picture_share = 0;  ///< of the reference picture, what its tracks' convex hull covers [-]
+  double stability = 1;      ///< share of its tracks that stay where the gate is halved [-]
 };
 
 /// A window: all that an initializer may know. Frame 0 of it is the reference frame (frame 1 of the
@@ -80,6 +82,9 @@ struct Window {
   std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope
   /// One a frame, of the members above; empty: whoever needs them computes them (`frame_errors`).
   std::vector<FrameErrors> errors = {};
+  /// How the points would move were one parameter of the lens larger by its standard deviation: of
+  /// each parameter, as `points_px`. Empty: the lens is taken as exact.
+  std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   bool all_tracks = false;  ///< methods that need no plane use the tracks off it, too
 
   int frame_count() const { return static_cast<int>(points_px.size()); }

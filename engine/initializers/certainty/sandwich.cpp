@@ -47,15 +47,15 @@ FrameState state_of(const PlaneObservations& observations,
 
 int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
 
-/// J^T r of an observation over (u, phi, t), weighted as it is.
+/// J^T r of an observation over (u, phi, t), of its own error or another one, weighted as it is.
 Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
                                         const FrameState& state,
-                                        int k) {
+                                        int k,
+                                        Eigen::Vector2d r) {
   const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
   const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
   const double x = y.x() / y.z();
   const double v = y.y() / y.z();
-  Eigen::Vector2d r = transfer_error_px(f, state, k);
   r = f.weight.empty() ? Eigen::Vector2d(f.mask[k] * f.mask[k] * r)
                        : Eigen::Vector2d(f.weight[k] * r);
   // dp/dy, transposed, times r; then dy/du = -tau_c (x_1.N), dy/dphi = [y]x, dy/dt = -n.x_1.
@@ -92,7 +92,8 @@ std::vector<Influence> influences(const PlaneObservations& observations,
       const FrameState state = state_of(observations, motion, i, plane);
       const std::vector<int> at = bread.places(plane);
       for (int o = 0; o < f.count; ++o) {
-        const Eigen::Matrix<double, 8, 1> g = gradient_of(f, state, o);
+        const Eigen::Matrix<double, 8, 1> g =
+            gradient_of(f, state, o, transfer_error_px(f, state, o));
         Eigen::VectorXd reduced = -(frame.gain.transpose() * g.tail(own));
         reduced(at) += bread.columns[k][i].transpose() * g;
         all.push_back({i, f.track[o], -(shared_inverse * reduced), -(frame.inverse * g.tail(own))});
@@ -100,6 +101,26 @@ std::vector<Influence> influences(const PlaneObservations& observations,
     }
   }
   return all;
+}
+
+/// By how much the errors of a frame's observations change with one parameter of the lens [px].
+Eigen::Matrix2Xd lens_errors_px(const Window& window,
+                                const FrameObservations& f,
+                                const FrameState& state,
+                                int frame,
+                                std::size_t parameter) {
+  const std::vector<Eigen::Matrix2Xd>& moves = window.lens_moves_px[parameter];
+  FrameObservations moved = f;
+  Eigen::Matrix2Xd errors(2, f.count);
+  for (int o = 0; o < f.count; ++o) {
+    const int j = f.track[o];
+    moved.ray_x[o] += moves[0](0, j) / state.fx;
+    moved.ray_y[o] += moves[0](1, j) / state.fy;
+    moved.u[o] += moves[frame](0, j);
+    moved.v[o] += moves[frame](1, j);
+    errors.col(o) = transfer_error_px(moved, state, o) - transfer_error_px(f, state, o);
+  }
+  return errors;
 }
 
 /// What frames have in common, beside what each observation has for itself; zero where they are too
@@ -236,6 +257,40 @@ Spread spread_of(const Window& window,
   if (of_normal(both) > of_normal(spread.shared) && eigen.eigenvalues()(0) >= 0)
     spread.shared = both;
   return spread;
+}
+
+void add_lens(const Window& window,
+              const PlaneObservations& observations,
+              const PlaneMotion& motion,
+              const Bread& bread,
+              const SharedMatrix& shared_inverse,
+              Spread& spread) {
+  const int frames = static_cast<int>(motion.tau.size());
+  const auto own = bread.frames[1].inverse.rows();
+  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p) {
+    Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
+    std::vector<OwnVector> of_frame(frames, OwnVector::Zero(own));
+    for (int i = 1; i < frames; ++i) {
+      for (std::size_t k = 0; k < bread.columns.size(); ++k) {
+        const int plane = static_cast<int>(k);
+        const FrameObservations& f = of_plane(observations, plane)[i];
+        const FrameState state = state_of(observations, motion, i, plane);
+        const Eigen::Matrix2Xd errors = lens_errors_px(window, f, state, i, p);
+        Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
+        for (int o = 0; o < f.count; ++o) g += gradient_of(f, state, o, errors.col(o));
+        reduced(bread.places(plane)) += bread.columns[k][i].transpose() * g;
+        of_frame[i] += g.tail(own);
+      }
+      reduced -= bread.frames[i].gain.transpose() * of_frame[i];
+    }
+    const Eigen::VectorXd x = -(shared_inverse * reduced);
+    spread.shared += x * x.transpose();
+    for (int i = 1; i < frames; ++i) {
+      const OwnVector e = -(bread.frames[i].inverse * of_frame[i]);
+      spread.cross[i] += x * e.transpose();
+      spread.own[i] += e * e.transpose();
+    }
+  }
 }
 
 }  // namespace gpo

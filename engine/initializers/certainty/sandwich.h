@@ -79,4 +79,13 @@ Spread spread_of(const Window& window,
                  const SharedMatrix& shared_inverse,
                  double degrees_of_freedom);
 
+/// Adds what is not known of the lens: its parameters' errors are independent, each moves the whole
+/// solution.
+void add_lens(const Window& window,
+              const PlaneObservations& observations,
+              const PlaneMotion& motion,
+              const Bread& bread,
+              const SharedMatrix& shared_inverse,
+              Spread& spread);
+
 }  // namespace gpo

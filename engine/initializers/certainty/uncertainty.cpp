@@ -106,12 +106,17 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                             bread,
                             *inverse,
                             residuals / std::max(1.0, residuals - unknowns));
+  const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
+  add_lens(window, observations, motion, bread, *inverse, spread);
+  const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
   spread.shared += bias_share(window, bread, *inverse, linearized->sigma_px, holds_bias);
   const SharedMatrix& covariance = spread.shared;
   Uncertainty result;
   result.sigma_px = linearized->sigma_px;
   result.rotations = model;
   result.tracks = tracks_of(observations);
+  if (!window.lens_moves_px.empty())
+    result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
   const auto tangents = normal_tangents(motion.normal);
   result.normal_covariance = tangents * covariance.topLeftCorner<2, 2>() * tangents.transpose();
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));

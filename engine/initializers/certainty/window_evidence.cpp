@@ -47,19 +47,6 @@ WindowEvidence evidence_of(const Window& window) {
   return evidence;
 }
 
-Scene scene_of(const Window& window) {
-  if (window.inliers != Inliers::planes) return Scene::not_told;
-  if (window.planes.empty()) return Scene::no_plane;
-  return window.planes.size() == 1 ? Scene::one_plane : Scene::several_planes;
-}
-
-std::vector<double> plane_shares(const Window& window) {
-  std::vector<double> shares;
-  for (const WindowPlane& plane : window.planes)
-    shares.push_back(static_cast<double>(plane.tracks.size()) / window.track_count());
-  return shares;
-}
-
 Verdict judged(const WindowEvidence& evidence,
                std::optional<double> normal_sigma_deg,
                double largest_translation) {

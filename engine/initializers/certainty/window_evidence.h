@@ -9,11 +9,6 @@
 
 namespace gpo {
 
-/// What the window's planes say of what its tracks lie on; of other inliers nothing.
-Scene scene_of(const Window& window);
-/// Of all tracks of the window that are judged, one a plane.
-std::vector<double> plane_shares(const Window& window);
-
 /// What a verdict rests on beside the normal's uncertainty; grows frame by frame.
 class WindowEvidence {
  public:

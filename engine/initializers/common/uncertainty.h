@@ -22,13 +22,15 @@ struct PlaneUncertainty {
 /// It rests on what the residuals say, not on a model of them: errors of a track in all its frames
 /// may share a cause, and so may those of a frame in all its tracks (covariance clustered both
 /// ways). Where a method takes a gyroscope's rotations as known, their bias is wrong as far as it
-/// is unknown, and the result with it. The lens is taken as exact.
+/// is unknown, and the result with it. The lens is as
+/// uncertain as its calibration says, or taken as exact.
 struct Uncertainty {
   double sigma_px = 0;  ///< of a coordinate, from the residuals, unknowns counted
   int tracks = 0;       ///< on which it rests
   RotationModel rotations = RotationModel::known;
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
   double normal_sigma_deg = 0;                                  ///< root of its trace
+  std::optional<double> lens_sigma_deg;  ///< the lens' part of it; nothing: taken as exact
   std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
   std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i
   std::vector<PlaneUncertainty> others;       ///< of the further planes, in their order

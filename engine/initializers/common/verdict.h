@@ -28,6 +28,20 @@ struct ChoiceKeys<Scene> {
   static constexpr std::array keys{"not told", "one plane", "several planes", "no plane"};
 };
 
+/// What speaks for a plane of the window.
+struct PlaneEvidence {
+  double track_share = 0;    ///< of the window's tracks [-]
+  double picture_share = 0;  ///< of the reference picture, inside its tracks' hull [-]
+  double stability = 0;      ///< share of its tracks that stay where the gate is halved [-]
+};
+
+/// Torr's criterion (GRIC, 1998) of two descriptions of all tracks, between the reference frame and
+/// the one whose camera is farthest from it; the lower one is better.
+struct SceneCriterion {
+  double planes = 0;       ///< each track on one of the window's planes
+  double free_points = 0;  ///< each track a point of its own, by the cameras' epipolar geometry
+};
+
 /// With the numbers that it rests on; what could not be computed is empty.
 struct Verdict {
   Readiness readiness = Readiness::degenerate;
@@ -37,7 +51,8 @@ struct Verdict {
   std::optional<double> noise_px;             ///< of one coordinate, what the homographies leave
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
   Scene scene = Scene::not_told;              ///< of inliers that are told by planes
-  std::vector<double> plane_shares = {};      ///< of the window's tracks, one a plane [-]
+  std::vector<PlaneEvidence> planes = {};     ///< the largest one first
+  std::optional<SceneCriterion> criterion = std::nullopt;
 };
 
 }  // namespace gpo

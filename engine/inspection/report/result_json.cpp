@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -173,14 +174,20 @@ ordered_json uncertainty_json(const Initialization& result) {
     ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
                       {"sigma", u.distance_ratio_sigmas[i]}});
   }
-  ordered_json json = {{"rotations", to_string(u.rotations)},
-                       {"sigma_px", u.sigma_px},
-                       {"tracks", u.tracks},
-                       {"lens", "taken as exact"},
-                       {"normal_sigma_deg", u.normal_sigma_deg},
-                       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
-                       {"distance_ratios", ratios},
-                       {"center_covariances", centers}};
+  const auto square = [](double x) { return x * x; };
+  const double lens_square = square(u.lens_sigma_deg.value_or(0));
+  ordered_json json = {
+      {"rotations", to_string(u.rotations)},
+      {"sigma_px", u.sigma_px},
+      {"tracks", u.tracks},
+      {"lens", u.lens_sigma_deg ? "as its calibration says" : "taken as exact"},
+      {"normal_sigma_deg", u.normal_sigma_deg},
+      {"parts_deg",
+       {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - lens_square))},
+        {"lens", optional_json(u.lens_sigma_deg)}}},
+      {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
+      {"distance_ratios", ratios},
+      {"center_covariances", centers}};
   if (u.bias_covariance) json["bias_covariance_rad2_s2"] = matrix_json(*u.bias_covariance);
   json["bounds_deg"] = {{"known_rotations", optional_json(u.bound_known_rotations_deg)},
                         {"unknown_bias", optional_json(u.bound_unknown_bias_deg)}};
@@ -188,6 +195,17 @@ ordered_json uncertainty_json(const Initialization& result) {
 }
 
 ordered_json verdict_json(const Verdict& verdict) {
+  ordered_json planes = ordered_json::array();
+  for (const PlaneEvidence& plane : verdict.planes) {
+    planes.push_back({{"track_share", plane.track_share},
+                      {"picture_share", plane.picture_share},
+                      {"stability", plane.stability}});
+  }
+  ordered_json criterion = nullptr;
+  if (verdict.criterion) {
+    criterion = {{"planes", verdict.criterion->planes},
+                 {"free_points", verdict.criterion->free_points}};
+  }
   return {{"readiness", to_string(verdict.readiness)},
           {"reason", verdict.reason},
           {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)},
@@ -195,7 +213,8 @@ ordered_json verdict_json(const Verdict& verdict) {
           {"noise_px", optional_json(verdict.noise_px)},
           {"largest_translation", optional_json(verdict.largest_translation)},
           {"scene", to_string(verdict.scene)},
-          {"plane_shares", verdict.plane_shares}};
+          {"planes", planes},
+          {"gric", criterion}};
 }
 
 ordered_json growth_json(const Inspection& inspection) {

@@ -40,12 +40,16 @@ std::string rotations_text(const Inspection& inspection) {
 std::string uncertainty_text(const Initialization& result) {
   std::string text;
   if (result.uncertainty) {
-    text += row("certain to",
-                fmt::format("{:.3f} deg (one standard deviation, rotations {})",
-                            result.uncertainty->normal_sigma_deg,
-                            result.uncertainty->rotations == RotationModel::known
-                                ? "held"
-                                : to_string(result.uncertainty->rotations)));
+    text +=
+        row("certain to",
+            fmt::format("{:.3f} deg (one standard deviation; rotations {}, lens {})",
+                        result.uncertainty->normal_sigma_deg,
+                        result.uncertainty->rotations == RotationModel::known
+                            ? "held"
+                            : to_string(result.uncertainty->rotations),
+                        result.uncertainty->lens_sigma_deg
+                            ? fmt::format("{:.3f} deg of it", *result.uncertainty->lens_sigma_deg)
+                            : "taken as exact"));
   }
   if (result.bias_rad_s) {
     const Eigen::Vector3d& b = *result.bias_rad_s;

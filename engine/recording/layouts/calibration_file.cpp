@@ -134,6 +134,22 @@ void set_intrinsics(
   camera.cy = cy;
 }
 
+/// Standard deviations as `calibrate` writes them; of coefficients that the file has.
+void set_sigmas(Camera& camera, const YamlEntry& root) {
+  const auto intrinsics = find(root, "intrinsics_sigma");
+  if (!intrinsics) return;
+  camera.sigmas = numbers(*intrinsics, 4, "4 (of fx, fy, cx, cy)");
+  if (const auto entry = find(root, "distortion_coefficients_sigma")) {
+    const std::vector<double> values = numbers(*entry);
+    if (values.size() != camera.coefficients.size())
+      yaml_fail(*entry, count_of(values), "one for each of the distortion coefficients");
+    camera.sigmas.insert(camera.sigmas.end(), values.begin(), values.end());
+  }
+  const auto no_sigma = [](double sigma) { return !(sigma >= 0 && sigma < kMostCoefficient); };
+  if (std::ranges::any_of(camera.sigmas, no_sigma))
+    yaml_fail(*intrinsics, "a standard deviation that none can be", "numbers from 0 on");
+}
+
 /// EuRoC's keys and Kalibr's, which differ in one name only.
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
@@ -152,6 +168,7 @@ Camera euroc_camera(const YamlEntry& root) {
   } else if (camera.distortion != Distortion::none) {
     at(root, "distortion_coefficients", "a list of numbers");
   }
+  set_sigmas(camera, root);
   return camera;
 }
 

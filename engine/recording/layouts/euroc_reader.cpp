@@ -151,9 +151,11 @@ void add_gyroscope(Recording& recording,
   gyroscope.time_offset_ns = time_offset_ns;
   if (imu.bias_rad_s) {
     gyroscope.bias_rad_s = *imu.bias_rad_s;
+    gyroscope.bias_known = true;
     gyroscope.bias_source = "imu0/sensor.yaml";
   } else if (true_mean_bias_rad_s) {
     gyroscope.bias_rad_s = *true_mean_bias_rad_s;
+    gyroscope.bias_known = true;
     gyroscope.bias_source = "mean of the ground truth's";
   }
   if (imu.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *imu.bias_sigma_rad_s;

@@ -7,6 +7,7 @@
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/sidecar_files.h"
 #include "engine/recording/pictures/video_file.h"
+#include "engine/recording/rest.h"
 
 #include <algorithm>
 #include <utility>
@@ -109,6 +110,19 @@ void add_sidecars(Recording& recording, const Found& found) {
   }
 }
 
+/// Of a gyroscope of which no file says more than that it has one.
+void take_bias_from_rest(Recording& recording) {
+  if (!recording.gyroscope || recording.gyroscope->bias_known) return;
+  const auto rest = find_rest(recording);
+  if (!rest) return;
+  Gyroscope& gyroscope = *recording.gyroscope;
+  gyroscope.bias_rad_s = rest->mean_rad_s;
+  gyroscope.bias_sigma_rad_s = rest->sigma_rad_s;
+  gyroscope.bias_source = fmt::format("a rest of {:.1f} s, certain to {:.4f} rad/s",
+                                      1e-9 * static_cast<double>(rest->last_ns - rest->first_ns),
+                                      rest->sigma_rad_s);
+}
+
 bool has_value(const std::optional<Pose>& pose) { return pose.has_value(); }
 
 void add_notes(Recording& recording) {
@@ -147,6 +161,7 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   recording.cache_folder = options.cache_folder;
   recording.name = name_of(is_video_name(path) || is_folder(path) ? path : found.folder);
   add_sidecars(recording, found);
+  take_bias_from_rest(recording);
   add_notes(recording);
   if (recording.pictures) recording.pictures->bgr(0);  // a wrong size or format shows here
   return std::make_shared<const Recording>(std::move(recording));

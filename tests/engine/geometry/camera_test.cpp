@@ -169,5 +169,33 @@ TEST(Camera, PrincipalPointIsThePixelOfTheAxis) {
   }
 }
 
+// The picture's point, undistorted by a lens whose parameters are a little off, and looked at
+// through the right K.
+TEST(Camera, MovesUndistortedPixelsAsItsParametersDo) {
+  for (Camera camera : cameras()) {
+    for (std::size_t k = 0; k < 4 + camera.coefficients.size(); ++k)
+      camera.sigmas.push_back(k < 4 ? 1e-3 : 1e-6);
+    for (const Eigen::Vector2d raw : {Eigen::Vector2d(200, 150), Eigen::Vector2d(330, 290)}) {
+      const Eigen::Vector2d point = undistort(camera, raw);
+      const Eigen::Matrix2Xd moves = undistortion_sigmas_px(camera, point);
+      ASSERT_EQ(moves.cols(), static_cast<Eigen::Index>(camera.sigmas.size()));
+      for (std::size_t k = 0; k < camera.sigmas.size(); ++k) {
+        const auto seen_by = [&](double sign) {
+          Camera off = camera;
+          double* const pinhole[] = {&off.fx, &off.fy, &off.cx, &off.cy};
+          (k < 4 ? *pinhole[k] : off.coefficients[k - 4]) += sign * camera.sigmas[k];
+          const Eigen::Vector2d at = undistort(off, raw);
+          return Eigen::Vector2d(camera.fx * (at.x() - off.cx) / off.fx + camera.cx,
+                                 camera.fy * (at.y() - off.cy) / off.fy + camera.cy);
+        };
+        const Eigen::Vector2d move = (seen_by(1) - seen_by(-1)) / 2;
+        EXPECT_LT((move - moves.col(static_cast<Eigen::Index>(k))).norm(),
+                  1e-3 * move.norm() + 1e-8)
+            << "parameter " << k;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
+#include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
@@ -42,10 +43,20 @@ void draw_tracks(
     const BarColors colors = bar_colors(inspection, i);
     const float left = slot_begin(axis, window.start + i);
     const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
-    const float inliers = bottom - a_track * static_cast<float>(window.inlier_count(i));
-    list.AddRectFilled(
-        {left, bottom - a_track * static_cast<float>(seen)}, {right, inliers}, colors.others);
-    list.AddRectFilled({left, inliers}, {right, bottom}, colors.inliers);
+    float y = bottom;
+    const auto stack = [&](std::ptrdiff_t tracks, ImU32 color) {
+      const float upper = y - a_track * static_cast<float>(tracks);
+      list.AddRectFilled({left, upper}, {right, y}, color);
+      y = upper;
+    };
+    std::ptrdiff_t rest = seen - window.inlier_count(i);
+    stack(window.inlier_count(i), colors.inliers);
+    for (const int k : other_planes(window)) {
+      const auto tracks = std::ranges::count(window.planes[k].inlier[i], true);
+      stack(tracks, imgui_color(plane_color(window, k), 0.6));
+      rest -= tracks;
+    }
+    stack(rest, colors.others);
   }
 }
 
@@ -132,7 +143,17 @@ void draw_verdict_legend(
     write(to_string(readiness), color_of(Role::text));
   }
   left += 16 * scale;
-  write("height: tracks; gray: outliers", color_of(Role::text_dim));
+  write("height: tracks", color_of(Role::text_dim));
+  for (const int k : other_planes(*inspection.window)) {
+    draw_sign(list,
+              Sign::disc,
+              {left + 12 * scale, top + f->FontSize / 2},
+              plane_color(*inspection.window, k));
+    left += 20 * scale;
+    write(fmt::format("plane {}", k + 1).c_str(), color_of(Role::text_dim));
+  }
+  left += 8 * scale;
+  write("gray: outliers", color_of(Role::text_dim));
   for (const MotionLine& line : kMotionLines) {
     if (inspection.motion.empty()) return;
     left += 16 * scale;

@@ -10,6 +10,7 @@
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/normals/normals_disc.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/plane_look.h"
 #include "ui/views/scene/plane_grid.h"
 
 #include <algorithm>
@@ -43,6 +44,16 @@ struct Stage {
     return mixed_rgb(color_of(Role::active), color_of(Role::text), 0.2 + 0.8 * share);
   }
 };
+
+/// What the current answer says of the planes that do not lead.
+std::vector<PlaneEstimate> other_estimates(const NormalsContent& content) {
+  std::vector<PlaneEstimate> others;
+  if (content.answers.empty() || !content.answers.front().current) return others;
+  const Inspection& inspection = *content.answers.front().inspection;
+  for (const PlaneEstimate& plane : inspection.initialization->planes)
+    if (plane.number != inspection.window->leader) others.push_back(plane);
+  return others;
+}
 
 void line_on(const Stage& stage,
              const std::vector<Vector2d>& disc,
@@ -161,6 +172,18 @@ void draw_answer(const Stage& stage, const NormalAnswer& answer) {
   }
 }
 
+/// Of the current answer: the normals of the window's further planes.
+void draw_other_planes(const Stage& stage) {
+  for (const PlaneEstimate& plane : other_estimates(stage.content)) {
+    const Vector3d& normal = plane.plane.normal;
+    const std::uint32_t rgb = plane_color(*stage.content.study->window, plane.number);
+    if (plane.normal_covariance)
+      line_on(stage, confidence_on_disc(normal, *plane.normal_covariance), rgb, stage.s, true);
+    stage.list.AddCircleFilled(stage.at(normal), 5 * stage.s, imgui_color(Role::background), 24);
+    stage.list.AddCircleFilled(stage.at(normal), 3.6F * stage.s, imgui_color(rgb), 24);
+  }
+}
+
 void draw_truth(const Stage& stage) {
   if (const auto normal = true_normal(stage.content.inspection)) {
     const ImVec2 c = stage.at(*normal);
@@ -238,6 +261,10 @@ std::vector<LegendRow> legend_of(const NormalsContent& content) {
       !content.answers.empty() && content.answers.front().current &&
       content.answers.front().inspection->initialization->uncertainty.has_value();
   if (uncertain) add(Sign::line, color_of(Role::uncertain), "95 %");
+  for (const PlaneEstimate& plane : other_estimates(content))
+    add(Sign::disc,
+        plane_color(*content.study->window, plane.number),
+        fmt::format("plane {}", plane.number + 1));
   add(Sign::dot, color_of(Role::selected), "readings, this frame's larger");
   add(Sign::circle, color_of(Role::text), "rejected");
   if (!content.study->clusters.empty())
@@ -282,6 +309,7 @@ void draw_normals_view(ImDrawList& list,
             0.8);
   for (auto answer = content.answers.rbegin(); answer != content.answers.rend(); ++answer)
     draw_path(stage, *answer);
+  draw_other_planes(stage);
   draw_truth(stage);
   for (auto answer = content.answers.rbegin(); answer != content.answers.rend(); ++answer)
     draw_answer(stage, *answer);

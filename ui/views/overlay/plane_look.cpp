@@ -20,6 +20,13 @@ std::uint32_t plane_color(const Window& window, int plane) {
   return kOtherPlanes[place % kOtherPlanes.size()];
 }
 
+std::vector<int> other_planes(const Window& window) {
+  std::vector<int> others;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (k != window.leader) others.push_back(k);
+  return others;
+}
+
 std::optional<int> plane_of_track(const Window& window, int frame, int column) {
   if (window.inlier[frame][column]) return window.leader;
   for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)

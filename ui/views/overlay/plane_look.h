@@ -7,11 +7,15 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace gpo {
 
 /// The leading plane's is that of an inlier; the others have theirs in the order of their support.
 std::uint32_t plane_color(const Window& window, int plane);
+
+/// Numbers of the window's planes that do not lead.
+std::vector<int> other_planes(const Window& window);
 
 /// Number of the plane that the track lies on in the frame; nothing: on none.
 std::optional<int> plane_of_track(const Window& window, int frame, int column);

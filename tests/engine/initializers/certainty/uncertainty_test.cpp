@@ -3,6 +3,7 @@
 #include "engine/initializers/certainty/uncertainty.h"
 
 #include "engine/evaluation/bound.h"
+#include "engine/geometry/plane.h"
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/methods.h"
 #include "engine/window/window.h"
@@ -110,6 +111,73 @@ TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
     ASSERT_TRUE(result.ok) << result.reason;
     const Uncertainty& u = *result.uncertainty;
     EXPECT_EQ(u.rotations, RotationModel::known);
+    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
+               kQuantile2);
+    const std::size_t last = truth.cameras.size() - 1;
+    center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
+                                 u.center_covariances[last]),
+               kQuantile3);
+  }
+  normal.expect();
+  center.expect();
+}
+
+/// How a window's points move where the focal length is longer, and where the first radial
+/// coefficient is larger: K is 500 px, the principal point in the middle of 640 x 480.
+std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Window& window,
+                                                      double focal_px,
+                                                      double radial) {
+  std::vector moves(2, window.points_px);
+  const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const Eigen::Array2Xd x = (window.points_px[i].colwise() - center) / window.K(0, 0);
+    moves[0][i] = -focal_px * x;
+    moves[1][i] = -radial * window.K(0, 0) * (x.rowwise() * x.square().colwise().sum());
+  }
+  return moves;
+}
+
+// What a wrong lens does to the answer is what is said of it: the window's points are moved, and
+// the normal goes where the implicit function theorem sends it.
+TEST(Uncertainty, CarriesTheLensThrough) {
+  const Method& method = find_method("gpo_joint");
+  for (const Motion motion : {Motion::orbit, Motion::wander, Motion::arc}) {
+    Simulation truth = window_of(motion, RotationModel::bias, 5);
+    const auto moves = lens_moves(truth.window, 1e-2, 1e-5);
+    for (int k = 0; k < 2; ++k) {
+      const auto normal_of = [&](double sign) {
+        Window window = truth.window;
+        for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += sign * moves[k][i];
+        return method.initialize(window, {}, {}).plane.normal;
+      };
+      Window window = truth.window;
+      window.lens_moves_px = {moves[k]};
+      const Initialization result = assessed(method, window, method.initialize(window, {}, {}));
+      ASSERT_TRUE(result.uncertainty && result.uncertainty->lens_sigma_deg);
+      const double moved_deg = degrees((normal_of(1) - normal_of(-1)).norm() / 2);
+      EXPECT_NEAR(*result.uncertainty->lens_sigma_deg / moved_deg, 1, 0.03) << "parameter " << k;
+    }
+  }
+}
+
+// Lenses as uncertain as they are said to be, and by far the largest error.
+TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
+  const Method& method = find_method("gpo_joint");
+  ChiSquare normal{2}, center{3};
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    const Simulation truth = window_of(motion, RotationModel::known, seed);
+    const auto moves = lens_moves(truth.window, 5, 0.01);
+    Window window = truth.window;
+    std::mt19937_64 random(seed);
+    for (const auto& of_parameter : moves) {
+      const double error = std::normal_distribution<double>()(random);
+      for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += error * of_parameter[i];
+    }
+    window.lens_moves_px = moves;
+    const Initialization result = assessed(method, window, method.initialize(window, {}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    const Uncertainty& u = *result.uncertainty;
     normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
                kQuantile2);
     const std::size_t last = truth.cameras.size() - 1;

@@ -170,6 +170,18 @@ TEST(CalibrationFile, ReadsKalibrsChain) {
   EXPECT_TRUE(T.p_wc.isApprox(Eigen::Vector3d(0.2, -0.1, -0.3)));
 }
 
+TEST(CalibrationFile, ReadsHowSureTheLensIs) {
+  const TestFolder folder;
+  const auto with_lines = [&](const std::string& lines) {
+    return read_calibration(folder.write("sensor.yaml", kEuroc + lines)).camera.sigmas;
+  };
+  EXPECT_TRUE(with_lines("").empty());
+  EXPECT_THAT(with_lines("intrinsics_sigma: [1, 2, 3, 4]\n"), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(with_lines("intrinsics_sigma: [1, 2, 3, 4]\n"
+                         "distortion_coefficients_sigma: [0.1, 0.2, 0, 0]\n"),
+              ElementsAre(1, 2, 3, 4, 0.1, 0.2, 0, 0));
+}
+
 /// The file with one line replaced.
 std::string with(const std::string& key, const std::string& line) {
   std::string text = kEuroc;
@@ -225,6 +237,17 @@ INSTANTIATE_TEST_SUITE_P(
                        "[width, height] in pixels"},
         BadCalibration{with("resolution", "resolution: 752x480"),
                        ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
+        BadCalibration{kEuroc + std::string("intrinsics_sigma: [1, 2]"),
+                       ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, "
+                       "cy)"},
+        BadCalibration{kEuroc + std::string("intrinsics_sigma: [1, -2, 3, 4]"),
+                       ":18: key `intrinsics_sigma`: found a standard deviation that none can be, "
+                       "expected numbers from 0 on"},
+        BadCalibration{
+            kEuroc + std::string("intrinsics_sigma: [1, 2, 3, 4]\n"
+                                 "distortion_coefficients_sigma: [0.1]"),
+            ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for "
+            "each of the distortion coefficients"},
         BadCalibration{with("rate_hz", "rate_hz: 0"),
                        ":12: key `rate_hz`: found a rate that is not positive, expected pictures a "
                        "second"},

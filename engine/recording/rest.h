@@ -1,0 +1,27 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// A stretch of time in which neither the gyroscope's rates vary nor the pictures move: what the
+/// gyroscope says there is its bias.
+struct Rest {
+  std::int64_t first_ns = 0;  ///< camera's clock
+  std::int64_t last_ns = 0;
+  Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
+  double sigma_rad_s = 0;  ///< each axis: by its noise, and by what the pictures may hide
+};
+
+/// The longest one of at least 0.75 s. Looks at pictures (or tracks) only where the gyroscope seems
+/// to rest. Throws InputError where a picture cannot be read.
+std::optional<Rest> find_rest(const Recording& recording);
+
+}  // namespace gpo
