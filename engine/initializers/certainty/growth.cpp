@@ -3,6 +3,7 @@
 #include "engine/initializers/certainty/growth.h"
 
 #include "engine/initializers/certainty/shared_information.h"
+#include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/certainty/window_evidence.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/closed_form_motion.h"
@@ -121,7 +122,14 @@ std::optional<int> settle(const Window& window, Growing& growing) {
   return linearized;
 }
 
-Verdict judged(const Window& window, const Growing& growing) {
+/// What a step's verdict rests on, its standard deviation as independent noise would have it.
+struct Grounds {
+  WindowEvidence evidence;
+  std::optional<double> normal_sigma_deg;
+  double travel = 0;  ///< largest |tau| [plane distance]
+};
+
+Grounds grounds_of(const Window& window, const Growing& growing) {
   double cost = 0;
   double travel = 0;
   for (const LinearizedFrame& f : growing.frames) {
@@ -132,13 +140,26 @@ Verdict judged(const Window& window, const Growing& growing) {
   const double sigma_px = noise_px(2 * cost, 2 * growing.observations, unknowns);
   SharedInformation information = prior_information(window, window.rotations, sigma_px);
   for (const LinearizedFrame& f : growing.frames) information += f.information;
-  return judged(growing.evidence, normal_sigma_deg(information, sigma_px), travel);
+  return {growing.evidence, normal_sigma_deg(information, sigma_px), travel};
+}
+
+/// By how much the whole window's uncertainty, clustered by track, exceeds that of independent
+/// noise. One factor for all lengths: the clusters of a few frames tell nothing, but what is wrong
+/// with a track is wrong from its first frame on.
+double over_independent_noise(const Window& window, const Growing& growing, const Grounds& whole) {
+  if (!whole.normal_sigma_deg) return 1;
+  PlaneMotion motion = resting(window);
+  motion.normal = growing.normal;
+  for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
+  const auto u = uncertainty_of(window, plane_observations(window), motion, window.rotations);
+  return u ? std::max(1.0, u->normal_sigma_deg / *whole.normal_sigma_deg) : 1;
 }
 
 }  // namespace
 
 std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) {
   std::vector<GrowthStep> steps;
+  std::vector<Grounds> grounds;
   Growing growing{{window.K(0, 0), window.K(1, 1), {}}, {}, -Vector3d::UnitZ(), {}, 0};
   const std::vector<FrameErrors> errors = frame_errors(window);
   for (int i = 1; i < window.frame_count() && !stop.stop_requested(); ++i) {
@@ -150,7 +171,15 @@ std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) 
     if (i == 1 || angle_deg(closed, growing.normal) > kAstray_deg) growing.normal = closed;
     const auto linearized = settle(window, growing);
     if (!linearized) return {};
-    steps.push_back({i + 1, growing.normal, judged(window, growing), *linearized});
+    grounds.push_back(grounds_of(window, growing));
+    steps.push_back({i + 1, growing.normal, {}, *linearized});
+  }
+  if (steps.empty()) return steps;
+  const double factor = over_independent_noise(window, growing, grounds.back());
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    auto sigma_deg = grounds[k].normal_sigma_deg;
+    if (sigma_deg) *sigma_deg *= factor;
+    steps[k].verdict = judged(grounds[k].evidence, sigma_deg, grounds[k].travel);
   }
   return steps;
 }

@@ -22,7 +22,9 @@ struct GrowthStep {
 
 /// GPO at every length from 2 frames on, each step warm from the one before: a frame's errors are
 /// linearized when it comes, and again only where the normal has since moved. Empty where a frame
-/// has too few inliers or no homography; ends early where it is stopped.
+/// has too few inliers or no homography; ends early where it is stopped. The
+/// verdicts' standard deviations are those of independent noise times what the whole window says of
+/// how dependent it is.
 std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop = {});
 
 }  // namespace gpo
