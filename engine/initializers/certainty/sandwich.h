@@ -46,11 +46,11 @@ struct Eliminated {
 
 /// The bread: a linearized problem, its frames' own unknowns eliminated.
 struct Bread {
-  Layout layout;
-  std::vector<std::vector<PlaneColumns>> columns;  ///< of each plane, of each frame
-  std::vector<Eliminated> frames;                  ///< the first one's is empty
-  SharedMatrix prior;                              ///< the bias' [px^2]
-  SharedMatrix information;                        ///< on what the frames share, with the prior
+  Layout layout = {};
+  std::vector<std::vector<PlaneColumns>> columns = {};  ///< of each plane, of each frame
+  std::vector<Eliminated> frames = {};                  ///< the first one's is empty
+  SharedMatrix prior = {};                              ///< the bias' [px^2]
+  SharedMatrix information = {};  ///< on what the frames share, with the prior
 
   /// Where the columns of a plane stand among all shared unknowns.
   std::vector<int> places(int plane) const;

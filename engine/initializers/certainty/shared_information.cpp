@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/shared_information.h"
 
+#include "engine/geometry/pose.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
