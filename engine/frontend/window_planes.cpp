@@ -74,6 +74,33 @@ ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd
   return (depth * H(2, 2) > 0).select(u * u + v * v, infinity).transpose();
 }
 
+/// Judges hypotheses by all pairs, thousands of times: single precision, no memory taken.
+class Judge {
+ public:
+  Judge(const Pairs& pairs, double gate_px)
+      : x_(pairs.from.row(0).cast<float>().transpose()),
+        y_(pairs.from.row(1).cast<float>().transpose()),
+        u_(pairs.to.row(0).cast<float>().transpose()),
+        v_(pairs.to.row(1).cast<float>().transpose()),
+        a_square_px2_(static_cast<float>(1 / (gate_px * gate_px))) {}
+
+  /// Not how many agree, but how closely (MSAC, Torr and Zisserman 2000): at little parallax one
+  /// homography passes near the tracks of two planes, and through those of one.
+  double score(const Matrix3d& hypothesis) {
+    const Eigen::Matrix3f H = (hypothesis / hypothesis(2, 2)).cast<float>();
+    depth_ = H(2, 0) * x_ + H(2, 1) * y_ + H(2, 2);
+    du_ = (H(0, 0) * x_ + H(0, 1) * y_ + H(0, 2)) / depth_ - u_;
+    dv_ = (H(1, 0) * x_ + H(1, 1) * y_ + H(1, 2)) / depth_ - v_;
+    const auto loss = 1 - a_square_px2_ * (du_.square() + dv_.square());
+    return (depth_ > 0).select(loss.max(0), 0).sum();
+  }
+
+ private:
+  Eigen::ArrayXf x_, y_, u_, v_;
+  float a_square_px2_;
+  Eigen::ArrayXf depth_, du_, dv_;
+};
+
 /// For each pair the others, the nearest quarter of them in the reference picture.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
@@ -109,6 +136,7 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
   const auto near = neighborhoods(pairs);
   const double gate_px = options.least_gate * options.gate_px;
   const auto draw = [&](std::size_t below) { return static_cast<std::size_t>(random() % below); };
+  Judge judge(pairs, gate_px);
   double most = 0;
   ArrayXd best;
   int needed = options.most_hypotheses;
@@ -122,14 +150,11 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
     const Matrix3d H =
         homography_through_four(pairs.from(Eigen::all, four), pairs.to(Eigen::all, four));
     if (!H.allFinite()) continue;
-    const ArrayXd errors = squared_errors(H, pairs.from, pairs.to);
-    // Not how many agree, but how closely (MSAC, Torr and Zisserman 2000): at little parallax one
-    // homography passes near the tracks of two planes, and through those of one.
-    const double score = (1 - errors / (gate_px * gate_px)).max(0).sum();
-    if (score <= most) continue;
+    const double score = judge.score(H);
+    if (!(score > most)) continue;
     most = score;
-    best = errors;
-    const auto agreeing = static_cast<double>((errors <= gate_px * gate_px).count());
+    best = squared_errors(H, pairs.from, pairs.to);
+    const auto agreeing = static_cast<double>((best <= gate_px * gate_px).count());
     needed = hypotheses_needed(agreeing / n, options);
   }
   std::vector<int> tracks;
@@ -168,12 +193,11 @@ class Search {
       for (int k = 0; k < static_cast<int>(pairs.tracks.size()); ++k)
         if (chosen[pairs.tracks[k]]) own.push_back(k);
       if (static_cast<int>(own.size()) < kLeastSeen) continue;
-      const Matrix2Xd from = pairs.from(Eigen::all, own);
-      const Matrix2Xd to = pairs.to(Eigen::all, own);
-      const auto H = fit_homography(from, to);
+      // Least algebraic error is near enough to the least one for a gate of pixels, and a fifth of
+      // its time.
+      const auto H = fit_homography(pairs.from(Eigen::all, own), pairs.to(Eigen::all, own));
       if (!H) return ArrayXd::Constant(track_count(), infinity);
-      const ArrayXd errors = squared_errors(refine_homography(*H, from, to), pairs.from, pairs.to);
-      squares(pairs.tracks) += errors;
+      squares(pairs.tracks) += squared_errors(*H, pairs.from, pairs.to);
       seen(pairs.tracks) += 1;
     }
     return (seen > 0).select((squares / seen.max(1)).sqrt(), infinity);

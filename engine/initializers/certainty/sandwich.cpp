@@ -276,8 +276,9 @@ void add_lens(const Window& window,
         const FrameObservations& f = of_plane(observations, plane)[i];
         const FrameState state = state_of(observations, motion, i, plane);
         const Eigen::Matrix2Xd errors = lens_errors_px(window, f, state, i, p);
+        const FrameObservations curved = curvature_weights(f, state).value_or(f);
         Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
-        for (int o = 0; o < f.count; ++o) g += gradient_of(f, state, o, errors.col(o));
+        for (int o = 0; o < f.count; ++o) g += gradient_of(curved, state, o, errors.col(o));
         reduced(bread.places(plane)) += bread.columns[k][i].transpose() * g;
         of_frame[i] += g.tail(own);
       }

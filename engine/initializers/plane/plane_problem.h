@@ -5,7 +5,6 @@
 #pragma once
 
 #include "engine/initializers/plane/plane_kernel.h"
-#include "engine/initializers/plane/plane_solver.h"
 #include "engine/initializers/plane/plane_weights.h"
 #include "engine/initializers/plane/shared_unknowns.h"
 

@@ -6,22 +6,10 @@
 #include "engine/initializers/common/watch.h"
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/plane/plane_observations.h"
+#include "engine/initializers/plane/shared_unknowns.h"
 #include "engine/window/window.h"
 
-#include <vector>
-
 namespace gpo {
-
-/// What is optimized beside the normal and the translations.
-struct PlaneUnknowns {
-  /// bias: needs the window's `gyro`. free: three more unknowns a frame.
-  RotationModel rotations = RotationModel::known;
-  bool time_offset = false;  ///< with `bias`: the offset between the clocks, too
-  double sigma_px = 0.5;     ///< noise of a coordinate, against which the priors are weighed
-};
-
-/// Standard deviation of the offset between clocks before anything is measured [s].
-inline constexpr double kTimeOffsetSigma_s = 0.02;
 
 struct PlaneSolution {
   PlaneMotion motion;

@@ -10,6 +10,17 @@
 
 namespace gpo {
 
+/// What is optimized beside the normal and the translations.
+struct PlaneUnknowns {
+  /// bias: needs the window's `gyro`. free: three more unknowns a frame.
+  RotationModel rotations = RotationModel::known;
+  bool time_offset = false;  ///< with `bias`: the offset between the clocks, too
+  double sigma_px = 0.5;     ///< noise of a coordinate, against which the priors are weighed
+};
+
+/// Standard deviation of the offset between clocks before anything is measured [s].
+inline constexpr double kTimeOffsetSigma_s = 0.02;
+
 inline constexpr int kMostShared = 2 + 3 * kMostOtherPlanes + 4;
 
 /// Where the unknowns that all frames share stand: the leading plane's normal (2), normal and log

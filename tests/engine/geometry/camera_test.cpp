@@ -175,7 +175,7 @@ TEST(Camera, MovesUndistortedPixelsAsItsParametersDo) {
   for (Camera camera : cameras()) {
     for (std::size_t k = 0; k < 4 + camera.coefficients.size(); ++k)
       camera.sigmas.push_back(k < 4 ? 1e-3 : 1e-6);
-    for (const Eigen::Vector2d raw : {Eigen::Vector2d(200, 150), Eigen::Vector2d(330, 290)}) {
+    for (const Eigen::Vector2d& raw : {Eigen::Vector2d(200, 150), Eigen::Vector2d(330, 290)}) {
       const Eigen::Vector2d point = undistort(camera, raw);
       const Eigen::Matrix2Xd moves = undistortion_sigmas_px(camera, point);
       ASSERT_EQ(moves.cols(), static_cast<Eigen::Index>(camera.sigmas.size()));

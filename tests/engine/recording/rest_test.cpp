@@ -37,7 +37,7 @@ struct Made {
 Recording made(const Made& options) {
   constexpr std::int64_t kStart_ns = 1'500'000'000'000'000'000;
   Recording recording;
-  recording.camera = {.width = 320, .height = 240, .fx = 250, .fy = 250, .cx = 160, .cy = 120};
+  recording.camera = {320, 240, 250, 250, 160, 120, Distortion::none, {}};
   for (int i = 0; i < 80; ++i) recording.timestamps_ns.push_back(kStart_ns + i * 50'000'000LL);
   recording.pictures = std::make_shared<FrameCache>(80, [options](int i) {
     const double moving_s = std::max(0.0, i / 20.0 - options.rest_s);

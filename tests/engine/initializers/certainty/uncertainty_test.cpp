@@ -167,7 +167,7 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
     const Simulation truth = window_of(motion, RotationModel::known, seed);
-    const auto moves = lens_moves(truth.window, 5, 0.01);
+    const auto moves = lens_moves(truth.window, 1.5, 0.003);
     Window window = truth.window;
     std::mt19937_64 random(seed);
     for (const auto& of_parameter : moves) {
