@@ -137,37 +137,53 @@ std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Window& window,
   return moves;
 }
 
+const InitializerOptions kSquared = {.loss = Loss::squared};
+
 // What a wrong lens does to the answer is what is said of it: the window's points are moved, and
-// the normal goes where the implicit function theorem sends it.
+// normal and centers go where the implicit function theorem sends them.
 TEST(Uncertainty, CarriesTheLensThrough) {
   const Method& method = find_method("gpo_joint");
-  for (const Motion motion : {Motion::orbit, Motion::wander, Motion::arc}) {
-    Simulation truth = window_of(motion, RotationModel::bias, 5);
+  for (const RotationModel model :
+       {RotationModel::known, RotationModel::bias, RotationModel::free}) {
+    const Simulation truth = window_of(Motion::wander, model, 5);
     const auto moves = lens_moves(truth.window, 1e-2, 1e-5);
+    const std::size_t last = truth.cameras.size() - 1;
     for (int k = 0; k < 2; ++k) {
-      const auto normal_of = [&](double sign) {
+      const auto solved = [&](double sign) {
         Window window = truth.window;
         for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += sign * moves[k][i];
-        return method.initialize(window, {}, {}).plane.normal;
+        return method.initialize(window, kSquared, {});
       };
       Window window = truth.window;
+      const auto plain = assessed(method, window, method.initialize(window, kSquared, {}));
       window.lens_moves_px = {moves[k]};
-      const Initialization result = assessed(method, window, method.initialize(window, {}, {}));
-      ASSERT_TRUE(result.uncertainty && result.uncertainty->lens_sigma_deg);
-      const double moved_deg = degrees((normal_of(1) - normal_of(-1)).norm() / 2);
-      EXPECT_NEAR(*result.uncertainty->lens_sigma_deg / moved_deg, 1, 0.03) << "parameter " << k;
+      const auto with_lens = assessed(method, window, method.initialize(window, kSquared, {}));
+      ASSERT_TRUE(plain.uncertainty && with_lens.uncertainty->lens_sigma_deg);
+      EXPECT_FALSE(plain.uncertainty->lens_sigma_deg);
+      const Initialization more = solved(1), less = solved(-1);
+      const auto expect_outer = [&](const Vector3d& moved, const Eigen::Matrix3d& added) {
+        const Eigen::Matrix3d expected = moved * moved.transpose();
+        EXPECT_LT((added - expected).norm(), 0.05 * expected.norm())
+            << "parameter " << k << ", rotations " << to_string(model);
+      };
+      expect_outer((more.plane.normal - less.plane.normal) / 2,
+                   with_lens.uncertainty->normal_covariance - plain.uncertainty->normal_covariance);
+      expect_outer((more.cameras[last].p_wc - less.cameras[last].p_wc) / 2,
+                   with_lens.uncertainty->center_covariances[last] -
+                       plain.uncertainty->center_covariances[last]);
     }
   }
 }
 
-// Lenses as uncertain as they are said to be, and by far the largest error.
+// Lenses as uncertain as they are said to be. Taken as exact they would make the mean 78 and 46;
+// much worse lenses are beyond the first order.
 TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
   const Method& method = find_method("gpo_joint");
   ChiSquare normal{2}, center{3};
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
     const Simulation truth = window_of(motion, RotationModel::known, seed);
-    const auto moves = lens_moves(truth.window, 1.5, 0.003);
+    const auto moves = lens_moves(truth.window, 1.5, 0.0006);
     Window window = truth.window;
     std::mt19937_64 random(seed);
     for (const auto& of_parameter : moves) {
@@ -175,7 +191,7 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
       for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += error * of_parameter[i];
     }
     window.lens_moves_px = moves;
-    const Initialization result = assessed(method, window, method.initialize(window, {}, {}));
+    const Initialization result = assessed(method, window, method.initialize(window, kSquared, {}));
     ASSERT_TRUE(result.ok) << result.reason;
     const Uncertainty& u = *result.uncertainty;
     normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
