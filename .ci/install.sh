@@ -3,7 +3,7 @@
 
 build_packages=(
   g++ cmake ninja-build pkg-config
-  libeigen3-dev libceres-dev libopencv-dev libvtk9-dev
+  libeigen3-dev libceres-dev libopencv-dev libopengv-dev libvtk9-dev
   libglfw3-dev libimgui-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev

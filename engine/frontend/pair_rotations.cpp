@@ -1,0 +1,251 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/pair_rotations.h"
+
+#include "engine/frontend/rotation_averaging.h"
+#include "engine/geometry/homography.h"
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+
+/// Tracks off the plane that keep to the epipolar geometry: fewer do not tell its direction.
+constexpr double kLeastOffPlaneShare = 0.08;
+constexpr int kLeastOffPlane = 10;
+/// Of the tracks off the plane; where fewer keep to it, they are outliers.
+constexpr double kLeastConsistent = 0.5;
+/// Frames that see it, the best ones: parallax grows.
+constexpr double kSeenByFrames = 0.25;
+/// Off the plane is what misses its homography by so many of its own median errors, and at most
+/// the threshold.
+constexpr double kMedianErrors = 4;
+constexpr double kLeastThresholdShare = 0.25;
+
+/// The window's tracks in an order that does not depend on theirs.
+struct WindowRays {
+  std::vector<int> tracks;              // of the window
+  std::vector<int> group;               // one a track of `tracks`: its plane, or the last: none
+  std::vector<Eigen::Matrix3Xd> rays;   // one a frame, NaN: not seen
+  std::vector<Eigen::ArrayXd> miss_px;  // one a frame: by what tracks miss the plane, NaN: unknown
+};
+
+std::vector<int> groups_of(const Window& window) {
+  const int count = window.track_count();
+  std::vector<int> group(count, std::max(1, static_cast<int>(window.planes.size())));
+  for (std::size_t p = 0; p < window.planes.size(); ++p)
+    for (const int k : window.planes[p].tracks) group[k] = static_cast<int>(p);
+  if (!window.planes.empty()) return group;
+  for (int k = 0; k < count; ++k)
+    if (window.is_inlier_track(k)) group[k] = 0;
+  return group;
+}
+
+/// Homographies of the plane with most tracks.
+const std::vector<Matrix3d>& homographies(const Window& window) {
+  return window.planes.empty() ? window.H_i1 : window.planes.front().H_i1;
+}
+
+WindowRays rays_of(const Window& window) {
+  WindowRays result;
+  const Eigen::Matrix2Xd& first = window.points_px.front();
+  for (int k = 0; k < window.track_count(); ++k)
+    if (first.col(k).allFinite()) result.tracks.push_back(k);
+  std::ranges::sort(result.tracks, {}, [&](int k) { return std::pair(first(0, k), first(1, k)); });
+  const std::vector<int> group = groups_of(window);
+  for (const int k : result.tracks) result.group.push_back(group[k]);
+  const Matrix3d K_inverse = window.K.inverse();
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const Eigen::Matrix2Xd seen = window.points_px[i](Eigen::all, result.tracks);
+    result.rays.emplace_back(K_inverse * seen.colwise().homogeneous());
+    Eigen::ArrayXd miss_px(seen.cols());
+    for (Eigen::Index k = 0; k < seen.cols(); ++k) {
+      const Eigen::Vector2d from = first.col(result.tracks[k]);
+      miss_px[k] = (transfer(homographies(window)[i], from) - seen.col(k)).norm();
+    }
+    result.miss_px.push_back(std::move(miss_px));
+  }
+  return result;
+}
+
+/// A pair of frames: which tracks both see, and how the frames are to each other.
+struct Pair {
+  std::vector<int> common;  // index into WindowRays
+  RelativePose pose;
+};
+
+/// `usable`: one a track.
+std::optional<Pair> joined(const WindowRays& window,
+                           int i,
+                           int j,
+                           const std::vector<bool>& usable,
+                           RelativePoseOptions options) {
+  Pair pair;
+  RayPairs rays;
+  for (Eigen::Index k = 0; k < window.rays[i].cols(); ++k) {
+    if (!usable[k] || !window.rays[i].col(k).allFinite() || !window.rays[j].col(k).allFinite())
+      continue;
+    pair.common.push_back(static_cast<int>(k));
+    rays.group.push_back(window.group[k]);
+  }
+  rays.i = window.rays[i](Eigen::all, pair.common);
+  rays.j = window.rays[j](Eigen::all, pair.common);
+  options.seed += 1'000'003ULL * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(j);
+  auto pose = relative_pose(rays, options);
+  if (!pose) return std::nullopt;
+  pair.pose = std::move(*pose);
+  return pair;
+}
+
+/// How far a track may miss the plane and be on it.
+double plane_gate_px(const Eigen::ArrayXd& miss_px, double threshold_px) {
+  std::vector<double> on_plane;
+  for (const double miss : miss_px)
+    if (miss <= threshold_px) on_plane.push_back(miss);
+  if (on_plane.empty()) return threshold_px;
+  return std::clamp(kMedianErrors * median(std::move(on_plane)),
+                    kLeastThresholdShare * threshold_px,
+                    threshold_px);
+}
+
+/// The value that a share of them, the greatest ones, reach.
+double reached_by(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return quantile(values, 1 - share);
+}
+
+/// The share of the tracks that are off the plane in a frame.
+double off_plane_share(const WindowRays& rays, double threshold_px) {
+  std::vector<double> shares;
+  for (std::size_t j = 1; j < rays.rays.size(); ++j) {
+    const double gate_px = plane_gate_px(rays.miss_px[j], threshold_px);
+    int seen = 0;
+    int off = 0;
+    for (const double miss : rays.miss_px[j]) {
+      seen += std::isfinite(miss) ? 1 : 0;
+      off += miss > gate_px ? 1 : 0;
+    }
+    shares.push_back(static_cast<double>(off) / std::max(seen, 1));
+  }
+  return reached_by(std::move(shares), kSeenByFrames);
+}
+
+/// The share of the tracks that are off the plane and yet keep to the epipolar geometry.
+double structure_share(const WindowRays& rays,
+                       const std::vector<Pair>& reference_pairs,
+                       double threshold_px) {
+  std::vector<double> shares;
+  for (std::size_t j = 1; j < rays.rays.size(); ++j) {
+    const Pair& pair = reference_pairs[j - 1];
+    const double gate_px = plane_gate_px(rays.miss_px[j], threshold_px);
+    int off = 0;
+    int consistent = 0;
+    for (std::size_t k = 0; k < pair.common.size(); ++k) {
+      if (!(rays.miss_px[j][pair.common[k]] > gate_px)) continue;
+      ++off;
+      consistent += pair.pose.inlier[k] ? 1 : 0;
+    }
+    const bool structure = consistent >= kLeastOffPlane && consistent > kLeastConsistent * off;
+    shares.push_back(structure ? static_cast<double>(consistent) / pair.common.size() : 0);
+  }
+  return reached_by(std::move(shares), kSeenByFrames);
+}
+
+Rotations flat(const char* name) {
+  return {{},
+          fmt::format("{} rotations: nearly all tracks lie on one plane, on which they are "
+                      "ambiguous; use averaging",
+                      name)};
+}
+
+/// Tracks that agree with at least half of the pairs that see them.
+std::vector<bool> trusted(const WindowRays& rays, const std::vector<Pair>& pairs) {
+  std::vector<int> votes(rays.tracks.size(), 0);
+  for (const Pair& pair : pairs)
+    for (std::size_t k = 0; k < pair.common.size(); ++k)
+      votes[pair.common[k]] += pair.pose.inlier[k] ? 1 : -1;
+  std::vector<bool> usable;
+  usable.reserve(votes.size());
+  for (const int vote : votes) usable.push_back(vote >= 0);
+  return usable;
+}
+
+bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
+
+/// By what the pairs' rotations miss the averaged ones: the median [rad].
+double disagreement_rad(const std::vector<RelativeRotation>& relative,
+                        const std::vector<Matrix3d>& R_wc) {
+  std::vector<double> angles;
+  for (const auto& [i, j, R_ij, weight] : relative)
+    angles.push_back(so3_log(R_wc[i] * R_ij * R_wc[j].transpose()).norm());
+  return median(std::move(angles));
+}
+
+}  // namespace
+
+Rotations pair_rotations(const Window& window,
+                         const PairRotationOptions& options,
+                         const std::stop_token& stop) {
+  const char* name = options.solver == RelativeSolver::five_point ? "five-point" : "direct";
+  const WindowRays rays = rays_of(window);
+  if (off_plane_share(rays, options.threshold_px) < kLeastOffPlaneShare) return flat(name);
+
+  RelativePoseOptions of_pair{.solver = options.solver,
+                              .gate = options.threshold_px / window.K(0, 0),
+                              .seed = options.seed};
+  const std::vector<bool> all(rays.tracks.size(), true);
+  std::vector<Pair> reference_pairs;
+  std::vector<RelativeRotation> relative;
+  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
+  const auto add = [&](int i, int j, const RelativePose& pose) {
+    relative.push_back({i, j, pose.R_ij, static_cast<double>(pose.inliers)});
+  };
+  for (int j = 1; j < window.frame_count(); ++j) {
+    if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
+    of_pair.R_ij_guess = R_wc.back();
+    auto pair = joined(rays, 0, j, all, of_pair);
+    if (!pair) {
+      return {{},
+              fmt::format("{} rotations: too few tracks join frame {} to the reference frame "
+                          "(at least {})",
+                          name,
+                          window.start + j,
+                          kLeastPairRays)};
+    }
+    add(0, j, pair->pose);
+    R_wc.push_back(pair->pose.R_ij);
+    reference_pairs.push_back(std::move(*pair));
+  }
+  if (structure_share(rays, reference_pairs, options.threshold_px) < kLeastOffPlaneShare)
+    return flat(name);
+
+  const std::vector<bool> usable = trusted(rays, reference_pairs);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
+    for (int j = i + 1; j < window.frame_count(); ++j) {
+      // Neighbors and far ones: m log m pairs tie frames together as well as all do.
+      if (!is_power_of_two(j - i)) continue;
+      of_pair.R_ij_guess = R_wc[i].transpose() * R_wc[j];
+      if (const auto pair = joined(rays, i, j, usable, of_pair)) add(i, j, pair->pose);
+    }
+  }
+  Rotations rotations;
+  rotations.R_wc = average_rotations(relative, std::move(R_wc));
+  rotations.model = RotationModel::free;
+  rotations.sigma_rad = disagreement_rad(relative, rotations.R_wc);
+  return rotations;
+}
+
+}  // namespace gpo

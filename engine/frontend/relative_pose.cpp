@@ -1,0 +1,253 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/relative_pose.h"
+
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <opengv/relative_pose/CentralRelativeWeightingAdapter.hpp>
+#include <opengv/relative_pose/methods.hpp>
+
+namespace gpo {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Adapter = opengv::relative_pose::CentralRelativeWeightingAdapter;
+
+constexpr double kConfidence = 0.999;
+constexpr int kLeastSamples = 16;  // planes hide from a few
+constexpr int kMostSamples = 150;
+constexpr int kRefinements = 3;
+/// From the guess, as the sine of half an angle; the eigensolver then finds its own way.
+constexpr double kGuessSpread = 0.1;
+
+int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
+
+/// What OpenGV reads: its adapter keeps references.
+struct Correspondences {
+  opengv::bearingVectors_t i;
+  opengv::bearingVectors_t j;
+  std::vector<double> weights;
+
+  explicit Correspondences(const RayPairs& rays) : weights(rays.i.cols(), 1.0) {
+    for (Eigen::Index k = 0; k < rays.i.cols(); ++k) {
+      i.push_back(rays.i.col(k).normalized());
+      j.push_back(rays.j.col(k).normalized());
+    }
+  }
+  Adapter adapter() const { return {i, j, weights}; }
+};
+
+struct RotationAndDirection {
+  Matrix3d R_ij;
+  Vector3d direction;
+};
+
+Matrix3d essential(const RotationAndDirection& motion) {
+  return skew(motion.direction) * motion.R_ij;
+}
+
+/// OpenGV's own eigensolver draws no random numbers; its RANSAC problem does, from the global
+/// generator, which is why the loop here is ours.
+RotationAndDirection eigensolved(const Correspondences& tracks,
+                                 const std::vector<int>& chosen,
+                                 const Matrix3d& R_ij_start) {
+  opengv::eigensolverOutput_t output;
+  output.rotation = R_ij_start;
+  opengv::relative_pose::eigensolver(tracks.adapter(), chosen, output, true);
+  return {output.rotation, output.eigenvectors.col(2)};
+}
+
+/// Members of each group, by index into the pairs.
+std::vector<std::vector<int>> members(const std::vector<int>& group) {
+  const int groups = group.empty() ? 0 : 1 + *std::ranges::max_element(group);
+  std::vector<std::vector<int>> found(groups);
+  for (std::size_t k = 0; k < group.size(); ++k) found[group[k]].push_back(static_cast<int>(k));
+  std::erase_if(found, [](const auto& of_group) { return of_group.size() < 2; });
+  return found;
+}
+
+class Sampler {
+ public:
+  Sampler(const std::vector<int>& group, std::uint64_t seed)
+      : groups_(members(group)), all_(group.size()), random_(seed) {
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+
+  /// Different tracks: any, or each from a group that is drawn first.
+  std::vector<int> draw(int size, bool by_group) {
+    std::vector<int> sample;
+    // Two groups of two have four tracks.
+    for (int tries = 0; static_cast<int>(sample.size()) < size; ++tries) {
+      const auto& from = by_group && tries < 4 * size ? groups_[below(groups_.size())] : all_;
+      const int track = from[below(from.size())];
+      if (std::ranges::find(sample, track) == sample.end()) sample.push_back(track);
+    }
+    return sample;
+  }
+
+  bool has_groups() const { return groups_.size() > 1; }
+
+  Matrix3d small_rotation() {
+    const auto uniform = [&]() { return 2 * static_cast<double>(random_() >> 11) * 0x1p-53 - 1; };
+    const double x = uniform(), y = uniform(), z = uniform();
+    return so3_exp(2 * kGuessSpread * Vector3d(x, y, z));
+  }
+
+ private:
+  // Not std::uniform_int_distribution, whose numbers differ between standard libraries.
+  std::size_t below(std::size_t n) { return random_() % n; }
+
+  std::vector<std::vector<int>> groups_;
+  std::vector<int> all_;
+  std::mt19937_64 random_;
+};
+
+/// Essential matrices that a sample proposes.
+std::vector<Matrix3d> proposals(const Correspondences& tracks,
+                                const RelativePoseOptions& options,
+                                bool from_guess,
+                                const std::vector<int>& sample,
+                                Sampler& sampler) {
+  if (options.solver == RelativeSolver::five_point) {
+    const auto found = opengv::relative_pose::fivept_nister(tracks.adapter(), sample);
+    return {found.begin(), found.end()};
+  }
+  const Matrix3d start =
+      from_guess ? options.R_ij_guess : Matrix3d(sampler.small_rotation() * options.R_ij_guess);
+  return {essential(eigensolved(tracks, sample, start))};
+}
+
+/// The best matrix by its truncated squared distances (MSAC).
+Matrix3d best_proposal(const RayPairs& rays,
+                       const Correspondences& tracks,
+                       const RelativePoseOptions& options) {
+  Sampler sampler(rays.group, options.seed);
+  const int size = sample_size(options.solver);
+  const double gate2 = options.gate * options.gate;
+  Matrix3d best = Matrix3d::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  double needed = kMostSamples;
+  for (int k = 0; k < needed && k < kMostSamples; ++k) {
+    const bool by_group = k % 2 == 1 && sampler.has_groups();
+    const std::vector<int> sample = sampler.draw(size, by_group);
+    for (const Matrix3d& E : proposals(tracks, options, k % 4 < 2, sample, sampler)) {
+      const ArrayXd distances2 = squared_sampson_distances(E, rays);
+      const double cost = distances2.min(gate2).sum();
+      if (!(cost < least)) continue;
+      least = cost;
+      best = E;
+      const double share =
+          static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
+      const double good = std::min(std::pow(share, size), 1 - 1e-12);
+      needed = std::max<double>(kLeastSamples, 2 * std::log(1 - kConfidence) / std::log1p(-good));
+    }
+  }
+  return best;
+}
+
+/// Of the two rotations of an essential matrix, half a turn about the direction apart, the one that
+/// keeps rays nearer to each other: the camera did not move by more than what it sees is away.
+RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
+  const Eigen::JacobiSVD<Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3d W;
+  W << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  const auto rotation = [&](const Matrix3d& turn) -> Matrix3d {
+    const Matrix3d R = svd.matrixU() * turn * svd.matrixV().transpose();
+    return R.determinant() < 0 ? Matrix3d(-R) : R;
+  };
+  const auto agreement = [&](const Matrix3d& R) {
+    const ArrayXd dots = rays.i.cwiseProduct(R * rays.j).colwise().sum().transpose();
+    return (dots /
+            (rays.i.colwise().norm().cwiseProduct(rays.j.colwise().norm())).transpose().array())
+        .mean();
+  };
+  const Matrix3d one = rotation(W);
+  const Matrix3d other = rotation(W.transpose());
+  return {agreement(one) > agreement(other) ? one : other, svd.matrixU().col(2)};
+}
+
+std::vector<int> within(const ArrayXd& distances2, double gate2) {
+  std::vector<int> chosen;
+  for (Eigen::Index k = 0; k < distances2.size(); ++k)
+    if (distances2[k] < gate2) chosen.push_back(static_cast<int>(k));
+  return chosen;
+}
+
+/// Variance of a distance, of the median over the inliers; above rounding.
+double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers) {
+  const ArrayXd of_inliers = distances2(inliers);
+  constexpr double kMedianOfSquare = 0.4549;  // of a unit Gaussian's square
+  const double variance =
+      median({of_inliers.data(), of_inliers.data() + of_inliers.size()}) / kMedianOfSquare;
+  return std::max(variance, 1e-16);
+}
+
+/// What turns the eigensolver's algebraic error of unit rays into Sampson's, downweighted beyond
+/// three standard deviations (Geman and McClure).
+std::vector<double> sampson_weights(const Matrix3d& E,
+                                    const RayPairs& rays,
+                                    const ArrayXd& distances2,
+                                    double variance) {
+  const ArrayXd slopes2 = ((E * rays.j).topRows<2>().colwise().squaredNorm() +
+                           (E.transpose() * rays.i).topRows<2>().colwise().squaredNorm())
+                              .transpose();
+  const ArrayXd lengths2 =
+      rays.i.colwise().squaredNorm().cwiseProduct(rays.j.colwise().squaredNorm()).transpose();
+  const ArrayXd robust = (1 + distances2 / (9 * variance)).square().inverse();
+  const ArrayXd weights = robust * lengths2 / slopes2.max(1e-12);
+  return {weights.data(), weights.data() + weights.size()};
+}
+
+}  // namespace
+
+Matrix3d essential_matrix(const RelativePose& pose) { return skew(pose.direction) * pose.R_ij; }
+
+ArrayXd squared_sampson_distances(const Matrix3d& E, const RayPairs& rays) {
+  const Eigen::Matrix3Xd lines_i = E * rays.j;
+  const Eigen::Matrix3Xd lines_j = E.transpose() * rays.i;
+  const Eigen::ArrayXXd algebraic = rays.i.cwiseProduct(lines_i).colwise().sum();
+  const Eigen::ArrayXXd slopes2 =
+      lines_i.topRows<2>().colwise().squaredNorm() + lines_j.topRows<2>().colwise().squaredNorm();
+  return (algebraic.square() / slopes2.max(1e-24)).transpose();
+}
+
+std::optional<RelativePose> relative_pose(const RayPairs& rays,
+                                          const RelativePoseOptions& options) {
+  const auto count = static_cast<int>(rays.i.cols());
+  if (count < kLeastPairRays) return std::nullopt;
+  Correspondences tracks(rays);
+  const Matrix3d proposed = best_proposal(rays, tracks, options);
+  if (proposed.isZero() || !proposed.allFinite()) return std::nullopt;
+  RotationAndDirection motion = decomposed(proposed, rays);
+  const double gate2 = options.gate * options.gate;
+  ArrayXd distances2 = squared_sampson_distances(essential(motion), rays);
+  std::vector<int> inliers = within(distances2, gate2);
+  for (int round = 0; round < kRefinements; ++round) {
+    if (static_cast<int>(inliers.size()) < kLeastPairRays) return std::nullopt;
+    const double variance = noise_variance(distances2, inliers);
+    tracks.weights = sampson_weights(essential(motion), rays, distances2, variance);
+    motion = eigensolved(tracks, inliers, motion.R_ij);
+    if (!motion.R_ij.allFinite()) return std::nullopt;
+    distances2 = squared_sampson_distances(essential(motion), rays);
+    inliers = within(distances2, gate2);
+  }
+  if (static_cast<int>(inliers.size()) < kLeastPairRays) return std::nullopt;
+  RelativePose pose{motion.R_ij, motion.direction, std::vector<bool>(count, false), 0};
+  for (const int k : inliers) pose.inlier[k] = true;
+  pose.inliers = static_cast<int>(inliers.size());
+  return pose;
+}
+
+}  // namespace gpo
