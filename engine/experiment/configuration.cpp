@@ -17,8 +17,13 @@ namespace gpo {
 namespace {
 
 /// The paper's; beside them each method as it is.
-constexpr std::array kAblations{
-    "gpo+no-ransac", "gpo+gyro", "gpo+averaging", "gpo+truth", "ba+ransac"};
+constexpr std::array kAblations{"gpo+no-ransac",
+                                "gpo+gyro",
+                                "gpo+averaging",
+                                "gpo+five-point",
+                                "gpo+direct",
+                                "gpo+truth",
+                                "ba+ransac"};
 
 using Change = Configuration::Change;
 

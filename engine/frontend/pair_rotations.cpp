@@ -9,7 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,10 +37,11 @@ constexpr double kLeastThresholdShare = 0.25;
 
 /// The window's tracks in an order that does not depend on theirs.
 struct WindowRays {
-  std::vector<int> tracks;              // of the window
-  std::vector<int> group;               // one a track of `tracks`: its plane, or the last: none
-  std::vector<Eigen::Matrix3Xd> rays;   // one a frame, NaN: not seen
-  std::vector<Eigen::ArrayXd> miss_px;  // one a frame: by what tracks miss the plane, NaN: unknown
+  std::vector<int> tracks;             // of the window
+  std::vector<int> group;              // one a track of `tracks`: its plane, or the last: none
+  std::vector<Eigen::Matrix3Xd> rays;  // one a frame, NaN: not seen
+  // One a frame: by what tracks miss the plane; NaN: not known; infinite: there is no plane.
+  std::vector<Eigen::ArrayXd> miss_px;
 };
 
 std::vector<int> groups_of(const Window& window) {
@@ -67,13 +69,16 @@ WindowRays rays_of(const Window& window) {
   const std::vector<int> group = groups_of(window);
   for (const int k : result.tracks) result.group.push_back(group[k]);
   const Matrix3d K_inverse = window.K.inverse();
+  const std::vector<Matrix3d>& H_i1 = homographies(window);
+  const bool plane = std::any_of(
+      std::next(H_i1.begin()), H_i1.end(), [](const Matrix3d& H) { return H.allFinite(); });
   for (int i = 0; i < window.frame_count(); ++i) {
     const Eigen::Matrix2Xd seen = window.points_px[i](Eigen::all, result.tracks);
     result.rays.emplace_back(K_inverse * seen.colwise().homogeneous());
     Eigen::ArrayXd miss_px(seen.cols());
     for (Eigen::Index k = 0; k < seen.cols(); ++k) {
-      const Eigen::Vector2d from = first.col(result.tracks[k]);
-      miss_px[k] = (transfer(homographies(window)[i], from) - seen.col(k)).norm();
+      miss_px[k] = (transfer(H_i1[i], first.col(result.tracks[k])) - seen.col(k)).norm();
+      if (!plane && seen.col(k).allFinite()) miss_px[k] = std::numeric_limits<double>::infinity();
     }
     result.miss_px.push_back(std::move(miss_px));
   }
@@ -134,7 +139,7 @@ double off_plane_share(const WindowRays& rays, double threshold_px) {
     int seen = 0;
     int off = 0;
     for (const double miss : rays.miss_px[j]) {
-      seen += std::isfinite(miss) ? 1 : 0;
+      seen += std::isnan(miss) ? 0 : 1;
       off += miss > gate_px ? 1 : 0;
     }
     shares.push_back(static_cast<double>(off) / std::max(seen, 1));

@@ -26,13 +26,15 @@ using Eigen::Vector3d;
 using Adapter = opengv::relative_pose::CentralRelativeWeightingAdapter;
 
 constexpr double kConfidence = 0.999;
-constexpr int kLeastSamples = 16;  // planes hide from a few
 constexpr int kMostSamples = 150;
 constexpr int kRefinements = 3;
 /// From the guess, as the sine of half an angle; the eigensolver then finds its own way.
 constexpr double kGuessSpread = 0.1;
 
 int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
+
+/// A few may all be of one plane. The eigensolver takes more time, and more tracks.
+int least_samples(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 16 : 6; }
 
 /// What OpenGV reads: its adapter keeps references.
 struct Correspondences {
@@ -151,7 +153,8 @@ Matrix3d best_proposal(const RayPairs& rays,
       const double share =
           static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
       const double good = std::min(std::pow(share, size), 1 - 1e-12);
-      needed = std::max<double>(kLeastSamples, 2 * std::log(1 - kConfidence) / std::log1p(-good));
+      needed = std::max<double>(least_samples(options.solver),
+                                2 * std::log(1 - kConfidence) / std::log1p(-good));
     }
   }
   return best;

@@ -26,15 +26,25 @@ struct Rotations {
   bool stopped = false;                                ///< there are none because of that
 };
 
-/// automatic: a gyroscope, calibrated where the pictures can, else averaging. raw: a gyroscope as
-/// it is, else averaging.
-enum class RotationSource { automatic, raw, gyro, gyro_calibrated, averaging, truth };
+/// automatic: a gyroscope, calibrated where the pictures can; without one five-point rotations
+/// where the scene has more than one plane, else averaging. raw: a gyroscope as it is, else
+/// averaging. averaging is of decomposed homographies; five_point and direct are of all tracks.
+enum class RotationSource {
+  automatic,
+  raw,
+  gyro,
+  gyro_calibrated,
+  averaging,
+  five_point,
+  direct,
+  truth
+};
 
 template <>
 struct ChoiceKeys<RotationSource> {
   static constexpr const char* name = "rotations";
   static constexpr std::array keys{
-      "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "truth"};
+      "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "five-point", "direct", "truth"};
 };
 
 /// Whether the source integrates a gyroscope.

@@ -29,7 +29,8 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;   ///< what was taken off its rates
+  std::string rotations_instead_of;  ///< why not what `automatic` tries first; empty: it is that
+  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< what was taken off its rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null where none is known

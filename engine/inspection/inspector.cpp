@@ -60,10 +60,10 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  inspection.rotations_used = rotation_source_used(*stages.recording, settings.rotations);
+  rotation_source_used(*stages.recording, settings.rotations);  // so does this
   const bool prepared = stages.update_tracks(settings, stop, progress) &&
                         stages.update_truth(settings, stop, progress) &&
-                        stages.update_window(settings, inspection.rotations_used, stop);
+                        stages.update_window(settings, stop);
   if (!prepared) return nullptr;
   if (progress) progress("initializing", 0, 0);
   stages.initialize(settings, stop, progress, inspection);

@@ -116,9 +116,7 @@ bool Stages::update_truth(const Settings& settings,
       settings.start, [&]() { return std::optional(corners_in(*recording, settings.start)); });
 }
 
-bool Stages::update_window(const Settings& settings,
-                           RotationSource& source,
-                           const std::stop_token& stop) {
+bool Stages::update_window(const Settings& settings, const std::stop_token& stop) {
   check_excluded(*tracks.value, settings);
   const RansacOptions ransac = ransac_options(settings);
   const Inliers inliers = inliers_used(settings);
@@ -131,37 +129,35 @@ bool Stages::update_window(const Settings& settings,
                                                    inliers,
                                                    settings.plane - 1)));
   });
-  const auto rotate = [&]() {
-    Settings turning = rejecting(SettingStage::rotations, settings);
-    turning.rotations = source;
-    return rotations.update(turning, [&]() -> std::optional<Rotations> {
-      Rotations computed =
-          window_rotations(*recording, *outliers.value, truth.value.get(), source, stop);
-      return computed.stopped ? std::nullopt : std::optional(std::move(computed));
-    });
-  };
-  if (!rotate()) return false;
-  const bool by_default = settings.rotations == RotationSource::automatic;
-  if (!by_default || source != RotationSource::gyro_calibrated || !rotations.value.R_wc.empty())
-    return true;
-  source = RotationSource::gyro;
-  return rotate();
+  const Settings turning = rejecting(SettingStage::rotations, settings);
+  return rotations.update(turning, [&]() -> std::optional<ChosenRotations> {
+    ChosenRotations chosen = window_rotations(*recording,
+                                              *outliers.value,
+                                              truth.value.get(),
+                                              settings.rotations,
+                                              ransac_options(turning),
+                                              stop);
+    return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
+  });
 }
 
 void Stages::initialize(const Settings& settings,
                         const std::stop_token& stop,
                         const Progress& progress,
                         Inspection& inspection) {
+  const Rotations& given = rotations.value.rotations;
+  inspection.rotations_used = rotations.value.source;
+  inspection.rotations_instead_of = rotations.value.instead_of;
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
-  window.rotations = rotations.value.model;
-  window.gyro = rotations.value.gyro;
+  window.rotations = given.model;
+  window.gyro = given.gyro;
   if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
-  if (!rotations.value.R_wc.empty()) window.R_wc = rotations.value.R_wc;
+  if (!given.R_wc.empty()) window.R_wc = given.R_wc;
   const auto begin = std::chrono::steady_clock::now();
   Initialization initialization =
-      rotations.value.R_wc.empty()
-          ? failed(rotations.value.reason)
+      given.R_wc.empty()
+          ? failed(given.reason)
           : find_method(settings.method)
                 .initialize(window, settings.initializer, told_by(settings, stop, progress));
   Timing& t = inspection.timing;
@@ -172,7 +168,7 @@ void Stages::initialize(const Settings& settings,
   t.initialize = milliseconds_since(begin);
   t.optimize = initialization.solver.milliseconds;
   t.total = t.track + t.ransac + t.rotations + t.initialize;
-  if (!rotations.value.R_wc.empty()) {
+  if (!given.R_wc.empty()) {
     // What was stopped is short, and no result.
     const bool grown = growth.update(*rotations.key, [&]() {
       auto verdicts = verdicts_of(grow(window, stop));

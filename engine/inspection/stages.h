@@ -6,6 +6,7 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/window/kept.h"
 #include "engine/inspection/window/progress.h"
+#include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_tracks.h"
 
 #include <array>
@@ -30,7 +31,7 @@ struct Stages {
   Kept<Span, std::shared_ptr<const WindowTruth>> truth;
   Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
   Kept<Settings, std::shared_ptr<const Window>> outliers;
-  Kept<Settings, Rotations> rotations;
+  Kept<Settings, ChosenRotations> rotations;
   Kept<Settings, std::vector<Verdict>> growth;
 
   bool update_tracks(const Settings& settings,
@@ -39,9 +40,7 @@ struct Stages {
   bool update_truth(const Settings& settings,
                     const std::stop_token& stop,
                     const Progress& progress);
-  /// `source` becomes the gyroscope as it is where pictures were to calibrate it by default, and
-  /// cannot.
-  bool update_window(const Settings& settings, RotationSource& source, const std::stop_token& stop);
+  bool update_window(const Settings& settings, const std::stop_token& stop);
   /// The method's result on what the other stages made, with its growth; into `inspection`.
   void initialize(const Settings& settings,
                   const std::stop_token& stop,

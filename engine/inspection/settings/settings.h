@@ -20,7 +20,7 @@ struct Settings {
   int start = 0;                     ///< reference frame, counts in the recording
   int frames = 30;                   ///< length of the window
   std::string method = "gpo_joint";  ///< key in `methods()`
-  RotationSource rotations = RotationSource::automatic;  ///< calibrated gyroscope, else averaging
+  RotationSource rotations = RotationSource::automatic;  ///< gyroscope, five-point, averaging
   Tracking tracking = Tracking::anchored;                ///< of the built-in front end
   /// Whether tracks off the plane are rejected by homography RANSAC; nothing: as the method's
   /// authors do (`uses_ransac`).

@@ -109,21 +109,24 @@ std::vector<Setting> window_rows() {
                       .help = "Initializer",
                       .stage = initialization,
                       .choices = method_choices()}));
-  rows.push_back(
-      row([](auto& s) -> auto& { return s.rotations; },
-          {.key = "rotations",
-           .title = "Rotations",
-           .help = "Where the camera rotations come from",
-           .stage = rotations,
-           .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
-                     {"raw", "raw", "with rotations as they are", 0x7788AA},
-                     {"gyro", "gyro", "with gyroscope", 0x117733},
-                     {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
-                     {"averaging", "averaging", "with averaged rotations", 0xAA7711},
-                     {"truth", "truth", "with true rotations", 0x666666}},
-           .why_not = [](const Recording& recording, const std::string& key) {
-             return why_no_rotations(recording, choice<RotationSource>(key));
-           }}));
+  rows.push_back(row(
+      [](auto& s) -> auto& { return s.rotations; },
+      {.key = "rotations",
+       .title = "Rotations",
+       .help = "Where the camera rotations come from: a gyroscope, decomposed homographies of one "
+               "plane (averaging), or all tracks where they are not one plane (five-point, direct)",
+       .stage = rotations,
+       .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
+                 {"raw", "raw", "with rotations as they are", 0x7788AA},
+                 {"gyro", "gyro", "with gyroscope", 0x117733},
+                 {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
+                 {"averaging", "averaging", "with averaged rotations", 0xAA7711},
+                 {"five-point", "five-point", "with five-point rotations", 0xCC6677},
+                 {"direct", "direct", "with direct rotations", 0x882255},
+                 {"truth", "truth", "with true rotations", 0x666666}},
+       .why_not = [](const Recording& recording, const std::string& key) {
+         return why_no_rotations(recording, choice<RotationSource>(key));
+       }}));
   rows.push_back(row(
       [](auto& s) -> auto& { return s.tracking; },
       {.key = "tracking",

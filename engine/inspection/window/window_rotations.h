@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/rotations.h"
 #include "engine/recording/recording.h"
 #include "engine/window/window.h"
@@ -15,16 +16,30 @@ namespace gpo {
 /// What a recording lacks for this source of rotations, one line; empty: nothing.
 std::string why_no_rotations(const Recording& recording, RotationSource source);
 
-/// What `automatic` comes to: the gyroscope, else averaging. Throws InputError where the recording
-/// lacks what is asked for.
+/// What `automatic` tries first: the calibrated gyroscope, else five-point rotations. Throws
+/// InputError where the recording lacks what is asked for.
 RotationSource rotation_source_used(const Recording& recording, RotationSource asked);
 
-/// The window's rotations from a source that the recording has; `truth` may be null for all but the
-/// truth. Throws InputError where gyroscope or truth do not cover the window.
-Rotations window_rotations(const Recording& recording,
-                           const Window& window,
-                           const WindowTruth* truth,
-                           RotationSource source,
-                           const std::stop_token& stop);
+/// What `automatic` may come to, for people: "gyro-calibrated", "five-point or averaging".
+std::string automatic_rotations(const Recording& recording);
+
+/// The rotations of a window and where they are from.
+struct ChosenRotations {
+  RotationSource source = RotationSource::gyro;  ///< never automatic
+  Rotations rotations = {};
+  std::string instead_of = "";  ///< why what `automatic` tries first had none; empty: it had
+};
+
+/// The window's rotations from what is asked for. Of `automatic`, where pictures cannot calibrate
+/// the gyroscope it is taken as it is, and where five-point rotations are refused homographies are
+/// averaged. `ransac` has the threshold and the seed of all tracks' relative poses. `truth` may be
+/// null for all but the truth. Throws InputError where the recording lacks what is asked for, and
+/// where gyroscope or truth do not cover the window.
+ChosenRotations window_rotations(const Recording& recording,
+                                 const Window& window,
+                                 const WindowTruth* truth,
+                                 RotationSource asked,
+                                 const RansacOptions& ransac,
+                                 const std::stop_token& stop);
 
 }  // namespace gpo

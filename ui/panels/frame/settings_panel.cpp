@@ -129,9 +129,7 @@ struct SettingRows {
   /// "automatic (gyro-calibrated)": what it comes to in the recording.
   std::string title_of(const SettingChoice& one) const {
     if (one.key != "automatic" || !input.state.recording) return one.title;
-    const RotationSource used =
-        rotation_source_used(*input.state.recording, RotationSource::automatic);
-    return fmt::format("{} ({})", one.title, to_string(used));
+    return fmt::format("{} ({})", one.title, automatic_rotations(*input.state.recording));
   }
 
   void combo(const Setting& setting, const std::string& chosen) {
