@@ -131,35 +131,6 @@ std::vector<Matrix3d> proposals(const Correspondences& tracks,
   return {essential(eigensolved(tracks, sample, start))};
 }
 
-/// The best matrix by its truncated squared distances (MSAC).
-Matrix3d best_proposal(const RayPairs& rays,
-                       const Correspondences& tracks,
-                       const RelativePoseOptions& options) {
-  Sampler sampler(rays.group, options.seed);
-  const int size = sample_size(options.solver);
-  const double gate2 = options.gate * options.gate;
-  Matrix3d best = Matrix3d::Zero();
-  double least = std::numeric_limits<double>::infinity();
-  double needed = kMostSamples;
-  for (int k = 0; k < needed && k < kMostSamples; ++k) {
-    const bool by_group = k % 2 == 1 && sampler.has_groups();
-    const std::vector<int> sample = sampler.draw(size, by_group);
-    for (const Matrix3d& E : proposals(tracks, options, k % 4 < 2, sample, sampler)) {
-      const ArrayXd distances2 = squared_sampson_distances(E, rays);
-      const double cost = distances2.min(gate2).sum();
-      if (!(cost < least)) continue;
-      least = cost;
-      best = E;
-      const double share =
-          static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
-      const double good = std::min(std::pow(share, size), 1 - 1e-12);
-      needed = std::max<double>(least_samples(options.solver),
-                                2 * std::log(1 - kConfidence) / std::log1p(-good));
-    }
-  }
-  return best;
-}
-
 /// Of the two rotations of an essential matrix, half a turn about the direction apart, the one that
 /// keeps rays nearer to each other: the camera did not move by more than what it sees is away.
 RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
@@ -179,6 +150,38 @@ RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
   const Matrix3d one = rotation(W);
   const Matrix3d other = rotation(W.transpose());
   return {agreement(one) > agreement(other) ? one : other, svd.matrixU().col(2)};
+}
+
+/// The best by its truncated squared distances (MSAC); nothing where no sample proposes any.
+std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
+                                                  const Correspondences& tracks,
+                                                  const RelativePoseOptions& options) {
+  Sampler sampler(rays.group, options.seed);
+  const int size = sample_size(options.solver);
+  const double gate2 = options.gate * options.gate;
+  std::optional<RotationAndDirection> best;
+  double least = std::numeric_limits<double>::infinity();
+  double needed = kMostSamples;
+  for (int k = 0; k < needed && k < kMostSamples; ++k) {
+    const bool by_group = k % 2 == 1 && sampler.has_groups();
+    const std::vector<int> sample = sampler.draw(size, by_group);
+    for (const Matrix3d& E : proposals(tracks, options, k % 4 < 2, sample, sampler)) {
+      if (!(squared_sampson_distances(E, rays).min(gate2).sum() < least)) continue;
+      // The five-point algorithm's matrices are essential ones up to its own rounding only.
+      const RotationAndDirection motion = decomposed(E, rays);
+      const ArrayXd distances2 = squared_sampson_distances(essential(motion), rays);
+      const double cost = distances2.min(gate2).sum();
+      if (!(cost < least)) continue;
+      least = cost;
+      best = motion;
+      const double share =
+          static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
+      const double good = std::min(std::pow(share, size), 1 - 1e-12);
+      needed = std::max<double>(least_samples(options.solver),
+                                2 * std::log(1 - kConfidence) / std::log1p(-good));
+    }
+  }
+  return best;
 }
 
 std::vector<int> within(const ArrayXd& distances2, double gate2) {
@@ -231,9 +234,9 @@ std::optional<RelativePose> relative_pose(const RayPairs& rays,
   const auto count = static_cast<int>(rays.i.cols());
   if (count < kLeastPairRays) return std::nullopt;
   Correspondences tracks(rays);
-  const Matrix3d proposed = best_proposal(rays, tracks, options);
-  if (proposed.isZero() || !proposed.allFinite()) return std::nullopt;
-  RotationAndDirection motion = decomposed(proposed, rays);
+  const auto proposed = best_proposal(rays, tracks, options);
+  if (!proposed) return std::nullopt;
+  RotationAndDirection motion = *proposed;
   const double gate2 = options.gate * options.gate;
   ArrayXd distances2 = squared_sampson_distances(essential(motion), rays);
   std::vector<int> inliers = within(distances2, gate2);
@@ -241,9 +244,12 @@ std::optional<RelativePose> relative_pose(const RayPairs& rays,
     if (static_cast<int>(inliers.size()) < kLeastPairRays) return std::nullopt;
     const double variance = noise_variance(distances2, inliers);
     tracks.weights = sampson_weights(essential(motion), rays, distances2, variance);
-    motion = eigensolved(tracks, inliers, motion.R_ij);
-    if (!motion.R_ij.allFinite()) return std::nullopt;
-    distances2 = squared_sampson_distances(essential(motion), rays);
+    const RotationAndDirection refined = eigensolved(tracks, inliers, motion.R_ij);
+    const ArrayXd refined2 = squared_sampson_distances(essential(refined), rays);
+    // On a plane the eigensolver may leave the minimum.
+    if (!(refined2.min(gate2).sum() < distances2.min(gate2).sum())) break;
+    motion = refined;
+    distances2 = refined2;
     inliers = within(distances2, gate2);
   }
   if (static_cast<int>(inliers.size()) < kLeastPairRays) return std::nullopt;

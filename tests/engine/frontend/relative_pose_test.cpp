@@ -89,7 +89,8 @@ TEST(RelativePose, KeepsItsRotationWhereTheCameraHardlyMoves) {
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const Cloud made = cloud({.baseline = baseline, .seed = seed});
         const auto pose = relative_pose(made.rays, {.solver = solver, .seed = seed});
-        EXPECT_LT(error_deg(made, pose), 0.5) << baseline << " seed " << seed;
+        // Then only the parallax of the nearest point, at 1, may be taken for a turn.
+        EXPECT_LT(error_deg(made, pose), 0.3 + degrees(baseline)) << baseline << " seed " << seed;
       }
     }
   }
