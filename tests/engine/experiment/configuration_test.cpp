@@ -108,8 +108,13 @@ TEST(Configuration, AllIsEveryMethodAndTheAblations) {
   std::set<std::string> keys;
   for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
   for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
-  for (const char* ablation :
-       {"gpo+no-ransac", "gpo+gyro", "gpo+averaging", "gpo+truth", "ba+ransac"}) {
+  for (const char* ablation : {"gpo+no-ransac",
+                               "gpo+gyro",
+                               "gpo+averaging",
+                               "gpo+five-point",
+                               "gpo+direct",
+                               "gpo+truth",
+                               "ba+ransac"}) {
     EXPECT_TRUE(keys.contains(ablation)) << ablation;
   }
 }

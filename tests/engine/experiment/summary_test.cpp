@@ -100,6 +100,7 @@ TEST(Figures, AreThosePapersThatHaveSomethingToCompare) {
   EXPECT_THAT(names("gpo,gpo+no-ransac"), ElementsAre("gpo_ransac"));
   EXPECT_THAT(names("gpo,gpo+truth,gpo+averaging,gpo+no-ransac"),
               ElementsAre("gpo_ransac", "rotation_sources"));
+  EXPECT_THAT(names("gpo+five-point,gpo+direct"), ElementsAre("rotation_sources"));
   EXPECT_THAT(names("gpo"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo,gpo+truth,gpo+no-ransac+truth"),
               ElementsAre("rotation_sources", "configurations"));

@@ -199,7 +199,7 @@ TEST(RotationSource, TypoNamesTheKnownOnes) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "rotations: unknown value 'gyr', expected one of automatic, raw, gyro, "
-                 "gyro-calibrated, averaging, truth");
+                 "gyro-calibrated, averaging, five-point, direct, truth");
   }
 }
 

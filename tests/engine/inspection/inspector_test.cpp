@@ -317,6 +317,28 @@ TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
   EXPECT_FALSE(window(RotationSource::truth)->gyro);
 }
 
+// The desk is one plane, on which five-point rotations are ambiguous.
+TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
+  Recording bare = *desk();
+  bare.gyroscope.reset();
+  Inspector inspector(std::make_shared<const Recording>(bare));
+  const auto automatic = inspector.inspect({.frames = 16});
+  EXPECT_EQ(automatic->rotations_used, RotationSource::averaging);
+  EXPECT_EQ(to_json(*automatic)["settings"]["rotations"], "averaging");
+  const std::string reason = to_json(*automatic)["rotations_instead_of"];
+  EXPECT_THAT(reason, HasSubstr("five-point rotations: nearly all tracks lie on one plane"));
+  EXPECT_THAT(to_text(*automatic), HasSubstr("averaging (" + reason + ")"));
+  const auto asked = inspector.inspect({.frames = 16, .rotations = RotationSource::averaging});
+  EXPECT_EQ(asked->window->R_wc, automatic->window->R_wc);
+  EXPECT_FALSE(to_json(*asked).contains("rotations_instead_of"));
+  for (const auto source : {RotationSource::five_point, RotationSource::direct}) {
+    const auto refused = inspector.inspect({.frames = 16, .rotations = source});
+    EXPECT_EQ(refused->rotations_used, source);
+    EXPECT_FALSE(refused->initialization->ok);
+    EXPECT_THAT(refused->initialization->reason, HasSubstr("on which they are ambiguous"));
+  }
+}
+
 std::string message(const std::shared_ptr<const Recording>& recording, const Settings& settings) {
   try {
     Inspector(recording).inspect(settings);
