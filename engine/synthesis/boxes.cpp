@@ -94,12 +94,73 @@ void draw_cube(BoxFaces& faces, Random& random) {
   draw_face(faces.top);
 }
 
+void draw_plank(cv::Mat& face, std::uint64_t seed) {
+  const double w = face.cols;
+  const bool lying = face.cols >= face.rows;
+  for (int row = 0; row < face.rows; ++row) {
+    for (int col = 0; col < face.cols; ++col) {
+      const double along = (lying ? col : row) / std::max<double>(w, face.rows);
+      const double across = (lying ? row : col) / std::max<double>(w, face.rows);
+      const double bend = fractal_noise(3 * along, 9 * across, 3, seed);
+      const double grain = fractal_noise(9 * along, 140 * across, 2, seed + 1);
+      const double ring = 0.5 + 0.5 * std::sin(60 * across + 14 * bend);
+      const cv::Scalar color = rgb(0xc99a62) * (0.72 + 0.3 * ring * ring + 0.3 * (grain - 0.5));
+      face.at<cv::Vec4b>(row, col) = {cv::saturate_cast<uchar>(color[0]),
+                                      cv::saturate_cast<uchar>(color[1]),
+                                      cv::saturate_cast<uchar>(color[2]),
+                                      255};
+    }
+  }
+}
+
+/// Of one piece of wood: a board, a leg.
+void draw_wooden(BoxFaces& faces, Random& random) {
+  for (cv::Mat& side : faces.sides) draw_plank(side, random.bits());
+  draw_plank(faces.top, random.bits());
+}
+
+/// One row of books, as wide as the canvas.
+void draw_books(cv::Mat row, Random& random) {
+  row.setTo(rgb(0x2a1e14));
+  const double h = ratio_of(row);
+  for (double x = 0.005; x < 0.96;) {
+    const double width = h * random.uniform(0.1, 0.26);
+    const double height = h * random.uniform(0.7, 0.95);
+    const Palette& palette = pick_palette(random);
+    const auto& cover = palette[static_cast<std::size_t>(random.below(palette.size()))];
+    cv::Mat spine = part(row, x, h - height, std::min(width, 0.99 - x), height);
+    if (!spine.empty() && random.uniform() < 0.93) {
+      spine.setTo(cover);
+      const double tall = ratio_of(spine);
+      part(spine, 0, tall * random.uniform(0.08, 0.2), 1, 0.05 * tall).setTo(palette.back());
+      part(spine, 0.2, tall * random.uniform(0.3, 0.5), 0.6, 0.22 * tall).setTo(palette[1]);
+      part(spine, 0, tall * random.uniform(0.78, 0.9), 1, 0.03 * tall).setTo(palette.back());
+    }
+    x += width + 0.003;
+  }
+}
+
+/// A bookcase, open in front; its boards are about 0.28 of its width apart.
+void draw_shelf(BoxFaces& faces, Random& random) {
+  draw_wooden(faces, random);
+  cv::Mat& front = faces.sides[0];
+  const double h = ratio_of(front);
+  const int rows = std::max(1, static_cast<int>(h / 0.28));
+  for (int i = 0; i < rows; ++i) {
+    const double top = 0.03 + i * (h - 0.03) / rows;
+    draw_books(part(front, 0.03, top, 0.94, (h - 0.03) / rows - 0.03), random);
+  }
+}
+
 struct BoxKind {
   const char* key;
   void (*draw)(BoxFaces& faces, Random& random);
 };
-constexpr std::array<BoxKind, 3> kBoxKinds = {
-    {{"book", draw_book}, {"carton", draw_carton}, {"cube", draw_cube}}};
+constexpr std::array<BoxKind, 5> kBoxKinds = {{{"book", draw_book},
+                                               {"carton", draw_carton},
+                                               {"cube", draw_cube},
+                                               {"shelf", draw_shelf},
+                                               {"wooden", draw_wooden}}};
 
 /// A cover's dark contact line with the desk, and light that fades downwards.
 void shade_side(cv::Mat& side) {

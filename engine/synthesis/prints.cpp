@@ -247,18 +247,37 @@ void draw_notebook(cv::Mat& canvas, Random& random) {
   paint_shapes(sticker, 22, pick_palette(random), random);
 }
 
+/// A woven rug: a mosaic within borders.
+void draw_rug(cv::Mat& canvas, Random& random) {
+  const double h = ratio_of(canvas);
+  const Palette& palette = pick_palette(random);
+  canvas.setTo(palette.front());
+  bar(canvas, 0.03, 0.03, 0.94, h - 0.06, palette.back());
+  bar(canvas, 0.05, 0.05, 0.9, h - 0.1, palette[1]);
+  constexpr int kAcross = 18;
+  for (int i = 0; i < kAcross; ++i) {
+    const double x = 0.065 + i * 0.88 / kAcross;
+    for (const double y : {0.065, h - 0.095}) {
+      bar(canvas, x, y, 0.03, 0.03, palette[static_cast<std::size_t>(i) % palette.size()]);
+    }
+  }
+  paint_mosaic(part(canvas, 0.12, 0.12, 0.76, h - 0.24), 90, palette, random);
+  add_grain(canvas, 7, random);
+}
+
 struct PrintKind {
   const char* key;
   void (*draw)(cv::Mat& canvas, Random& random);
 };
-constexpr std::array<PrintKind, 8> kPrintKinds = {{{"magazine", draw_magazine},
+constexpr std::array<PrintKind, 9> kPrintKinds = {{{"magazine", draw_magazine},
                                                    {"letter", draw_letter},
                                                    {"postcard", draw_postcard},
                                                    {"photo", draw_photo},
                                                    {"card", draw_card},
                                                    {"map", draw_map},
                                                    {"mousepad", draw_mousepad},
-                                                   {"notebook", draw_notebook}}};
+                                                   {"notebook", draw_notebook},
+                                                   {"rug", draw_rug}}};
 
 }  // namespace
 

@@ -40,6 +40,28 @@ double value_noise(double x, double y, std::uint64_t seed) {
   return blend(top, bottom, b);
 }
 
+/// Layers of the plane's noise, blended.
+double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
+  const std::int64_t layer = round_down(p.z());
+  const auto below = static_cast<std::uint64_t>(layer);
+  return blend(value_noise(p.x(), p.y(), mix(seed + below)),
+               value_noise(p.x(), p.y(), mix(seed + below + 1)),
+               ease(p.z() - static_cast<double>(layer)));
+}
+
+/// Sum over octaves of `noise(size, seed)`, from large to small.
+template <typename Noise>
+double sum_octaves(int octaves, std::uint64_t seed, const Noise& noise) {
+  double sum = 0;
+  double weight = 0;
+  double size = 1;
+  for (int octave = 0; octave < octaves; ++octave, size /= 2) {
+    sum += size * noise(size, mix(seed + static_cast<std::uint64_t>(octave)));
+    weight += size;
+  }
+  return sum / weight;
+}
+
 }  // namespace
 
 Random::Random(std::uint64_t seed, std::uint64_t stream)
@@ -60,14 +82,15 @@ double Random::normal() {
 }
 
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed) {
-  double sum = 0;
-  double weight = 0;
-  double size = 1;
-  for (int octave = 0; octave < octaves; ++octave, size /= 2) {
-    sum += size * value_noise(x / size, y / size, mix(seed + static_cast<std::uint64_t>(octave)));
-    weight += size;
-  }
-  return sum / weight;
+  return sum_octaves(octaves, seed, [&](double size, std::uint64_t its_seed) {
+    return value_noise(x / size, y / size, its_seed);
+  });
+}
+
+double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed) {
+  return sum_octaves(octaves, seed, [&](double size, std::uint64_t its_seed) {
+    return value_noise(place / size, its_seed);
+  });
 }
 
 }  // namespace gpo

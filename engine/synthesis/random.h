@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include <Eigen/Core>
+
 namespace gpo {
 
 /// Small generator with the same numbers on every platform (SplitMix64), unlike the standard
@@ -24,5 +26,7 @@ class Random {
 /// Smooth noise in [0, 1], about 0.5 in the mean; features of size 1, then 1/2, 1/4 ... weighted by
 /// their size.
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
+/// The same in space.
+double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed);
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
+#include "engine/synthesis/faces.h"
 #include "engine/synthesis/strict_yaml.h"
 #include "engine/synthesis/textures.h"
 
@@ -104,32 +105,99 @@ BoardRecipe read_board(StrictMap map) {
   return board;
 }
 
-DeskRecipe read_desk(StrictMap map) {
-  DeskRecipe desk;
-  desk.size = map.vector<2>("size", {0.05, 5, "m"});
-  desk.texture_seed = read_seed(map, "texture_seed");
-  if (map.has("board")) desk.board = read_board(map.map("board"));
+constexpr double kLargestFace = 5;  ///< width or height of a desk, at scale 1 [m]
+
+std::vector<PrintRecipe> read_prints(StrictMap& map, double scale) {
+  std::vector<PrintRecipe> prints;
   for (StrictMap& entry : map.list("prints")) {
     PrintRecipe print;
     print.kind = entry.choice("kind", print_kinds());
     print.center = entry.vector<2>("center", kMeters);
-    print.size = entry.vector<2>("size", {0.01, 3, "m"});
+    print.size = entry.vector<2>("size", {0.01 * scale, 3 * scale, "m"});
     print.angle = radians(entry.number("angle", kDegrees, 0));
     entry.finish();
-    desk.prints.push_back(print);
+    prints.push_back(print);
   }
-  for (StrictMap& entry : map.list("boxes")) {
-    BoxRecipe box;
-    box.kind = entry.choice("kind", box_kinds());
-    box.center = entry.vector<2>("center", kMeters);
-    box.size = entry.vector<3>("size", {0.005, 3, "m"});
-    box.angle = radians(entry.number("angle", kDegrees, 0));
-    box.base = entry.number("base", {0, 3, "m"}, 0);
-    entry.finish();
-    desk.boxes.push_back(box);
-  }
+  return prints;
+}
+
+BoxRecipe read_box(StrictMap map, double scale) {
+  BoxRecipe box;
+  box.kind = map.choice("kind", box_kinds());
+  box.center = map.vector<2>("center", kMeters);
+  box.size = map.vector<3>("size", {0.005 * scale, 3 * scale, "m"});
+  box.angle = radians(map.number("angle", kDegrees, 0));
+  box.base = map.number("base", {0, 3 * scale, "m"}, 0);
   map.finish();
+  return box;
+}
+
+std::string read_surface(StrictMap& map, const std::string& otherwise) {
+  return map.has("surface") ? map.choice("surface", surface_kinds()) : otherwise;
+}
+
+WallRecipe read_wall(StrictMap map, double scale) {
+  const Range side{0.05, kLargestFace * scale, "m"};
+  WallRecipe wall;
+  wall.from = map.vector<2>("from", kMeters);
+  wall.to = map.vector<2>("to", kMeters);
+  const double length = (wall.to - wall.from).norm();
+  if (length < side.low || length > side.high) {
+    map.fail("to",
+             fmt::format("a wall {:.4g} m long", length),
+             fmt::format("from {} to {} m", side.low, side.high));
+  }
+  wall.height = map.number("height", side);
+  wall.surface = read_surface(map, wall.surface);
+  wall.texture_seed = read_seed(map, "texture_seed");
+  wall.prints = read_prints(map, scale);
+  map.finish();
+  return wall;
+}
+
+/// What there is to paint has to fit into memory.
+void check_walls(StrictMap& map, const DeskRecipe& desk) {
+  constexpr double kMostArea = 60;  // [m^2] at scale 1: about 0.5 GB of texels
+  double area = desk.size.prod();
+  for (const WallRecipe& wall : desk.walls) area += (wall.to - wall.from).norm() * wall.height;
+  const double most = kMostArea * desk.scale * desk.scale;
+  if (area > most) {
+    map.fail("walls",
+             fmt::format("{:.4g} m^2 of walls and floor", area),
+             fmt::format("at most {} at scale {}", most, desk.scale));
+  }
+}
+
+DeskRecipe read_desk(StrictMap map) {
+  DeskRecipe desk;
+  desk.scale = map.number("scale", {1, 10}, 1);
+  desk.size = map.vector<2>("size", {0.05, kLargestFace * desk.scale, "m"});
+  desk.surface = read_surface(map, desk.surface);
+  desk.texture_seed = read_seed(map, "texture_seed");
+  if (map.has("board")) desk.board = read_board(map.map("board"));
+  desk.prints = read_prints(map, desk.scale);
+  for (StrictMap& entry : map.list("boxes")) desk.boxes.push_back(read_box(entry, desk.scale));
+  for (StrictMap& entry : map.list("walls")) desk.walls.push_back(read_wall(entry, desk.scale));
+  map.finish();
+  if (!desk.walls.empty()) check_walls(map, desk);
   return desk;
+}
+
+RubbleRecipe read_heap(StrictMap map) {
+  RubbleRecipe heap;
+  heap.count = static_cast<int>(map.integer("count", {1, 1000}));
+  heap.size = map.vector<2>("size", {0.01, 20, "m"});
+  if (heap.size[0] > heap.size[1]) {
+    map.fail("size", "the greatest first", "[least, greatest] in meters");
+  }
+  heap.low = map.vector<3>("low", kMeters);
+  heap.high = map.vector<3>("high", kMeters);
+  if ((heap.low.array() > heap.high.array()).any()) {
+    map.fail("high", "a corner below `low`", "x, y and z of at least those of `low`");
+  }
+  heap.seed = read_seed(map, "seed");
+  map.finish();
+  return heap;
 }
 
 /// `period` is the time from frame to frame [s]: a picture is read before the next one begins.
@@ -188,7 +256,7 @@ void check_trajectory(StrictMap& top, const Recipe& recipe) {
                "no direction of view in frame " + std::to_string(frame),
                "look_at away from position, and not along up");
     }
-    if (motion.pose.p_wc.z() <= 0) {
+    if (has_desk(recipe) && motion.pose.p_wc.z() <= 0) {
       top.fail("trajectory",
                "a camera below the desk in frame " + std::to_string(frame),
                "position above z = 0");
@@ -197,6 +265,8 @@ void check_trajectory(StrictMap& top, const Recipe& recipe) {
 }
 
 }  // namespace
+
+bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }
 
 Recipe read_recipe(const std::filesystem::path& file) {
   StrictMap top = StrictMap::open(file);
@@ -216,7 +286,13 @@ Recipe read_recipe(const std::filesystem::path& file) {
 
   recipe.trajectory =
       read_trajectory(top.map("trajectory"), (recipe.frame_count - 1) / recipe.frame_rate);
-  recipe.desk = read_desk(top.map("desk"));
+  for (StrictMap& heap : top.list("rubble")) recipe.rubble.push_back(read_heap(heap));
+  // A desk in a room is called its floor; a heap of rocks needs neither.
+  const bool floor = top.has("floor");
+  if (floor) recipe.desk = read_desk(top.map("floor"));
+  if (!floor && (recipe.rubble.empty() || top.has("desk"))) {
+    recipe.desk = read_desk(top.map("desk"));
+  }
   recipe.picture = read_picture(top.map("picture"), 1 / recipe.frame_rate);
   recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
   top.finish();

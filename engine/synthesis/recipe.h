@@ -16,12 +16,12 @@
 
 namespace gpo {
 
-/// A printed sheet that lies on the desk; later ones lie over earlier ones.
+/// A printed sheet that lies on the desk or hangs on a wall; later ones lie over earlier ones.
 struct PrintRecipe {
   std::string kind;                                  ///< one of print_kinds()
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
   Eigen::Vector2d size = Eigen::Vector2d::Zero();    ///< width, height [m]
-  double angle = 0;                                  ///< counter-clockwise from above [rad]
+  double angle = 0;                                  ///< counter-clockwise as one looks at it [rad]
 };
 
 /// A box that stands on the desk (off-plane clutter).
@@ -43,13 +43,36 @@ struct BoardRecipe {
   double angle = 0;                                  ///< counter-clockwise from above [rad]
 };
 
-/// The desk: the plane z = 0, centered at the origin, z up, y away from who sits at it.
+/// A wall that stands upright on the floor. It is drawn for who sees `from` on the left.
+struct WallRecipe {
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< on the floor [m]
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< on the floor [m]
+  double height = 0;                               ///< [m]
+  std::string surface = "plaster";                 ///< one of surface_kinds()
+  std::uint64_t texture_seed = 1;
+  std::vector<PrintRecipe> prints;  ///< centers: how far from `from`, how high over the floor
+};
+
+/// The desk, or the floor of a room: the plane z = 0, centered at the origin, z up, y away from who
+/// sits at it.
 struct DeskRecipe {
-  Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< [m]
+  Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< [m]; zero: there is none
+  double scale = 1;  ///< all that is drawn, and how finely, is so many times as large as on a desk
+  std::string surface = "wood";  ///< one of surface_kinds()
   std::uint64_t texture_seed = 1;
   std::optional<BoardRecipe> board;
   std::vector<PrintRecipe> prints;
   std::vector<BoxRecipe> boxes;
+  std::vector<WallRecipe> walls;
+};
+
+/// A heap of rocks, none of which is flat over much of a picture.
+struct RubbleRecipe {
+  int count = 0;
+  Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< least and greatest diameter [m]
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();   ///< centers are between these corners [m]
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();
+  std::uint64_t seed = 1;
 };
 
 struct PictureRecipe {
@@ -80,9 +103,13 @@ struct Recipe {
   std::int64_t start_ns = 0;  ///< time stamp of the first frame
   Trajectory trajectory;
   DeskRecipe desk;
+  std::vector<RubbleRecipe> rubble;
   PictureRecipe picture;
   GyroscopeRecipe gyroscope;
 };
+
+/// What lies on no desk has no true plane.
+bool has_desk(const Recipe& recipe);
 
 /// Reads a recipe strictly. Throws InputError that names file, line, key, what was found and what
 /// was expected, for unknown and missing keys, wrong types and values out of range.

@@ -3,8 +3,10 @@
 #include "engine/synthesis/renderer.h"
 
 #include "engine/base/parallel.h"
+#include "engine/synthesis/hits.h"
 #include "engine/synthesis/random.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,65 +19,48 @@ constexpr float kBoardWhite[3] = {232, 237, 239};
 constexpr float kBoardBlack[3] = {38, 36, 36};
 constexpr double kFloorHeight = -0.73;  ///< [m]
 
-/// A box as one camera pose sees it.
-struct SeenBox {
-  Eigen::Vector3d eye;  ///< in the box' axes
-  Eigen::Matrix3d R_box_c;
-  Eigen::Vector3d middle_c;  ///< center of the sphere around the box, in camera axes
+/// A thing as one camera pose sees it, in the thing's own axes.
+struct Seen {
+  Eigen::Vector3d eye;
+  Eigen::Matrix3d R_own_c;
+  Eigen::Vector3d middle_c;  ///< center of the sphere around it, in camera axes
   double gap2;               ///< squared length of a tangent from the eye to that sphere
+
+  Ray ray(const Eigen::Vector3d& ray_c) const { return {eye, R_own_c * ray_c}; }
+  /// Whether the ray passes the sphere by.
+  bool misses(const Eigen::Vector3d& ray_c, double ray2) const {
+    const double along = middle_c.dot(ray_c);
+    return gap2 > 0 && (along < 0 || along * along < gap2 * ray2);
+  }
 };
 
 /// A camera pose with what all its rays share.
 struct Eye {
   Pose pose;
-  std::vector<SeenBox> boxes;
+  std::vector<Seen> boxes;
+  std::vector<Seen> rocks;
 };
 
 Eye make_eye(const Scene& scene, const Pose& pose) {
-  Eye eye{pose, {}};
+  Eye eye{pose, {}, {}};
+  const auto seen = [&](const Eigen::Matrix3d& R_own_world,
+                        const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& middle,
+                        double radius2) {
+    const Eigen::Vector3d middle_c = to_camera(pose, middle);
+    return Seen{R_own_world * (pose.p_wc - origin),
+                R_own_world * pose.R_wc,
+                middle_c,
+                middle_c.squaredNorm() - radius2};
+  };
   for (const SceneBox& box : scene.boxes) {
-    const Eigen::Vector3d middle_c =
-        to_camera(pose, box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2));
-    eye.boxes.push_back({box.R_box_world * (pose.p_wc - box.origin),
-                         box.R_box_world * pose.R_wc,
-                         middle_c,
-                         middle_c.squaredNorm() - box.size.squaredNorm() / 4});
+    const Eigen::Vector3d middle = box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2);
+    eye.boxes.push_back(seen(box.R_box_world, box.origin, middle, box.size.squaredNorm() / 4));
+  }
+  for (const SceneRock& rock : scene.rocks) {
+    eye.rocks.push_back(seen(rock.R_unit_world, rock.center, rock.center, rock.reach * rock.reach));
   }
   return eye;
-}
-
-/// Distance along the ray to the box (slabs), infinite for a miss, and the axis of the face hit.
-struct Hit {
-  double distance = std::numeric_limits<double>::infinity();
-  int axis = 0;
-};
-Hit hit_box(const SceneBox& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) {
-  const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
-  const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());
-  Hit hit{0, 0};
-  double leave = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const double a = (low[k] - origin[k]) / ray[k];
-    const double b = (high[k] - origin[k]) / ray[k];
-    if (std::min(a, b) > hit.distance) hit = {std::min(a, b), k};
-    leave = std::min(leave, std::max(a, b));
-  }
-  if (!(hit.distance > 0 && hit.distance <= leave)) return {};
-  return hit;
-}
-
-cv::Vec3f box_color(const SceneBox& box,
-                    const Hit& hit,
-                    const Eigen::Vector3d& origin,
-                    const Eigen::Vector3d& ray) {
-  const Eigen::Vector3d p = (origin + hit.distance * ray).cwiseQuotient(box.size);
-  if (hit.axis == 2) return sample_texture(box.top, p.x() + 0.5, 0.5 - p.y());
-  if (hit.axis == 0) {
-    return ray.x() < 0 ? sample_texture(box.sides[1], p.y() + 0.5, 1 - p.z())
-                       : sample_texture(box.sides[3], 0.5 - p.y(), 1 - p.z());
-  }
-  return ray.y() > 0 ? sample_texture(box.sides[0], p.x() + 0.5, 1 - p.z())
-                     : sample_texture(box.sides[2], 0.5 - p.x(), 1 - p.z());
 }
 
 /// Nothing beside the squares; their colors are computed, so that corners are exact.
@@ -115,33 +100,62 @@ cv::Vec3f room_color(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) 
   return wall + (cv::Vec3f(58, 62, 72) - wall) * static_cast<float>(std::exp(-distance / 3));
 }
 
+/// The nearest of the things of one sort, and where it is hit.
+template <typename Hit>
+struct Nearest {
+  Hit hit;
+  std::size_t which = 0;
+};
+template <typename Thing, typename Hit>
+Nearest<Hit> nearest_of(const std::vector<Thing>& things,
+                        const std::vector<Seen>& seen,
+                        Hit (*hit_thing)(const Thing&, const Ray&),
+                        const Eigen::Vector3d& ray_c) {
+  const double ray2 = ray_c.squaredNorm();
+  Nearest<Hit> nearest;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (seen[i].misses(ray_c, ray2)) continue;
+    const Hit hit = hit_thing(things[i], seen[i].ray(ray_c));
+    if (hit.t < nearest.hit.t) nearest = {hit, i};
+  }
+  return nearest;
+}
+
+Nearest<WallHit> nearest_wall(const std::vector<SceneWall>& walls, const Ray& ray) {
+  Nearest<WallHit> nearest;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const WallHit hit = hit_wall(walls[i], ray);
+    if (hit.t < nearest.hit.t) nearest = {hit, i};
+  }
+  return nearest;
+}
+
 cv::Vec3f trace(const Scene& scene, const Eye& eye, const Eigen::Vector2f& slope) {
   if (!std::isfinite(slope.x())) return {0, 0, 0};
   const Eigen::Vector3d ray_c(slope.x(), slope.y(), 1);
-  const double ray2 = ray_c.squaredNorm();
-  Hit nearest;
-  std::size_t which = 0;
-  for (std::size_t i = 0; i < eye.boxes.size(); ++i) {
-    const SeenBox& box = eye.boxes[i];
-    const double along = box.middle_c.dot(ray_c);
-    if (box.gap2 > 0 && (along < 0 || along * along < box.gap2 * ray2)) continue;
-    const Hit hit = hit_box(scene.boxes[i], box.eye, box.R_box_c * ray_c);
-    if (hit.distance < nearest.distance) {
-      nearest = hit;
-      which = i;
-    }
-  }
-  const Eigen::Vector3d ray = eye.pose.R_wc * ray_c;
-  const double to_desk = -eye.pose.p_wc.z() / ray.z();
-  const double x = eye.pose.p_wc.x() + to_desk * ray.x();
-  const double y = eye.pose.p_wc.y() + to_desk * ray.y();
+  const Ray ray{eye.pose.p_wc, eye.pose.R_wc * ray_c};
+  const auto box = nearest_of(scene.boxes, eye.boxes, hit_box, ray_c);
+  const auto rock = nearest_of(scene.rocks, eye.rocks, hit_rock, ray_c);
+  const auto wall = nearest_wall(scene.walls, ray);
+  const double to_desk = -ray.origin.z() / ray.along.z();
+  const double x = ray.origin.x() + to_desk * ray.along.x();
+  const double y = ray.origin.y() + to_desk * ray.along.y();
   const bool on_desk =
       to_desk > 0 && std::abs(x) < scene.desk_size.x() / 2 && std::abs(y) < scene.desk_size.y() / 2;
-  if (std::isfinite(nearest.distance) && !(on_desk && to_desk < nearest.distance)) {
-    const SeenBox& box = eye.boxes[which];
-    return box_color(scene.boxes[which], nearest, box.eye, box.R_box_c * ray_c);
+  const double desk_t = on_desk ? to_desk : std::numeric_limits<double>::infinity();
+  const double t = std::min({box.hit.t, rock.hit.t, wall.hit.t, desk_t});
+  if (!std::isfinite(t)) return room_color(ray.origin, ray.along);
+  if (t == box.hit.t) {
+    return box_color(scene.boxes[box.which], box.hit, eye.boxes[box.which].ray(ray_c));
   }
-  return on_desk ? desk_color(scene, x, y) : room_color(eye.pose.p_wc, ray);
+  if (t == rock.hit.t) {
+    const Ray own = eye.rocks[rock.which].ray(ray_c);
+    return rock_color(scene.rocks[rock.which], scene.stone, rock.hit, own);
+  }
+  if (t == wall.hit.t) {
+    return sample_texture(scene.walls[wall.which].texture, wall.hit.u, wall.hit.v);
+  }
+  return desk_color(scene, x, y);
 }
 
 std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {

@@ -22,19 +22,47 @@ struct SceneBox {
   cv::Mat top;                   ///< CV_8UC3
 };
 
+/// A wall ready to be hit by rays, from both sides.
+struct SceneWall {
+  Eigen::Vector3d foot;   ///< its lower corner on the left, in the world [m]
+  Eigen::Vector3d along;  ///< unit vector from there along the floor
+  Eigen::Vector2d size;   ///< length, height [m]
+  cv::Mat texture;        ///< CV_8UC3, light included
+};
+
+/// A rock: an ellipsoid with pieces cut off. In its own axes it is the unit sphere.
+struct SceneRock {
+  struct Cut {
+    Eigen::Vector3d normal;  ///< unit vector out of the rock
+    double distance;         ///< what lies farther along the normal is cut off
+  };
+  Eigen::Vector3d center;        ///< in the world [m]
+  Eigen::Matrix3d R_unit_world;  ///< world to the rock's axes, divided by its semi-axes
+  double reach = 0;              ///< longest semi-axis [m]
+  std::vector<Cut> cuts;         ///< in the rock's axes
+  cv::Vec3f tint = {1, 1, 1};    ///< of the stone
+  double grain = 1;              ///< part of the block of stone that it was cut from, 0 .. 1
+};
+
 /// What there is to see, painted once; textures are CV_8UC3 and much finer than a picture.
 struct Scene {
-  Eigen::Vector2d desk_size;         ///< [m]
+  Eigen::Vector2d desk_size = Eigen::Vector2d::Zero();  ///< [m]; zero: there is no desk
   cv::Mat desk;                      ///< seen from above, +y at the picture's top, light included
   cv::Mat light;                     ///< CV_32FC1, coarse: lamp and shadows on the desk
   std::optional<BoardRecipe> board;  ///< its squares are not painted but computed, exactly
   Eigen::Matrix3d R_board_world = Eigen::Matrix3d::Identity();
   std::vector<SceneBox> boxes;
+  std::vector<SceneWall> walls;
+  std::vector<SceneRock> rocks;
+  cv::Mat stone;  ///< CV_8UC1 of three dimensions: the brightness of a block of stone
 };
 
 Scene make_scene(const DeskRecipe& desk, int threads);
+/// With its rubble.
+Scene make_scene(const Recipe& recipe, int threads);
 
-/// Interpolated texture at the fraction (u, v) of its width and height, v downwards.
+/// Interpolated texture, CV_8UC3 or CV_32FC1, at the fraction (u, v) of its width and height, v
+/// downwards.
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v);
 
 }  // namespace gpo

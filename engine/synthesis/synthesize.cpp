@@ -123,7 +123,7 @@ void write_pictures(const Recipe& recipe,
                     const fs::path& folder,
                     const SynthesisProgress& progress,
                     int threads) {
-  const Scene scene = make_scene(recipe.desk, threads);
+  const Scene scene = make_scene(recipe, threads);
   const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
   std::string list = kPictureListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
@@ -155,8 +155,12 @@ void write_recording(const Recipe& recipe,
   write_file(mav / "imu0" / "sensor.yaml", imu_yaml(recipe.gyroscope));
   write_file(mav / "imu0" / "data.csv", imu_csv(recipe));
   write_file(mav / "state_groundtruth_estimate0" / "data.csv", truth_csv(recipe));
-  write_file(folder / "plane.yaml",
-             "# The desk, in the world of the ground truth.\nnormal: [0, 0, 1]\ndistance: 0\n");
+  if (has_desk(recipe)) {
+    write_file(folder / "plane.yaml",
+               fmt::format("# The {}, in the world of the ground truth.\n"
+                           "normal: [0, 0, 1]\ndistance: 0\n",
+                           recipe.desk.walls.empty() ? "desk" : "floor"));
+  }
   if (recipe.desk.board) {
     const BoardRecipe& board = *recipe.desk.board;
     write_file(folder / "board.yaml", board_yaml({board.columns, board.rows, board.square}));

@@ -26,9 +26,9 @@ std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
 /// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
-/// `board.yaml`. World: the desk is z = 0, z up. Same recipe, same bytes, whatever the threads.
-/// Throws InputError where `output` exists and is not empty, or cannot be written; a folder that is
-/// not finished is never left behind.
+/// `board.yaml`. World: the desk is z = 0, z up; where there is none, there is no `plane.yaml`.
+/// Same recipe, same bytes, whatever the threads. Throws InputError where `output` exists and is
+/// not empty, or cannot be written; a folder that is not finished is never left behind.
 void synthesize(const Recipe& recipe,
                 const std::filesystem::path& output,
                 const SynthesisProgress& progress = {},

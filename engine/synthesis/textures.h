@@ -12,13 +12,13 @@
 
 namespace gpo {
 
-/// magazine, letter, postcard, photo, card, map, mousepad, notebook.
+/// magazine, letter, postcard, photo, card, map, mousepad, notebook, rug.
 std::vector<std::string> print_kinds();
 
 /// A printed sheet of the named kind as CV_8UC4 (blue, green, red, opacity).
 cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random);
 
-/// book, carton, cube.
+/// book, carton, cube, shelf, wooden.
 std::vector<std::string> box_kinds();
 
 /// Faces of a box, CV_8UC4, seen from outside with the box' top at the picture's top: front (-y),

@@ -1,0 +1,219 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/synthesis/faces.h"
+
+#include "engine/base/parallel.h"
+#include "engine/synthesis/random.h"
+#include "engine/synthesis/textures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace gpo {
+namespace {
+
+/// Oiled oak in planks along x.
+cv::Vec3f wood(double x, double y, std::uint64_t seed) {
+  constexpr double kPlank = 0.21;
+  const double plank = std::floor(y / kPlank);
+  const double in_plank = y / kPlank - plank;
+  const auto board_seed =
+      seed + static_cast<std::uint64_t>(static_cast<std::int64_t>(plank) + 1000);
+  const double shift = 7.3 * plank;
+  const double bend = fractal_noise(x * 1.6 + shift, y * 5, 3, board_seed);
+  const double rings =
+      0.5 + 0.5 * std::sin(2 * std::numbers::pi * (y * 22 + 3.2 * bend + 0.3 * plank));
+  const double grain = fractal_noise(x * 5 + shift, y * 90, 2, board_seed + 1);
+  const double pore = fractal_noise(x * 22, y * 400, 1, board_seed + 3);
+  const double pores = pore * pore * pore * pore;
+  const double tone = fractal_noise(0.5, plank * 3.7, 1, seed);
+  const double t = 0.34 * rings * rings + 0.34 * (grain - 0.5) + 0.35 * (tone - 0.5);
+  cv::Vec3f color = cv::Vec3f(112, 160, 200) * (1 - t) + cv::Vec3f(66, 108, 152) * t;
+  color *= 1 - 0.25F * static_cast<float>(pores);
+  // The joint between two planks is a soft dark line.
+  const double joint = std::min(in_plank, 1 - in_plank) * kPlank;
+  return color * static_cast<float>(1 - 0.45 * std::exp(-joint * joint / (2 * 0.0008 * 0.0008)));
+}
+
+/// A number in [0, 1) for each brick or plank, whatever its neighbors have.
+double lot(double row, double column, std::uint64_t seed) {
+  const auto stream = static_cast<std::uint64_t>(static_cast<std::int64_t>(row) * 4096 +
+                                                 static_cast<std::int64_t>(column) + (1 << 24));
+  return Random(seed, stream).uniform();
+}
+
+/// Where a place lies in rows of bricks that are each shifted along.
+struct Laid {
+  double row, column;  ///< which one
+  double tone;         ///< its own, 0 .. 1
+  double edge;         ///< distance to its nearest edge [m]
+};
+Laid laid(double x, double y, double length, double height, double shift, std::uint64_t seed) {
+  const double row = std::floor(y / height);
+  const double along = x / length + shift * row;
+  const double column = std::floor(along);
+  const double in_row = y / height - row;
+  const double in_column = along - column;
+  return {
+      row,
+      column,
+      lot(row, column, seed),
+      std::min(std::min(in_row, 1 - in_row) * height, std::min(in_column, 1 - in_column) * length)};
+}
+
+float soft_line(double distance, double width) {
+  return static_cast<float>(std::exp(-distance * distance / (2 * width * width)));
+}
+
+/// Narrow staves of oak along x, each of its own tone.
+cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
+  const Laid stave = laid(x, y, 0.26, 0.036, 0.381966, seed);
+  const double bend = fractal_noise(x * 6 + 17 * stave.tone, y * 24 + 5 * stave.row, 2, seed + 1);
+  const double grain = fractal_noise(x * 9 + 9 * stave.tone, y * 160, 2, seed + 2);
+  const double t = 0.62 * stave.tone + 0.3 * (grain - 0.5) + 0.4 * (bend - 0.5) + 0.1;
+  const cv::Vec3f color = cv::Vec3f(118, 166, 206) * (1 - t) + cv::Vec3f(58, 96, 138) * t;
+  return color * (1 - 0.5F * soft_line(stave.edge, 0.0009));
+}
+
+/// Rough lime plaster with stains.
+cv::Vec3f plaster(double x, double y, std::uint64_t seed) {
+  const double stain = fractal_noise(x * 4, y * 4, 4, seed);
+  const double rough = fractal_noise(x * 60, y * 60, 3, seed + 1);
+  const double t = 0.16 * (stain - 0.5) + 0.22 * (rough - 0.5);
+  return cv::Vec3f(176, 196, 204) * (1 + t);
+}
+
+cv::Vec3f bricks(double x, double y, std::uint64_t seed) {
+  const Laid brick = laid(x, y, 0.075, 0.025, 0.5, seed);
+  const double rough = fractal_noise(x * 70, y * 70, 3, seed + 1);
+  const double soot = fractal_noise(x * 9 + 30 * brick.tone, y * 9, 3, seed + 2);
+  const double light = 0.62 + 0.5 * brick.tone + 0.5 * (rough - 0.5) + 0.5 * (soot - 0.5);
+  const cv::Vec3f clay = cv::Vec3f(74, 92, 156) * light;
+  const cv::Vec3f mortar = cv::Vec3f(158, 172, 180) * (0.85 + 0.3 * rough);
+  const double wavy = brick.edge + 0.001 * (soot - 0.5);
+  const auto t = static_cast<float>(std::clamp((wavy - 0.0011) / 0.0008, 0.0, 1.0));
+  return mortar * (1 - t) + clay * t;
+}
+
+/// Colors at a place in meters at scale 1.
+struct SurfaceKind {
+  const char* key;
+  cv::Vec3f (*color)(double x, double y, std::uint64_t seed);
+};
+constexpr std::array<SurfaceKind, 4> kSurfaceKinds = {
+    {{"wood", wood}, {"parquet", parquet}, {"plaster", plaster}, {"bricks", bricks}}};
+
+cv::Vec4f interpolate(const cv::Mat& picture, double col, double row) {
+  const double x = std::clamp(col, 0.0, picture.cols - 1.001);
+  const double y = std::clamp(row, 0.0, picture.rows - 1.001);
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const auto a = static_cast<float>(x - x0);
+  const auto b = static_cast<float>(y - y0);
+  const auto at = [&](int r, int c) { return cv::Vec4f(picture.at<cv::Vec4b>(r, c)); };
+  return (at(y0, x0) * (1 - a) + at(y0, x0 + 1) * a) * (1 - b) +
+         (at(y0 + 1, x0) * (1 - a) + at(y0 + 1, x0 + 1) * a) * b;
+}
+
+/// The color of the face with the sheet over it; a soft shadow runs around the sheet.
+cv::Vec3f cover(const cv::Vec3f& under,
+                const Sheet& sheet,
+                const Eigen::Vector2d& place,
+                double scale) {
+  const Eigen::Vector2d in_sheet = sheet.turn * (place - sheet.center);
+  const Eigen::Array2d outside = in_sheet.array().abs() - sheet.size.array() / 2;
+  const double distance = outside.max(0).matrix().norm() / scale;
+  const float dark = distance > 0.006 ? 1.0F : static_cast<float>(0.72 + 0.28 * distance / 0.006);
+  if (outside.maxCoeff() > 0) return under * dark;
+  const double col = (in_sheet.x() / sheet.size.x() + 0.5) * sheet.picture.cols - 0.5;
+  const double row = (0.5 - in_sheet.y() / sheet.size.y()) * sheet.picture.rows - 0.5;
+  const cv::Vec4f ink = interpolate(sheet.picture, col, row);
+  const float opacity = ink[3] / 255;
+  return under * (dark * (1 - opacity)) + cv::Vec3f(ink[0], ink[1], ink[2]) * opacity;
+}
+
+}  // namespace
+
+std::vector<std::string> surface_kinds() {
+  std::vector<std::string> keys;
+  keys.reserve(kSurfaceKinds.size());
+  for (const SurfaceKind& kind : kSurfaceKinds) keys.emplace_back(kind.key);
+  return keys;
+}
+
+Eigen::Vector2d texel_place(const PaintedFace& face, double col, double row, double per_meter) {
+  return {(col + 0.5) / per_meter - face.size.x() / 2, face.size.y() / 2 - (row + 0.5) / per_meter};
+}
+
+cv::Mat empty_map(const PaintedFace& face, double per_meter, int type) {
+  return cv::Mat(cvCeil(face.size.y() * per_meter), cvCeil(face.size.x() * per_meter), type);
+}
+
+cv::Mat paint_face(const PaintedFace& face,
+                   const std::string& kind,
+                   std::uint64_t seed,
+                   int threads) {
+  const double per_meter = kFaceTexelsPerMeter / face.scale;
+  cv::Mat texture = empty_map(face, per_meter, CV_8UC3);
+  const auto* known = std::ranges::find(
+      kSurfaceKinds, kind, [](const SurfaceKind& k) { return std::string(k.key); });
+  in_parallel(texture.rows, threads, [&](int row) {
+    for (int col = 0; col < texture.cols; ++col) {
+      const Eigen::Vector2d p = texel_place(face, col, row, per_meter) / face.scale;
+      const cv::Vec3f color = known->color(p.x(), p.y(), seed);
+      texture.at<cv::Vec3b>(row, col) = cv::Vec3b(cv::saturate_cast<uchar>(color[0]),
+                                                  cv::saturate_cast<uchar>(color[1]),
+                                                  cv::saturate_cast<uchar>(color[2]));
+    }
+  });
+  return texture;
+}
+
+void lay_sheet(cv::Mat& texture, const PaintedFace& face, const Sheet& sheet, int threads) {
+  const double per_meter = kFaceTexelsPerMeter / face.scale;
+  const double reach = sheet.size.norm() / 2 + 0.01 * face.scale;
+  const double left = (sheet.center.x() - reach + face.size.x() / 2) * per_meter;
+  const double top = (face.size.y() / 2 - sheet.center.y() - reach) * per_meter;
+  const int side = cvCeil(2 * reach * per_meter);
+  const cv::Rect area =
+      cv::Rect(cvFloor(left), cvFloor(top), side, side) & cv::Rect({}, texture.size());
+  in_parallel(area.height, threads, [&](int i) {
+    const int row = area.y + i;
+    for (int col = area.x; col < area.x + area.width; ++col) {
+      const cv::Vec3f under = texture.at<cv::Vec3b>(row, col);
+      cv::Vec3f sum(0, 0, 0);
+      for (const double dr : {-0.25, 0.25}) {
+        for (const double dc : {-0.25, 0.25}) {
+          sum += cover(under, sheet, texel_place(face, col + dc, row + dr, per_meter), face.scale);
+        }
+      }
+      texture.at<cv::Vec3b>(row, col) = cv::Vec3b(cv::saturate_cast<uchar>(sum[0] / 4),
+                                                  cv::saturate_cast<uchar>(sum[1] / 4),
+                                                  cv::saturate_cast<uchar>(sum[2] / 4));
+    }
+  });
+}
+
+void lay_prints(cv::Mat& texture,
+                const PaintedFace& face,
+                const std::vector<PrintRecipe>& prints,
+                const Eigen::Vector2d& origin,
+                std::uint64_t seed,
+                int threads) {
+  const double per_meter = kSheetTexelsPerMeter / face.scale;
+  for (std::size_t i = 0; i < prints.size(); ++i) {
+    const PrintRecipe& print = prints[i];
+    const cv::Size size(cvRound(print.size.x() * per_meter), cvRound(print.size.y() * per_meter));
+    lay_sheet(texture,
+              face,
+              {origin + print.center,
+               print.size,
+               turn_into(print.angle).topLeftCorner<2, 2>(),
+               draw_print(print.kind, size, Random(seed, 100 + i))},
+              threads);
+  }
+}
+
+}  // namespace gpo
