@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include <opencv2/imgproc.hpp>
 
@@ -19,19 +21,23 @@ constexpr float kBoardWhite[3] = {232, 237, 239};
 constexpr float kBoardBlack[3] = {38, 36, 36};
 constexpr double kFloorHeight = -0.73;  ///< [m]
 
+/// Directions within an angle of an axis, less than a quarter turn; in camera axes.
+struct Cone {
+  Eigen::Vector3d axis;  ///< unit vector
+  double cosine;         ///< of the angle
+  double sine;
+};
+bool overlap(const Cone& a, const Cone& b) {
+  return a.axis.dot(b.axis) >= a.cosine * b.cosine - a.sine * b.sine;
+}
+
 /// A thing as one camera pose sees it, in the thing's own axes.
 struct Seen {
   Eigen::Vector3d eye;
   Eigen::Matrix3d R_own_c;
-  Eigen::Vector3d middle_c;  ///< center of the sphere around it, in camera axes
-  double gap2;               ///< squared length of a tangent from the eye to that sphere
+  std::optional<Cone> cone;  ///< around the sphere around it; none for an eye in that sphere
 
   Ray ray(const Eigen::Vector3d& ray_c) const { return {eye, R_own_c * ray_c}; }
-  /// Whether the ray passes the sphere by.
-  bool misses(const Eigen::Vector3d& ray_c, double ray2) const {
-    const double along = middle_c.dot(ray_c);
-    return gap2 > 0 && (along < 0 || along * along < gap2 * ray2);
-  }
 };
 
 /// A camera pose with what all its rays share.
@@ -41,17 +47,23 @@ struct Eye {
   std::vector<Seen> rocks;
 };
 
+/// What rays of one eye through a part of the picture may meet: places in its lists.
+struct Candidates {
+  std::vector<std::size_t> boxes;
+  std::vector<std::size_t> rocks;
+};
+
 Eye make_eye(const Scene& scene, const Pose& pose) {
   Eye eye{pose, {}, {}};
   const auto seen = [&](const Eigen::Matrix3d& R_own_world,
                         const Eigen::Vector3d& origin,
                         const Eigen::Vector3d& middle,
                         double radius2) {
+    Seen thing{R_own_world * (pose.p_wc - origin), R_own_world * pose.R_wc, {}};
     const Eigen::Vector3d middle_c = to_camera(pose, middle);
-    return Seen{R_own_world * (pose.p_wc - origin),
-                R_own_world * pose.R_wc,
-                middle_c,
-                middle_c.squaredNorm() - radius2};
+    const double sine2 = radius2 / middle_c.squaredNorm();
+    if (sine2 < 1) thing.cone = {middle_c.normalized(), std::sqrt(1 - sine2), std::sqrt(sine2)};
+    return thing;
   };
   for (const SceneBox& box : scene.boxes) {
     const Eigen::Vector3d middle = box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2);
@@ -109,12 +121,11 @@ struct Nearest {
 template <typename Thing, typename Hit>
 Nearest<Hit> nearest_of(const std::vector<Thing>& things,
                         const std::vector<Seen>& seen,
+                        const std::vector<std::size_t>& candidates,
                         Hit (*hit_thing)(const Thing&, const Ray&),
                         const Eigen::Vector3d& ray_c) {
-  const double ray2 = ray_c.squaredNorm();
   Nearest<Hit> nearest;
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    if (seen[i].misses(ray_c, ray2)) continue;
+  for (const std::size_t i : candidates) {
     const Hit hit = hit_thing(things[i], seen[i].ray(ray_c));
     if (hit.t < nearest.hit.t) nearest = {hit, i};
   }
@@ -130,12 +141,15 @@ Nearest<WallHit> nearest_wall(const std::vector<SceneWall>& walls, const Ray& ra
   return nearest;
 }
 
-cv::Vec3f trace(const Scene& scene, const Eye& eye, const Eigen::Vector2f& slope) {
+cv::Vec3f trace(const Scene& scene,
+                const Eye& eye,
+                const Candidates& candidates,
+                const Eigen::Vector2f& slope) {
   if (!std::isfinite(slope.x())) return {0, 0, 0};
   const Eigen::Vector3d ray_c(slope.x(), slope.y(), 1);
   const Ray ray{eye.pose.p_wc, eye.pose.R_wc * ray_c};
-  const auto box = nearest_of(scene.boxes, eye.boxes, hit_box, ray_c);
-  const auto rock = nearest_of(scene.rocks, eye.rocks, hit_rock, ray_c);
+  const auto box = nearest_of(scene.boxes, eye.boxes, candidates.boxes, hit_box, ray_c);
+  const auto rock = nearest_of(scene.rocks, eye.rocks, candidates.rocks, hit_rock, ray_c);
   const auto wall = nearest_wall(scene.walls, ray);
   const double to_desk = -ray.origin.z() / ray.along.z();
   const double x = ray.origin.x() + to_desk * ray.along.x();
@@ -165,16 +179,63 @@ std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
   return eyes;
 }
 
+constexpr int kBlock = 16;  ///< pixels of a row that share their candidates
+
+Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
+  return Eigen::Vector3d(slope.x(), slope.y(), 1).normalized();
+}
+
+/// Around all rays; nothing where the lens sees nothing.
+std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& slope : slopes) {
+    if (std::isfinite(slope.x())) sum += direction(slope);
+  }
+  if (sum.isZero()) return std::nullopt;
+  const Eigen::Vector3d axis = sum.normalized();
+  double cosine = 1;
+  for (const auto& slope : slopes) {
+    if (std::isfinite(slope.x())) cosine = std::min(cosine, axis.dot(direction(slope)));
+  }
+  cosine -= 1e-9;  // rounding must not lose a thing that is just touched
+  return Cone{axis, cosine, std::sqrt(1 - cosine * cosine)};
+}
+
+std::vector<std::size_t> within(const Cone& cone, const std::vector<Seen>& things) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (!things[i].cone || overlap(cone, *things[i].cone)) found.push_back(i);
+  }
+  return found;
+}
+
+/// For each eye.
+std::vector<Candidates> find_candidates(const std::vector<Eye>& eyes,
+                                        std::span<const Eigen::Vector2f> slopes) {
+  std::vector<Candidates> candidates(eyes.size());
+  const std::optional<Cone> cone = cone_around(slopes);
+  for (std::size_t i = 0; cone && i < eyes.size(); ++i) {
+    candidates[i] = {within(*cone, eyes[i].boxes), within(*cone, eyes[i].rocks)};
+  }
+  return candidates;
+}
+
 void render_row(
     const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
   const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
   const auto* ray = map.rays.data() + per_pixel * map.width * row;
+  std::vector<Candidates> candidates;
   for (int col = 0; col < map.width; ++col) {
+    if (col % kBlock == 0) {
+      const int pixels = std::min(kBlock, map.width - col);
+      candidates = find_candidates(eyes, {ray, pixels * per_pixel});
+    }
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
       // 23 has no factor in common with any number of samples: each pose gets its sample, and a
       // sample's time has little to do with its place in the pixel.
-      sum += trace(scene, eyes[(k * 23) % eyes.size()], *ray++);
+      const std::size_t time = (k * 23) % eyes.size();
+      sum += trace(scene, eyes[time], candidates[time], *ray++);
     }
     light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
   }

@@ -99,10 +99,10 @@ TEST(Recipe, NamesAnUnknownKeyAndTheKnownOnes) {
   EXPECT_THAT(
       message_with("  texture_seed: 5", "  texture_sed: 5"),
       EndsWith("small.yaml:19: key `desk.texture_sed`: found an unknown key, expected one of "
-               "board, boxes, prints, size, texture_seed"));
+               "board, boxes, prints, scale, size, surface, texture_seed, walls"));
   EXPECT_THAT(message_with("  board: {", "  bord: {"),
               EndsWith("key `desk.bord`: found an unknown key, expected one of board, boxes, "
-                       "prints, size, texture_seed"));
+                       "prints, scale, size, surface, texture_seed, walls"));
   EXPECT_THAT(message_with("{kind: card,", "{kind: card, color: red,"),
               HasSubstr("small.yaml:22: key `desk.prints[0].color`: found an unknown key"));
 }
@@ -153,7 +153,8 @@ TEST(Recipe, NamesTheKnownChoices) {
               EndsWith("found \"fov\", expected one of none, radial-tangential, equidistant"));
   EXPECT_THAT(
       message_with("kind: cube", "kind: sphere"),
-      EndsWith("key `desk.boxes[0].kind`: found \"sphere\", expected one of book, carton, cube"));
+      EndsWith("key `desk.boxes[0].kind`: found \"sphere\", expected one of book, carton, cube, "
+               "shelf, wooden"));
 }
 
 TEST(Recipe, RefusesAnExtrinsicThatIsNotRigid) {
@@ -171,6 +172,112 @@ TEST(Recipe, RefusesAPathWithoutAPicture) {
       message_with("look_at: {start: [0, 0, 0], end: [0.02, 0.01, 0]}",
                    "look_at: {start: [-0.045, -0.34, 0.4275], end: [0, 0, 0]}\n  up: [0, 0, 0]"),
       HasSubstr("key `trajectory`: found no direction of view in frame 0"));
+}
+
+/// The small recipe with a wall, in a room.
+std::string room_text(const std::string& wall) {
+  return small_recipe_with("desk:\n  size: [0.7, 0.6]",
+                           "floor:\n  size: [0.7, 0.6]\n  scale: 2\n  surface: parquet\n  walls:\n"
+                           "    - {" +
+                               wall + "}");
+}
+
+const std::string kWall = "from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks";
+
+TEST(Recipe, ReadsARoom) {
+  const Recipe recipe = recipe_of(
+      room_text(kWall + ", prints: [{kind: map, center: [0.2, 0.3], size: [0.1, 0.08]}]"));
+  EXPECT_EQ(recipe.desk.scale, 2);
+  EXPECT_EQ(recipe.desk.surface, "parquet");
+  ASSERT_EQ(recipe.desk.walls.size(), 1U);
+  const WallRecipe& wall = recipe.desk.walls[0];
+  EXPECT_EQ(wall.from, Eigen::Vector2d(-0.3, 0.2));
+  EXPECT_EQ(wall.to, Eigen::Vector2d(0.3, 0.2));
+  EXPECT_EQ(wall.height, 0.5);
+  EXPECT_EQ(wall.surface, "bricks");
+  ASSERT_EQ(wall.prints.size(), 1U);
+  EXPECT_EQ(wall.prints[0].center, Eigen::Vector2d(0.2, 0.3));
+  EXPECT_TRUE(has_desk(recipe));
+}
+
+TEST(Recipe, NamesWhatIsWrongWithARoom) {
+  EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [0, 0.2], height: 0.5")),
+              EndsWith("small.yaml:23: key `floor.walls[0].to`: found a wall 0 m long, expected "
+                       "from 0.05 to 10 m"));
+  EXPECT_THAT(
+      message_of(room_text("from: [0, 0.2], to: [30, 0.2], height: 0.5")),
+      EndsWith("key `floor.walls[0].to`: found a wall 30 m long, expected from 0.05 to 10 m"));
+  EXPECT_THAT(message_of(room_text("from: [0, 0.2], height: 0.5")),
+              EndsWith("key `floor.walls[0].to`: found nothing, expected a list of 2 numbers"));
+  EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [1, 0.2], height: 11")),
+              EndsWith("key `floor.walls[0].height`: found \"11\", expected a number [m] from 0.05 "
+                       "to 10"));
+  EXPECT_THAT(message_of(room_text(kWall + ", color: red")),
+              EndsWith("key `floor.walls[0].color`: found an unknown key, expected one of from, "
+                       "height, prints, surface, texture_seed, to"));
+  EXPECT_THAT(message_of(room_text(kWall + ", prints: [{kind: door}]")),
+              HasSubstr("key `floor.walls[0].prints[0].kind`: found \"door\", expected one of "));
+  EXPECT_THAT(
+      message_with("  texture_seed: 5", "  surface: marble"),
+      EndsWith("key `desk.surface`: found \"marble\", expected one of wood, parquet, plaster, "
+               "bricks"));
+  EXPECT_THAT(message_with("  texture_seed: 5", "  scale: 0.5"),
+              EndsWith("key `desk.scale`: found \"0.5\", expected a number from 1 to 10"));
+  EXPECT_THAT(message_with("gyroscope:", "floor: {size: [1, 1]}\ngyroscope:"),
+              HasSubstr("key `desk`: found an unknown key, expected one of camera, floor, frames"));
+}
+
+TEST(Recipe, RefusesWallsThatFillTheMemory) {
+  std::string walls = "from: [0, 0], to: [10, 0], height: 10";
+  for (int i = 0; i < 2; ++i) walls += "}\n    - {from: [0, 0], to: [10, 0], height: 10";
+  EXPECT_THAT(
+      message_of(room_text(walls)),
+      EndsWith("key `floor.walls`: found 300.4 m^2 of walls and floor, expected at most 240 "
+               "at scale 2"));
+}
+
+/// The small recipe with a heap of rocks in place of the desk.
+std::string rubble_text(const std::string& heap) {
+  std::string text = small_recipe_text();
+  const std::size_t desk = text.find("desk:");
+  return text.replace(desk, text.find("picture:") - desk, "rubble:\n  - {" + heap + "}\n");
+}
+
+TEST(Recipe, ReadsRubbleWithoutADesk) {
+  const Recipe recipe = recipe_of(
+      rubble_text("count: 7, size: [0.1, 0.2], low: [-1, -1, -1], high: [1, 2, 3], seed: 9"));
+  EXPECT_FALSE(has_desk(recipe));
+  ASSERT_EQ(recipe.rubble.size(), 1U);
+  EXPECT_EQ(recipe.rubble[0].count, 7);
+  EXPECT_EQ(recipe.rubble[0].size, Eigen::Vector2d(0.1, 0.2));
+  EXPECT_EQ(recipe.rubble[0].high, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(recipe.rubble[0].seed, 9U);
+}
+
+TEST(Recipe, NamesWhatIsWrongWithRubble) {
+  const std::string corners = "low: [-1, -1, -1], high: [1, 2, 3]";
+  EXPECT_THAT(message_of(rubble_text("count: 0, size: [0.1, 0.2], " + corners)),
+              EndsWith("small.yaml:17: key `rubble[0].count`: found \"0\", expected a whole number "
+                       "from 1 to 1000"));
+  EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.2, 0.1], " + corners)),
+              EndsWith("key `rubble[0].size`: found the greatest first, expected [least, greatest] "
+                       "in meters"));
+  EXPECT_THAT(
+      message_of(rubble_text("count: 7, size: [0.1, 0.2], low: [0, 0, 0], high: [1, -1, 1]")),
+      EndsWith("key `rubble[0].high`: found a corner below `low`, expected x, y and z of at "
+               "least those of `low`"));
+  EXPECT_THAT(message_of(rubble_text("count: 7, " + corners)),
+              EndsWith("key `rubble[0].size`: found nothing, expected a list of 2 numbers"));
+  EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.1, 0.2], tilt: 3, " + corners)),
+              EndsWith("key `rubble[0].tilt`: found an unknown key, expected one of count, high, "
+                       "low, seed, size"));
+}
+
+TEST(Recipe, AsksForADeskWhereThereIsNoRubble) {
+  std::string text = small_recipe_text();
+  const std::size_t desk = text.find("desk:");
+  text.erase(desk, text.find("picture:") - desk);
+  EXPECT_THAT(message_of(text), EndsWith("key `desk`: found nothing, expected a map"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "engine/window/tracks.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -91,6 +92,133 @@ TEST(Renderer, BoxHidesWhatIsBehindItAndStandsWhereTheRecipeSays) {
   const cv::Vec3f middle = top.at<cv::Vec3b>(top.rows / 2, top.cols / 2);
   EXPECT_LT(cv::norm(at(with, {0.0, 0.05, 0.08}), middle), 3);
   EXPECT_LT(cv::norm(at(with, {-0.2, -0.05, 0}), at(without, {-0.2, -0.05, 0})), 3);
+}
+
+/// A chessboard of 8 x 6 squares that fills a texture.
+cv::Mat chessboard() {
+  constexpr int kSquare = 100;
+  cv::Mat texture(6 * kSquare, 8 * kSquare, CV_8UC3);
+  for (int row = 0; row < texture.rows; ++row) {
+    for (int col = 0; col < texture.cols; ++col) {
+      const int parity = (row / kSquare + col / kSquare) % 2;
+      texture.at<cv::Vec3b>(row, col) = cv::Vec3b::all(parity == 0 ? 40 : 220);
+    }
+  }
+  return texture;
+}
+
+TEST(Renderer, WallsPointsAreWhereTheCameraProjectsThem) {
+  Recipe recipe = board_recipe(Distortion::radial_tangential);
+  recipe.desk.board.reset();
+  WallRecipe wall;
+  wall.from = {-0.22, 0.02};
+  wall.to = {0.16, 0.16};
+  wall.height = 0.3;
+  recipe.desk.walls = {wall};
+  Scene scene = make_scene(recipe, 2);
+  ASSERT_EQ(scene.walls.size(), 1U);
+  scene.walls[0].texture = chessboard();
+  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
+  const RayMap rays = make_ray_map(recipe.camera, 4, 2);
+  const cv::Mat picture = expose(render(scene, rays, {pose}, 2), clean_picture(), 1, 1, 2);
+  std::vector<cv::Point2f> corners;
+  std::vector<Eigen::Vector2d> projections;
+  for (int row = 1; row < 6; ++row) {
+    for (int column = 1; column < 8; ++column) {
+      const Eigen::Vector2d foot = wall.from + (wall.to - wall.from) * (column / 8.0);
+      const Eigen::Vector3d corner(foot.x(), foot.y(), wall.height * row / 6.0);
+      projections.push_back(project(recipe.camera, to_camera(pose, corner)));
+      corners.emplace_back(static_cast<float>(projections.back().x()),
+                           static_cast<float>(projections.back().y()));
+    }
+  }
+  cv::Mat gray;
+  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
+  cv::cornerSubPix(gray, corners, {5, 5}, {-1, -1}, criteria);
+  double squares = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    squares += (Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i]).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(corners.size())), 0.06);
+}
+
+TEST(Renderer, WallHangsItsPrintsWhereTheRecipeSaysAndHidesWhatIsBehind) {
+  Recipe recipe = board_recipe(Distortion::none);
+  recipe.desk.board.reset();
+  const RayMap rays = make_ray_map(recipe.camera, 1, 2);
+  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
+  WallRecipe wall;
+  wall.from = {-0.2, 0.1};
+  wall.to = {0.2, 0.1};
+  wall.height = 0.15;
+  recipe.desk.walls = {wall};
+  const cv::Mat bare = render(make_scene(recipe, 2), rays, {pose}, 2);
+  recipe.desk.walls[0].prints = {{"photo", {0.1, 0.09}, {0.1, 0.06}, 0}};
+  const cv::Mat hung = render(make_scene(recipe, 2), rays, {pose}, 2);
+  recipe.desk.boxes = {{"cube", {-0.1, 0.3}, {0.05, 0.05, 0.05}, 0, 0}};
+  const cv::Mat hiding = render(make_scene(recipe, 2), rays, {pose}, 2);
+  const auto change = [&](const cv::Mat& a, const cv::Mat& b, const Eigen::Vector3d& point) {
+    const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
+    const cv::Point at(cvRound(px.x()), cvRound(px.y()));
+    return cv::norm(a.at<cv::Vec3f>(at), b.at<cv::Vec3f>(at));
+  };
+  // The photograph's white rim is just inside its edges.
+  for (const double x : {-0.147, -0.053}) EXPECT_GT(change(bare, hung, {x, 0.1, 0.09}), 20) << x;
+  for (const double z : {0.063, 0.117}) EXPECT_GT(change(bare, hung, {-0.1, 0.1, z}), 20) << z;
+  EXPECT_EQ(change(bare, hung, {0.1, 0.1, 0.09}), 0);
+  EXPECT_EQ(change(hung, hiding, {-0.1, 0.275, 0.02}), 0);
+}
+
+/// A sphere of which the part beyond a plane is cut off, in space without a desk.
+Scene cut_sphere(const Eigen::Vector3d& center, double radius, const SceneRock::Cut& cut) {
+  Scene scene;
+  const std::array<int, 3> sizes = {144, 144, 144};
+  scene.stone = cv::Mat(3, sizes.data(), CV_8UC1, cv::Scalar(255));
+  SceneRock rock;
+  rock.center = center;
+  rock.R_unit_world = Eigen::Matrix3d::Identity() / radius;
+  rock.reach = radius;
+  rock.cuts = {cut};
+  rock.tint = {1, 0, 0};
+  scene.rocks = {rock};
+  return scene;
+}
+
+TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
+  const Recipe recipe = board_recipe(Distortion::none);
+  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
+  const Eigen::Vector3d center(0.03, 0.05, 0.1);
+  const SceneRock::Cut cut{Eigen::Vector3d(1, 0.2, 0.5).normalized(), 0.4};
+  const Scene scene = cut_sphere(center, 0.07, cut);
+  const cv::Mat picture = render(scene, make_ray_map(recipe.camera, 1, 2), {pose}, 2);
+  int covered = 0;
+  int wrong = 0;
+  for (int row = 0; row < picture.rows; ++row) {
+    for (int col = 0; col < picture.cols; ++col) {
+      const Eigen::Vector3d along =
+          (pose.R_wc * Eigen::Vector3d((col - recipe.camera.cx) / recipe.camera.fx,
+                                       (row - recipe.camera.cy) / recipe.camera.fy,
+                                       1))
+              .normalized();
+      // The chord within the sphere has a point within the half-space, or the ray misses.
+      const Eigen::Vector3d from = pose.p_wc - center;
+      const double middle = -from.dot(along);
+      const double half2 = 0.07 * 0.07 - (from + middle * along).squaredNorm();
+      bool meets = false;
+      for (const double end : {-1.0, 1.0}) {
+        if (half2 < 0) continue;
+        const Eigen::Vector3d p = from + (middle + end * std::sqrt(half2)) * along;
+        meets = meets || cut.normal.dot(p) / 0.07 <= cut.distance;
+      }
+      covered += meets ? 1 : 0;
+      // The rock is blue, the room beyond is gray.
+      const cv::Vec3f color = picture.at<cv::Vec3f>(row, col);
+      wrong += meets != (color[2] < 1) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(covered, 2000);
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(Renderer, NoiseHasTheRecipesStrength) {

@@ -220,6 +220,30 @@ TEST(Synthesize, LeavesOutWhatTheRecipeLeavesOut) {
   EXPECT_FALSE(YAML::LoadFile((output / "mav0/imu0/sensor.yaml").string())["gyroscope_bias"]);
 }
 
+TEST(Synthesize, RubbleHasNoTruePlane) {
+  Recipe recipe = recipe_of(small_recipe_text());
+  recipe.desk = {};
+  recipe.rubble = {{5, {0.05, 0.1}, {-0.2, 0, 0}, {0.2, 0.2, 0.2}, 1}};
+  const fs::path output = test_folder("out") / "recording";
+  synthesize(recipe, output);
+  EXPECT_FALSE(fs::exists(output / "plane.yaml"));
+  EXPECT_TRUE(fs::exists(output / "mav0/state_groundtruth_estimate0/data.csv"));
+}
+
+TEST(Synthesize, FloorOfARoomIsItsTruePlane) {
+  Recipe recipe = recipe_of(small_recipe_text());
+  WallRecipe wall;
+  wall.from = {-0.3, 0.2};
+  wall.to = {0.3, 0.2};
+  wall.height = 0.3;
+  recipe.desk.walls = {wall};
+  const fs::path output = test_folder("out") / "recording";
+  synthesize(recipe, output);
+  const YAML::Node plane = YAML::LoadFile((output / "plane.yaml").string());
+  EXPECT_EQ(plane["normal"][2].as<double>(), 1);
+  EXPECT_EQ(plane["distance"].as<double>(), 0);
+}
+
 TEST(Synthesize, RefusesAFolderWithSomethingInIt) {
   const Recipe recipe = recipe_of(small_recipe_text());
   const fs::path output = test_folder("out");
