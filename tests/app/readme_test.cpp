@@ -58,6 +58,7 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   for (const char* page : {"README.md",
                            "assets/nine/README.md",
                            "engine/recording/README.md",
+                           "engine/synthesis/README.md",
                            "tests/benchmark/README.md",
                            "tests/fuzz/README.md"}) {
     const std::string text = test::read_file(top / page);

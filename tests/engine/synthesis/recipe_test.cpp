@@ -202,7 +202,7 @@ TEST(Recipe, ReadsARoom) {
 
 TEST(Recipe, NamesWhatIsWrongWithARoom) {
   EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [0, 0.2], height: 0.5")),
-              EndsWith("small.yaml:23: key `floor.walls[0].to`: found a wall 0 m long, expected "
+              EndsWith("small.yaml:22: key `floor.walls[0].to`: found a wall 0 m long, expected "
                        "from 0.05 to 10 m"));
   EXPECT_THAT(
       message_of(room_text("from: [0, 0.2], to: [30, 0.2], height: 0.5")),
@@ -257,7 +257,7 @@ TEST(Recipe, ReadsRubbleWithoutADesk) {
 TEST(Recipe, NamesWhatIsWrongWithRubble) {
   const std::string corners = "low: [-1, -1, -1], high: [1, 2, 3]";
   EXPECT_THAT(message_of(rubble_text("count: 0, size: [0.1, 0.2], " + corners)),
-              EndsWith("small.yaml:17: key `rubble[0].count`: found \"0\", expected a whole number "
+              EndsWith("small.yaml:18: key `rubble[0].count`: found \"0\", expected a whole number "
                        "from 1 to 1000"));
   EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.2, 0.1], " + corners)),
               EndsWith("key `rubble[0].size`: found the greatest first, expected [least, greatest] "

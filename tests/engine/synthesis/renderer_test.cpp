@@ -136,11 +136,14 @@ TEST(Renderer, WallsPointsAreWhereTheCameraProjectsThem) {
   cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
   cv::cornerSubPix(gray, corners, {5, 5}, {-1, -1}, criteria);
-  double squares = 0;
+  // On a slanted board cornerSubPix itself is some hundredths of a pixel off, to all sides.
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    squares += (Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i]).squaredNorm();
+    const Eigen::Vector2d error = Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i];
+    EXPECT_LT(error.norm(), 0.25) << i;
+    sum += error;
   }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(corners.size())), 0.06);
+  EXPECT_LT(sum.norm() / static_cast<double>(corners.size()), 0.02);
 }
 
 TEST(Renderer, WallHangsItsPrintsWhereTheRecipeSaysAndHidesWhatIsBehind) {
