@@ -17,11 +17,11 @@ Recipe companion(const std::string& name) {
                      (name + ".yaml"));
 }
 
-/// What the defaults make of the first frames of a companion, drawn with fewer rays.
+/// What the defaults make of the first frames of a companion, drawn with a ray a pixel.
 std::shared_ptr<const Inspection> inspect_start_of(const std::string& name, int frames) {
   Recipe recipe = companion(name);
   recipe.frame_count = frames;
-  recipe.picture.samples = 2;
+  recipe.picture.samples = 1;
   const std::filesystem::path folder = test_folder("out") / name;
   synthesize(recipe, folder);
   Settings settings;
