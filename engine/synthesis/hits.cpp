@@ -10,7 +10,7 @@
 namespace gpo {
 
 // Slabs.
-BoxHit hit_box(const SceneBox& box, const Ray& ray) {
+BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest) {
   const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
   const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());
   BoxHit hit{0, 0};
@@ -21,7 +21,7 @@ BoxHit hit_box(const SceneBox& box, const Ray& ray) {
     if (std::min(a, b) > hit.t) hit = {std::min(a, b), k};
     leave = std::min(leave, std::max(a, b));
   }
-  if (!(hit.t > 0 && hit.t <= leave)) return {};
+  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
   return hit;
 }
 
@@ -48,25 +48,28 @@ WallHit hit_wall(const SceneWall& wall, const Ray& ray) {
 }
 
 // The sphere's chord, shortened by each half-space.
-RockHit hit_rock(const SceneRock& rock, const Ray& ray) {
+RockHit hit_rock(const SceneRock& rock, const Ray& ray, double farthest) {
   const double a = ray.along.squaredNorm();
   const double b = ray.origin.dot(ray.along);
   const double inside = b * b - a * (ray.origin.squaredNorm() - 1);
   if (inside < 0) return {};
   RockHit hit;
   hit.t = (-b - std::sqrt(inside)) / a;
+  if (hit.t >= farthest) return {};  // cuts only move it away
   hit.normal = ray.origin + hit.t * ray.along;
   double leave = (-b + std::sqrt(inside)) / a;
   for (const SceneRock::Cut& cut : rock.cuts) {
     const double slope = cut.normal.dot(ray.along);
-    const double t = (cut.distance - cut.normal.dot(ray.origin)) / slope;
+    const double within = cut.distance - cut.normal.dot(ray.origin);
     if (slope > 0) {
-      leave = std::min(leave, t);
-    } else if (t > hit.t) {
-      hit = {t, cut.normal};
+      leave = std::min(leave, within / slope);
+    } else if (slope < 0 && within / slope > hit.t) {
+      hit = {within / slope, cut.normal};
+    } else if (slope == 0 && within < 0) {
+      return {};
     }
   }
-  if (!(hit.t > 0 && hit.t <= leave)) return {};
+  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
   return hit;
 }
 

@@ -17,13 +17,13 @@ struct Ray {
   Eigen::Vector3d along;  ///< not a unit vector: t is then the same in all axes
 };
 
-/// Where a ray first meets a thing: t > 0, infinite for a miss.
+/// Where a ray first meets a thing: 0 < t < farthest, infinite for a miss.
 struct BoxHit {
   double t = std::numeric_limits<double>::infinity();
   int axis = 0;  ///< across the face that is hit
 };
 /// In the box' axes.
-BoxHit hit_box(const SceneBox& box, const Ray& ray);
+BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest);
 cv::Vec3f box_color(const SceneBox& box, const BoxHit& hit, const Ray& ray);
 
 struct WallHit {
@@ -39,7 +39,7 @@ struct RockHit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< in the rock's axes
 };
 /// In the rock's axes.
-RockHit hit_rock(const SceneRock& rock, const Ray& ray);
+RockHit hit_rock(const SceneRock& rock, const Ray& ray, double farthest);
 cv::Vec3f rock_color(const SceneRock& rock,
                      const cv::Mat& stone,
                      const RockHit& hit,

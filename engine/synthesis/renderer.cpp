@@ -122,11 +122,11 @@ template <typename Thing, typename Hit>
 Nearest<Hit> nearest_of(const std::vector<Thing>& things,
                         const std::vector<Seen>& seen,
                         const std::vector<std::size_t>& candidates,
-                        Hit (*hit_thing)(const Thing&, const Ray&),
+                        Hit (*hit_thing)(const Thing&, const Ray&, double farthest),
                         const Eigen::Vector3d& ray_c) {
   Nearest<Hit> nearest;
   for (const std::size_t i : candidates) {
-    const Hit hit = hit_thing(things[i], seen[i].ray(ray_c));
+    const Hit hit = hit_thing(things[i], seen[i].ray(ray_c), nearest.hit.t);
     if (hit.t < nearest.hit.t) nearest = {hit, i};
   }
   return nearest;
