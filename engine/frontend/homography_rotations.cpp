@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,6 +33,7 @@ constexpr double kNormalCapDeg =
     10;  // a candidate farther from the common normal is the false twin
 constexpr double kClearlyWorse = 2.25;  // cost of a second plane: else the two cannot be told apart
 constexpr double kPlausible = 9;        // cost of another plane that may still be the right one
+constexpr double kClearlyApart = 2;     // rotations of another reading, in those of the right one
 constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
 
 struct Pair {
@@ -225,12 +227,79 @@ Rotations rotations_given_plane(const Window& window,
           rotation_sigma_rad(reference_pairs, plane)};
 }
 
+/// Of those at which candidates gather at a plausible cost, each once.
+std::vector<Consensus> readings_of(const std::vector<Consensus>& found) {
+  std::vector<Consensus> readings;
+  for (const Consensus& one : found) {
+    const bool seen = std::ranges::any_of(readings, [&](const Consensus& other) {
+      return angle_deg(one.normal, other.normal) < kNormalCapDeg;
+    });
+    if (!seen && one.cost <= kPlausible * found.front().cost) readings.push_back(one);
+  }
+  return readings;
+}
+
+std::vector<Matrix3d> rotations_by(std::span<const Pair> reference_pairs, const Vector3d& normal) {
+  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
+  for (const Pair& pair : reference_pairs) R_wc.push_back(rotation_of(pair, normal).transpose());
+  return R_wc;
+}
+
+/// A reading of the leading plane, and what told it.
+struct Told {
+  Consensus plane;
+  std::string note;
+};
+
+/// Two planes that turn with one camera: of the leading plane's readings the one whose rotations
+/// another plane's homographies allow, too. Nothing where there is one reading only, no other
+/// plane, or none that tells them apart clearly.
+std::optional<Told> told_by_another_plane(const Window& window,
+                                          std::span<const Pair> pairs,
+                                          const std::vector<Consensus>& found) {
+  const std::vector<Consensus> readings = readings_of(found);
+  if (readings.size() < 2) return std::nullopt;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
+    if (k == window.leader) continue;
+    Window other = window;
+    other.inlier = window.planes[k].inlier;
+    other.H_i1 = window.planes[k].H_i1;
+    const auto [other_pairs, reason] = decompose_reference_pairs(other);
+    if (!reason.empty()) continue;
+    std::vector<double> apart_deg(readings.size(), std::numeric_limits<double>::infinity());
+    for (const Consensus& theirs : readings_of(consensuses(other_pairs))) {
+      const std::vector<Matrix3d> R_wc = rotations_by(other_pairs, theirs.normal);
+      for (std::size_t r = 0; r < readings.size(); ++r)
+        apart_deg[r] = std::min(apart_deg[r], disagreement_deg(pairs, readings[r].normal, R_wc));
+    }
+    const auto best = std::ranges::min_element(apart_deg);
+    const double least_deg = *best;
+    const Consensus& reading = readings[best - apart_deg.begin()];
+    *best = std::numeric_limits<double>::infinity();
+    const double next_deg = std::ranges::min(apart_deg);
+    if (!(next_deg > kClearlyApart * least_deg)) continue;
+    return Told{reading,
+                fmt::format("of the two readings of plane {}, plane {} tells the right one: its "
+                            "rotations agree to {:.2f} deg, the other's to {:.2f} deg",
+                            window.leader + 1,
+                            k + 1,
+                            least_deg,
+                            next_deg)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Rotations averaged_rotations(const Window& window, const std::stop_token& stop) {
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
+  if (const auto told = told_by_another_plane(window, pairs, found)) {
+    Rotations rotations = rotations_given_plane(window, pairs, told->plane, stop);
+    rotations.note = told->note;
+    return rotations;
+  }
   if (auto doubt = reason_to_doubt(found)) return {{}, *doubt};
   return rotations_given_plane(window, pairs, found.front(), stop);
 }

@@ -24,6 +24,7 @@ struct Rotations {
   std::optional<GyroSensitivity> gyro = std::nullopt;  ///< where they are a gyroscope's
   double sigma_rad = 0;                                ///< of rotations from pictures, roughly
   bool stopped = false;                                ///< there are none because of that
+  std::string note = "";  ///< what told them, where that is worth a sentence
 };
 
 /// automatic: a gyroscope, calibrated where the pictures can; without one five-point rotations

@@ -29,7 +29,7 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::string rotations_instead_of;  ///< why not what `automatic` tries first; empty: it is that
+  std::string rotations_note;  ///< why not what `automatic` tries first, or what told them
   std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< what was taken off its rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;

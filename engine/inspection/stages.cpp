@@ -147,7 +147,7 @@ void Stages::initialize(const Settings& settings,
                         Inspection& inspection) {
   const Rotations& given = rotations.value.rotations;
   inspection.rotations_used = rotations.value.source;
-  inspection.rotations_instead_of = rotations.value.instead_of;
+  inspection.rotations_note = rotations.value.note;
   Window window = *outliers.value;
   window.all_tracks = !uses_ransac(settings);
   window.rotations = given.model;

@@ -265,8 +265,8 @@ ordered_json to_json(const Inspection& inspection) {
                     {"inliers", window.inlier_count(0)}};
   json["settings"] = settings_json(inspection);
   json["unused_settings"] = unused_json(inspection);
-  if (!inspection.rotations_instead_of.empty())
-    json["rotations_instead_of"] = inspection.rotations_instead_of;
+  if (!inspection.rotations_note.empty())
+    json["rotations_note"] = inspection.rotations_note;
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);

@@ -26,8 +26,8 @@ std::string with_unit(const std::optional<double>& value,
 std::string rotations_text(const Inspection& inspection) {
   const char* source = to_string(inspection.rotations_used);
   if (!inspection.gyroscope_bias_rad_s) {
-    if (inspection.rotations_instead_of.empty()) return source;
-    return fmt::format("{} ({})", source, inspection.rotations_instead_of);
+    if (inspection.rotations_note.empty()) return source;
+    return fmt::format("{} ({})", source, inspection.rotations_note);
   }
   const Eigen::Vector3d& b = *inspection.gyroscope_bias_rad_s;
   return fmt::format("{} (bias {:.4f} {:.4f} {:.4f} rad/s: {})",

@@ -88,11 +88,13 @@ ChosenRotations window_rotations(const Recording& recording,
   };
   const RotationSource first = rotation_source_used(recording, asked);
   ChosenRotations chosen{first, from(first)};
+  chosen.note = chosen.rotations.note;
   const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
   if (asked != RotationSource::automatic || settled) return chosen;
-  chosen.instead_of = chosen.rotations.reason;
+  chosen.note = chosen.rotations.reason;
   chosen.source = recording.gyroscope ? RotationSource::gyro : RotationSource::averaging;
   chosen.rotations = from(chosen.source);
+  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
   return chosen;
 }
 

@@ -27,7 +27,7 @@ std::string automatic_rotations(const Recording& recording);
 struct ChosenRotations {
   RotationSource source = RotationSource::gyro;  ///< never automatic
   Rotations rotations = {};
-  std::string instead_of = "";  ///< why what `automatic` tries first had none; empty: it had
+  std::string note = "";  ///< why what `automatic` tries first had none; what told them
 };
 
 /// The window's rotations from what is asked for. Of `automatic`, where pictures cannot calibrate

@@ -325,12 +325,12 @@ TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
   const auto automatic = inspector.inspect({.frames = 16});
   EXPECT_EQ(automatic->rotations_used, RotationSource::averaging);
   EXPECT_EQ(to_json(*automatic)["settings"]["rotations"], "averaging");
-  const std::string reason = to_json(*automatic)["rotations_instead_of"];
+  const std::string reason = to_json(*automatic)["rotations_note"];
   EXPECT_THAT(reason, HasSubstr("five-point rotations: nearly all tracks lie on one plane"));
   EXPECT_THAT(to_text(*automatic), HasSubstr("averaging (" + reason + ")"));
   const auto asked = inspector.inspect({.frames = 16, .rotations = RotationSource::averaging});
   EXPECT_EQ(asked->window->R_wc, automatic->window->R_wc);
-  EXPECT_FALSE(to_json(*asked).contains("rotations_instead_of"));
+  EXPECT_FALSE(to_json(*asked).contains("rotations_note"));
   for (const auto source : {RotationSource::five_point, RotationSource::direct}) {
     const auto refused = inspector.inspect({.frames = 16, .rotations = source});
     EXPECT_EQ(refused->rotations_used, source);
