@@ -185,7 +185,7 @@ void Stages::initialize(const Settings& settings,
     Verdict verdict;
     verdict.readiness = Readiness::no_plane;
     verdict.reason = initialization.reason;
-    verdict.scene = Scene::no_plane;
+    verdict.scene = SceneKind::no_plane;
     initialization.verdict = std::move(verdict);
   }
   inspection.tracks = tracks.value;

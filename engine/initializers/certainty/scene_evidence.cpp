@@ -71,10 +71,10 @@ int farthest_camera(std::span<const Pose> cameras) {
 
 }  // namespace
 
-Scene scene_of(const Window& window) {
-  if (window.inliers != Inliers::planes) return Scene::not_told;
-  if (window.planes.empty()) return Scene::no_plane;
-  return window.planes.size() == 1 ? Scene::one_plane : Scene::several_planes;
+SceneKind scene_of(const Window& window) {
+  if (window.inliers != Inliers::planes) return SceneKind::not_told;
+  if (window.planes.empty()) return SceneKind::no_plane;
+  return window.planes.size() == 1 ? SceneKind::one_plane : SceneKind::several_planes;
 }
 
 std::vector<PlaneEvidence> plane_evidence(const Window& window) {

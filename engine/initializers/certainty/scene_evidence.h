@@ -13,7 +13,7 @@
 namespace gpo {
 
 /// What the window's planes say of what its tracks lie on; of other inliers nothing.
-Scene scene_of(const Window& window);
+SceneKind scene_of(const Window& window);
 
 std::vector<PlaneEvidence> plane_evidence(const Window& window);
 

@@ -20,10 +20,10 @@ struct ChoiceKeys<Readiness> {
 };
 
 /// What the tracks of a window lie on.
-enum class Scene { not_told, one_plane, several_planes, no_plane };
+enum class SceneKind { not_told, one_plane, several_planes, no_plane };
 
 template <>
-struct ChoiceKeys<Scene> {
+struct ChoiceKeys<SceneKind> {
   static constexpr const char* name = "scene";
   static constexpr std::array keys{"not told", "one plane", "several planes", "no plane"};
 };
@@ -50,7 +50,7 @@ struct Verdict {
   std::optional<double> rotation_rms_px;      ///< of the best rotations alone, frame by frame
   std::optional<double> noise_px;             ///< of one coordinate, what the homographies leave
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
-  Scene scene = Scene::not_told;              ///< of inliers that are told by planes
+  SceneKind scene = SceneKind::not_told;              ///< of inliers that are told by planes
   std::vector<PlaneEvidence> planes = {};     ///< the largest one first
   std::optional<SceneCriterion> criterion = std::nullopt;
 };
