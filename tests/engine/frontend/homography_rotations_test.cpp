@@ -26,7 +26,7 @@ using test::Simulation;
 TEST(HomographyRotations, WindowIsExactWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation s = simulate({.motion = motion, .noise_px = 0, .seed = 2});
-    const auto [R, reason, model, gyro, sigma, stopped] = averaged_rotations(s.window);
+    const auto [R, reason, model, gyro, sigma, stopped, note] = averaged_rotations(s.window);
     ASSERT_EQ(reason, "");
     for (int i = 0; i < 30; ++i)
       EXPECT_LT(rotation_error_deg(R[i], s.cameras[i].R_wc), 0.01) << "frame " << i;
@@ -60,7 +60,7 @@ TEST(HomographyRotations, IsFarBetterThanFivePointOnAPlane) {
   std::vector<double> five_point;
   for (std::uint64_t seed = 1; seed <= 21; ++seed) {
     const Simulation s = simulate({.motion = Motion::orbit, .seed = seed});
-    const auto [R, reason, model, gyro, sigma, stopped] = averaged_rotations(s.window);
+    const auto [R, reason, model, gyro, sigma, stopped, note] = averaged_rotations(s.window);
     ASSERT_EQ(reason, "");
     averaged.push_back(rotation_error_deg(R[29], s.cameras[29].R_wc));
     five_point.push_back(rotation_error_deg(five_point_rotation(s), s.cameras[29].R_wc));
@@ -81,7 +81,7 @@ TEST(HomographyRotations, SaysSoRatherThanTakeTheFalseTwin) {
     for (const double travel : {0.04, 0.1, 0.3}) {
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const Simulation s = simulate({.motion = motion, .travel = travel, .seed = seed});
-        const auto [R, reason, model, gyro, sigma, stopped] = averaged_rotations(s.window);
+        const auto [R, reason, model, gyro, sigma, stopped, note] = averaged_rotations(s.window);
         if (R.empty()) {
           EXPECT_THAT(reason, ::testing::HasSubstr("explain the homographies alike"));
           continue;
@@ -99,7 +99,7 @@ TEST(HomographyRotations, SaysSoRatherThanTakeTheFalseTwin) {
 TEST(HomographyRotations, HasNoAnswerForAWindowWithoutInliers) {
   Simulation s = simulate({});
   for (auto& frame : s.window.inlier) frame.assign(150, false);
-  const auto [R, reason, model, gyro, sigma, stopped] = averaged_rotations(s.window);
+  const auto [R, reason, model, gyro, sigma, stopped, note] = averaged_rotations(s.window);
   EXPECT_TRUE(R.empty());
   EXPECT_THAT(reason, ::testing::HasSubstr("too few tracks join frame 1"));
 }

@@ -63,14 +63,14 @@ Cloud cloud(const CloudOptions& options) {
   return made;
 }
 
-constexpr RelativeSolver kSolvers[] = {RelativeSolver::five_point, RelativeSolver::eigensolver};
+constexpr RelativeSolver kBothSolvers[] = {RelativeSolver::five_point, RelativeSolver::eigensolver};
 
 double error_deg(const Cloud& made, const std::optional<RelativePose>& pose) {
   return pose ? rotation_error_deg(pose->R_ij, made.camera.R_wc) : 180;
 }
 
 TEST(RelativePose, IsExactWithoutNoise) {
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       const Cloud made = cloud({.noise_px = 0, .seed = seed});
       const auto pose = relative_pose(made.rays, {.solver = solver});
@@ -84,7 +84,7 @@ TEST(RelativePose, IsExactWithoutNoise) {
 }
 
 TEST(RelativePose, KeepsItsRotationWhereTheCameraHardlyMoves) {
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     for (const double baseline : {0.0, 0.003, 0.01}) {
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const Cloud made = cloud({.baseline = baseline, .seed = seed});
@@ -97,7 +97,7 @@ TEST(RelativePose, KeepsItsRotationWhereTheCameraHardlyMoves) {
 }
 
 TEST(RelativePose, ToleratesAFifthOfOutliersAndNamesThem) {
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       const Cloud made = cloud({.outliers = 40, .seed = seed});
       const auto pose = relative_pose(made.rays, {.solver = solver, .seed = seed});
@@ -113,7 +113,7 @@ TEST(RelativePose, ToleratesAFifthOfOutliersAndNamesThem) {
 // OpenCV's five points, RANSAC and chirality: its rotation is within what the noise allows of ours,
 // and ours, which is refined, is nearer to the truth.
 TEST(RelativePose, AgreesWithOpenCv) {
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     std::vector<double> ours_deg, theirs_deg;
     for (std::uint64_t seed = 1; seed <= 21; ++seed) {
       const Cloud made = cloud({.outliers = 20, .seed = seed});
@@ -144,7 +144,7 @@ TEST(RelativePose, AgreesWithOpenCv) {
 
 TEST(RelativePose, IsTheSameEachTime) {
   const Cloud made = cloud({.outliers = 40});
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     const auto first = relative_pose(made.rays, {.solver = solver, .seed = 3});
     const auto second = relative_pose(made.rays, {.solver = solver, .seed = 3});
     EXPECT_EQ(first->R_ij, second->R_ij);
@@ -153,7 +153,7 @@ TEST(RelativePose, IsTheSameEachTime) {
 }
 
 TEST(RelativePose, HasNoneOfTooFewTracks) {
-  for (const RelativeSolver solver : kSolvers) {
+  for (const RelativeSolver solver : kBothSolvers) {
     EXPECT_FALSE(relative_pose(cloud({.tracks = 11}).rays, {.solver = solver}));
     EXPECT_TRUE(relative_pose(cloud({.tracks = 12}).rays, {.solver = solver}));
     EXPECT_FALSE(relative_pose({}, {.solver = solver}));
