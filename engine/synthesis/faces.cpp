@@ -196,24 +196,4 @@ void lay_sheet(cv::Mat& texture, const PaintedFace& face, const Sheet& sheet, in
   });
 }
 
-void lay_prints(cv::Mat& texture,
-                const PaintedFace& face,
-                const std::vector<PrintRecipe>& prints,
-                const Eigen::Vector2d& origin,
-                std::uint64_t seed,
-                int threads) {
-  const double per_meter = kSheetTexelsPerMeter / face.scale;
-  for (std::size_t i = 0; i < prints.size(); ++i) {
-    const PrintRecipe& print = prints[i];
-    const cv::Size size(cvRound(print.size.x() * per_meter), cvRound(print.size.y() * per_meter));
-    lay_sheet(texture,
-              face,
-              {origin + print.center,
-               print.size,
-               turn_into(print.angle).topLeftCorner<2, 2>(),
-               draw_print(print.kind, size, Random(seed, 100 + i))},
-              threads);
-  }
-}
-
 }  // namespace gpo

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/synthesis/recipe.h"
-
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,13 +42,5 @@ struct Sheet {
   cv::Mat picture;
 };
 void lay_sheet(cv::Mat& texture, const PaintedFace& face, const Sheet& sheet, int threads);
-
-/// Draws the prints and lays them, the last one on top; their centers are from `origin` on.
-void lay_prints(cv::Mat& texture,
-                const PaintedFace& face,
-                const std::vector<PrintRecipe>& prints,
-                const Eigen::Vector2d& origin,
-                std::uint64_t seed,
-                int threads);
 
 }  // namespace gpo

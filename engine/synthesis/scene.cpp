@@ -5,7 +5,6 @@
 #include "engine/base/parallel.h"
 #include "engine/synthesis/faces.h"
 #include "engine/synthesis/random.h"
-#include "engine/synthesis/rubble.h"
 #include "engine/synthesis/textures.h"
 
 #include <algorithm>
@@ -19,6 +18,27 @@ namespace {
 
 constexpr double kLightTexelsPerMeter = 400;  ///< at scale 1
 const cv::Vec3f kBoardPaper(232, 237, 239);
+
+/// Draws the prints and lays them, the last one on top; their centers are from `origin` on.
+void lay_prints(cv::Mat& texture,
+                const PaintedFace& face,
+                const std::vector<PrintRecipe>& prints,
+                const Eigen::Vector2d& origin,
+                std::uint64_t seed,
+                int threads) {
+  const double per_meter = kSheetTexelsPerMeter / face.scale;
+  for (std::size_t i = 0; i < prints.size(); ++i) {
+    const PrintRecipe& print = prints[i];
+    const cv::Size size(cvRound(print.size.x() * per_meter), cvRound(print.size.y() * per_meter));
+    lay_sheet(texture,
+              face,
+              {origin + print.center,
+               print.size,
+               turn_into(print.angle).topLeftCorner<2, 2>(),
+               draw_print(print.kind, size, Random(seed, 100 + i))},
+              threads);
+  }
+}
 
 PaintedFace face_of(const DeskRecipe& desk) { return {desk.size, desk.scale}; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/synthesis/recipe.h"
+#include "engine/synthesis/rubble.h"
 
 #include <array>
 #include <optional>
@@ -28,20 +29,6 @@ struct SceneWall {
   Eigen::Vector3d along;  ///< unit vector from there along the floor
   Eigen::Vector2d size;   ///< length, height [m]
   cv::Mat texture;        ///< CV_8UC3, light included
-};
-
-/// A rock: an ellipsoid with pieces cut off. In its own axes it is the unit sphere.
-struct SceneRock {
-  struct Cut {
-    Eigen::Vector3d normal;  ///< unit vector out of the rock
-    double distance;         ///< what lies farther along the normal is cut off
-  };
-  Eigen::Vector3d center;        ///< in the world [m]
-  Eigen::Matrix3d R_unit_world;  ///< world to the rock's axes, divided by its semi-axes
-  double reach = 0;              ///< longest semi-axis [m]
-  std::vector<Cut> cuts;         ///< in the rock's axes
-  cv::Vec3f tint = {1, 1, 1};    ///< of the stone
-  double grain = 1;              ///< part of the block of stone that it was cut from, 0 .. 1
 };
 
 /// What there is to see, painted once; textures are CV_8UC3 and much finer than a picture.

@@ -122,7 +122,7 @@ std::vector<Setting> window_rows() {
                  {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
                  {"averaging", "averaging", "with averaged rotations", 0xAA7711},
                  {"five-point", "five-point", "with five-point rotations", 0xCC6677},
-                 {"direct", "direct", "with direct rotations", 0xAA4499},
+                 {"direct", "direct", "with direct rotations", 0x3D8F5F},
                  {"truth", "truth", "with true rotations", 0x666666}},
        .why_not = [](const Recording& recording, const std::string& key) {
          return why_no_rotations(recording, choice<RotationSource>(key));
