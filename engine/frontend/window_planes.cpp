@@ -27,7 +27,7 @@ constexpr int kMostRounds = 8;
 constexpr double kGoodDraws = 25;
 /// A plane has so many times the tracks that chance would put there: half of those that miss its
 /// gate by up to twice the gate. Of a cloud of points the best hypothesis has two to three times.
-constexpr double kLeastOverChance = 4;
+constexpr double kLeastOverChance = 4.8;
 constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane: that there are any is known
 constexpr int kSpentTracks = 4;                 // any four tracks have a homography
 constexpr double kNearlyAll = 0.9;      // of the tracks near one plane: they are noisy, not far

@@ -80,8 +80,10 @@ Room simulate_room(const RoomOptions& options) {
       if (at < options.shares[k]) plane = k;
       at -= options.shares[k];
     }
-    const double rho = plane < 0 ? inverse(random) : -options.planes[plane].dot(ray);
-    if (rho < 0.1) continue;
+    const double rho = plane >= 0        ? -options.planes[plane].dot(ray)
+                       : options.surface ? options.surface(ray)
+                                         : inverse(random);
+    if (!(rho >= 0.1)) continue;
     const auto j = static_cast<Eigen::Index>(tracks.ids.size());
     for (int i = 0; i < options.frames; ++i) {
       const Vector2d px = (K * to_camera(base.cameras[i], ray / rho)).hnormalized();

@@ -6,6 +6,7 @@
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +27,8 @@ struct RoomOptions {
   std::vector<double> shares = {};
   double nearest = 1;
   double farthest = 3;
+  /// Where a ray (x, y, 1) meets what they lie on, as 1 / z; nothing: at random depths.
+  std::function<double(const Eigen::Vector3d&)> surface = nullptr;
   /// The window's planes are the true ones with all their tracks, not those that the front end
   /// finds.
   bool told_truly = false;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/uncertainty.h"
 
+#include "engine/initializers/certainty/bend.h"
 #include "engine/initializers/certainty/sandwich.h"
 #include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/common/window_checks.h"
@@ -117,14 +118,23 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   result.tracks = tracks_of(observations);
   if (!window.lens_moves_px.empty())
     result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
+  // A bias that is held is wrong and bends what is flat; it has its own share already.
+  const auto bent = [&](const Eigen::Matrix2d& flat, int plane) -> Eigen::Matrix2d {
+    if (holds_bias) return flat;
+    const auto bend = bend_of(observations, motion, plane, linearized->sigma_px);
+    if (bend && plane == 0) result.bend_sigma_deg = degrees(std::sqrt(bend->trace()));
+    return bend ? Eigen::Matrix2d(flat + *bend) : flat;
+  };
   const auto tangents = normal_tangents(motion.normal);
-  result.normal_covariance = tangents * covariance.topLeftCorner<2, 2>() * tangents.transpose();
+  result.normal_covariance =
+      tangents * bent(covariance.topLeftCorner<2, 2>(), 0) * tangents.transpose();
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
   for (std::size_t k = 0; k < motion.others.size(); ++k) {
     const int at = Layout::of_plane(static_cast<int>(k) + 1);
     const auto N = normal_tangents(motion.others[k].m.normalized());
-    result.others.push_back({N * covariance.block<2, 2>(at, at) * N.transpose(),
-                             std::sqrt(std::max(0.0, covariance(at + 2, at + 2)))});
+    const Eigen::Matrix2d of_normal = bent(covariance.block<2, 2>(at, at), static_cast<int>(k) + 1);
+    result.others.push_back(
+        {N * of_normal * N.transpose(), std::sqrt(std::max(0.0, covariance(at + 2, at + 2)))});
   }
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);

@@ -30,6 +30,9 @@ struct Uncertainty {
   RotationModel rotations = RotationModel::known;
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
   double normal_sigma_deg = 0;                                  ///< root of its trace
+  /// Its part that comes from a plane that is none: how far its normal varies over the tracks,
+  /// where that stands out of the noise.
+  std::optional<double> bend_sigma_deg;
   std::optional<double> lens_sigma_deg;  ///< the lens' part of it; nothing: taken as exact
   std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
   std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i

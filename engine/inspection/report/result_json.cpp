@@ -175,7 +175,8 @@ ordered_json uncertainty_json(const Initialization& result) {
                       {"sigma", u.distance_ratio_sigmas[i]}});
   }
   const auto square = [](double x) { return x * x; };
-  const double lens_square = square(u.lens_sigma_deg.value_or(0));
+  const double other_squares =
+      square(u.lens_sigma_deg.value_or(0)) + square(u.bend_sigma_deg.value_or(0));
   ordered_json json = {
       {"rotations", to_string(u.rotations)},
       {"sigma_px", u.sigma_px},
@@ -183,7 +184,8 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"lens", u.lens_sigma_deg ? "as its calibration says" : "taken as exact"},
       {"normal_sigma_deg", u.normal_sigma_deg},
       {"parts_deg",
-       {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - lens_square))},
+       {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - other_squares))},
+        {"bend", optional_json(u.bend_sigma_deg)},
         {"lens", optional_json(u.lens_sigma_deg)}}},
       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
       {"distance_ratios", ratios},
@@ -265,8 +267,7 @@ ordered_json to_json(const Inspection& inspection) {
                     {"inliers", window.inlier_count(0)}};
   json["settings"] = settings_json(inspection);
   json["unused_settings"] = unused_json(inspection);
-  if (!inspection.rotations_note.empty())
-    json["rotations_note"] = inspection.rotations_note;
+  if (!inspection.rotations_note.empty()) json["rotations_note"] = inspection.rotations_note;
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);

@@ -8,6 +8,9 @@
 #include "engine/initializers/plane/shared_unknowns.h"
 #include "tests/engine/simulated_room.h"
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace gpo::test {
@@ -146,6 +149,76 @@ TEST(SeveralPlanes, UncertaintyIsTrue) {
   EXPECT_LT(sum_normal / count, 2.8);
   EXPECT_GT(sum_other / others, 1.4);
   EXPECT_LT(sum_other / others, 3.0);
+}
+
+/// A sphere, or a cylinder across the view, whose nearest point is 1 away along `axis`.
+struct Curved {
+  double radius;
+  bool cylinder;
+  Vector3d axis;
+
+  Vector3d across(const Vector3d& x) const { return cylinder ? Vector3d(0, x.y(), x.z()) : x; }
+  Vector3d center() const { return (1 + radius) * axis; }
+  /// 1 / z of where a ray meets it first; 0 where it does not.
+  double inverse_depth(const Vector3d& ray) const {
+    const Vector3d d = across(ray), c = across(center());
+    const double b = d.dot(c), a = d.squaredNorm();
+    const double root = b * b - a * (c.squaredNorm() - radius * radius);
+    return root > 0 ? a / (b - std::sqrt(root)) : 0;
+  }
+  Vector3d normal_at(const Vector3d& point) const { return across(point - center()).normalized(); }
+};
+
+/// Root mean square angle between the surface's normals at the points and their mean [deg].
+double variation_deg(const Curved& curved, const std::vector<MapPoint>& points) {
+  std::vector<Vector3d> normals;
+  Vector3d sum = Vector3d::Zero();
+  for (const MapPoint& point : points) {
+    const Vector3d ray = point.position / point.position.z();
+    normals.push_back(curved.normal_at(ray / curved.inverse_depth(ray)));
+    sum += normals.back();
+  }
+  double squares = 0;
+  for (const Vector3d& n : normals) squares += std::pow(angle_deg(n, sum.normalized()), 2);
+  return std::sqrt(squares / static_cast<double>(normals.size()));
+}
+
+// Radii of half to twice the distance. A piece of them keeps to homographies within the gate; how
+// far its normal varies is then part of what is said of it.
+TEST(CurvedSurfaces, AreNoSurePlanes) {
+  const Method& method = find_method("gpo_joint");
+  int solved = 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    const double tilt = 0.07 * static_cast<double>(seed % 10);
+    const Curved curved{0.5 * std::pow(4, static_cast<double>(seed) / 500),
+                        seed % 2 == 0,
+                        Vector3d(0, std::sin(tilt), std::cos(tilt))};
+    const Room room = simulate_room(
+        {.surface = [&](const Vector3d& ray) { return curved.inverse_depth(ray); }, .seed = seed});
+    if (room.window.planes.empty()) continue;
+    const Initialization result =
+        assessed(method, room.window, method.initialize(room.window, {}, {}));
+    if (!result.ok) continue;
+    ++solved;
+    EXPECT_NE(result.verdict->readiness, Readiness::ready) << seed;
+    EXPECT_GT(result.uncertainty->normal_sigma_deg, variation_deg(curved, result.points) / 3)
+        << "radius " << curved.radius << (curved.cylinder ? ", cylinder" : ", sphere");
+  }
+  EXPECT_GT(solved, 100);
+}
+
+TEST(CurvedSurfaces, AFlatOneDoesNotBend) {
+  const Method& method = find_method("gpo_joint");
+  int bends = 0;
+  constexpr int kSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.8}, .seed = seed});
+    const Initialization result =
+        assessed(method, room.window, method.initialize(room.window, {}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    bends += result.uncertainty->bend_sigma_deg ? 1 : 0;
+  }
+  EXPECT_LE(bends, kSeeds / 50);
 }
 
 }  // namespace
