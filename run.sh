@@ -7,14 +7,15 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
 build_log="$here/build/release.log"
 
-# Asking CMake costs more than the start itself: a program is current where no source is newer. What
+# Asking CMake costs more than the start itself: a program is current where no source is
+# newer (pages are none). What
 # ./test.sh built is as good as what is built here.
 current_program() {
   local preset program
   for preset in release ci; do
     program="$here/build/$preset/app/gpo-inspector"
     [ -x "$program" ] || continue
-    [ -z "$(cd "$here" && find CMakeLists.txt CMakePresets.json app engine ui assets -newer "$program" -type f -print -quit)" ] || continue
+    [ -z "$(cd "$here" && find CMakeLists.txt CMakePresets.json app engine ui assets -newer "$program" -type f ! -name '*.md' -print -quit)" ] || continue
     echo "$program"
     return
   done
