@@ -7,9 +7,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
 build_log="$here/build/release.log"
 
-# Asking CMake costs more than the start itself: a program is current where no source is
-# newer (pages are none). What
-# ./test.sh built is as good as what is built here.
+# Asking CMake costs more than the start itself: a program is current where no source is newer (pages
+# are none). What ./test.sh built is as good as what is built here.
 current_program() {
   local preset program
   for preset in release ci; do
