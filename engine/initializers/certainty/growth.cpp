@@ -152,7 +152,12 @@ double over_independent_noise(const Window& window, const Growing& growing, cons
   motion.normal = growing.normal;
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
   const auto u = uncertainty_of(window, plane_observations(window), motion, window.rotations);
-  return u ? std::max(1.0, u->normal_sigma_deg / *whole.normal_sigma_deg) : 1;
+  if (!u) return 1;
+  // Not what bends: with a bias that is held here everything does.
+  const double bend_deg = u->bend_sigma_deg.value_or(0);
+  const double flat_deg =
+      std::sqrt(std::max(0.0, u->normal_sigma_deg * u->normal_sigma_deg - bend_deg * bend_deg));
+  return std::max(1.0, flat_deg / *whole.normal_sigma_deg);
 }
 
 }  // namespace
