@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
