@@ -3,6 +3,7 @@
 #include "engine/frontend/rotations.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/pose.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
