@@ -68,14 +68,17 @@ Verdict judged(const WindowEvidence& evidence,
   } else if (largest_translation < kDegenerateTranslation) {
     verdict.reason = fmt::format("the camera moved by only {:.1f} % of its distance from the plane",
                                  100 * largest_translation);
-  } else if (*normal_sigma_deg > kWeakSigma_deg || largest_translation < kWeakTranslation) {
+  } else if (largest_translation < kWeakTranslation) {
     verdict.readiness = Readiness::weak;
     verdict.reason = fmt::format(
         "little parallax: the window tells the normal to {:.2f} deg, the camera moved by {:.1f} % "
-        "of "
-        "its distance from the plane",
+        "of its distance from the plane",
         *normal_sigma_deg,
         100 * largest_translation);
+  } else if (*normal_sigma_deg > kWeakSigma_deg) {
+    verdict.readiness = Readiness::weak;
+    verdict.reason =
+        fmt::format("the window tells the plane's normal to {:.2f} deg only", *normal_sigma_deg);
   } else {
     verdict.readiness = Readiness::ready;
     verdict.reason = fmt::format("the window tells the normal to {:.2f} deg", *normal_sigma_deg);

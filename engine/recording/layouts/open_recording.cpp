@@ -131,7 +131,7 @@ void add_notes(Recording& recording) {
     notes.emplace_back("no pictures: tracks are drawn on a plain background");
   if (!recording.tracks.empty() && recording.tracks.front().frame > 0)
     notes.push_back(fmt::format("tracks begin in frame {}", recording.tracks.front().frame));
-  if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from rotation averaging");
+  if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from the pictures alone");
   const bool from_board = !recording.truth && recording.board && recording.pictures;
   if (from_board) {
     notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",

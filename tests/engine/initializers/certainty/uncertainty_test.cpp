@@ -48,6 +48,20 @@ struct ChiSquare {
 
 constexpr double kQuantile1 = 3.841, kQuantile2 = 5.991, kQuantile3 = 7.815;
 
+/// Those of the normal and of the last camera's center.
+void add_errors(const Simulation& truth,
+                const Initialization& result,
+                ChiSquare& normal,
+                ChiSquare& center) {
+  const Uncertainty& u = *result.uncertainty;
+  normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
+             kQuantile2);
+  const std::size_t last = truth.cameras.size() - 1;
+  center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
+                               u.center_covariances[last]),
+             kQuantile3);
+}
+
 /// A window whose bias is drawn from its prior, so that the prior tells the truth.
 Simulation window_of(Motion motion, RotationModel rotations, std::uint64_t seed) {
   SimulationOptions options{.motion = motion, .seed = seed};
@@ -109,14 +123,8 @@ TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
     const Initialization result =
         assessed(method, truth.window, method.initialize(truth.window, {}, {}));
     ASSERT_TRUE(result.ok) << result.reason;
-    const Uncertainty& u = *result.uncertainty;
-    EXPECT_EQ(u.rotations, RotationModel::known);
-    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
-               kQuantile2);
-    const std::size_t last = truth.cameras.size() - 1;
-    center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
-                                 u.center_covariances[last]),
-               kQuantile3);
+    EXPECT_EQ(result.uncertainty->rotations, RotationModel::known);
+    add_errors(truth, result, normal, center);
   }
   normal.expect();
   center.expect();
@@ -193,13 +201,7 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
     window.lens_moves_px = moves;
     const Initialization result = assessed(method, window, method.initialize(window, kSquared, {}));
     ASSERT_TRUE(result.ok) << result.reason;
-    const Uncertainty& u = *result.uncertainty;
-    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
-               kQuantile2);
-    const std::size_t last = truth.cameras.size() - 1;
-    center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
-                                 u.center_covariances[last]),
-               kQuantile3);
+    add_errors(truth, result, normal, center);
   }
   normal.expect();
   center.expect();

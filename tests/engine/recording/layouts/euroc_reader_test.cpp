@@ -141,7 +141,7 @@ TEST_F(EurocReader, SaysOnceWhatIsMissing) {
   EXPECT_THAT(open()->notes, ElementsAre("no ground truth: no metrics"));
   std::filesystem::remove_all(folder.path() / "mav0/imu0");
   EXPECT_THAT(open()->notes,
-              ElementsAre("no gyroscope: rotations from rotation averaging",
+              ElementsAre("no gyroscope: rotations from the pictures alone",
                           "no ground truth: no metrics"));
 }
 

@@ -127,7 +127,7 @@ TEST_F(PicturesReader, SortsImagesByTheirNumbers) {
   EXPECT_THAT(recording->notes,
               ElementsAre("no frame_timestamps.txt and no rate_hz in camera.yaml: 30 frames a "
                           "second are assumed",
-                          "no gyroscope: rotations from rotation averaging",
+                          "no gyroscope: rotations from the pictures alone",
                           "no ground truth: no metrics"));
 }
 
