@@ -30,7 +30,8 @@ constexpr double kSignificantSigmas = 4;
 /// Rotations of their own for every frame must lower the noise so much, too: what is wrong with a
 /// track on a real surface is the same in all frames, and such unknowns explain some of it. In
 /// EuRoC's room, where the bias alone is right, they lower its variance by up to a sixth; bad
-/// gyroscopes of phones leave twice as much and more.
+/// gyroscopes of phones leave twice as much and more. The wrong one of two readings leaves more,
+/// too.
 constexpr double kWorthFreeRotations = 1.25;
 /// The pace that is tried first [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
@@ -174,6 +175,19 @@ Fit fitted(const Task& task, const PlaneMotion& start, RotationModel rotations) 
   return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
 }
 
+/// Rotations of their own take up what a gyroscope tells of a plane's two readings; then the
+/// pictures must.
+Fit better_reading(const Task& task, Fit free) {
+  auto other = other_reading(task.window, free.solution.motion);
+  if (!other) return free;
+  if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
+  Fit twin = fitted(task, *other, RotationModel::free);
+  const bool better = converged(twin) && variance(free) > kWorthFreeRotations * variance(twin);
+  Fit& chosen = better ? twin : free;
+  add_effort((better ? free : twin).solution.solver, chosen.solution.solver);
+  return std::move(chosen);
+}
+
 /// A fit, and the gyroscope's bias that fits best where it is not the fit's own.
 struct Best {
   Fit fit;
@@ -189,9 +203,12 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
   const int more = free.solution.solver.unknowns - fit.solution.solver.unknowns;
   const bool better =
       is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free);
-  Fit& chosen = better ? free : fit;
-  add_effort((better ? fit : free).solution.solver, chosen.solution.solver);
-  return {std::move(chosen), bias};
+  if (!better) {
+    add_effort(free.solution.solver, fit.solution.solver);
+    return {std::move(fit), bias};
+  }
+  add_effort(fit.solution.solver, free.solution.solver);
+  return {better_reading(task, std::move(free)), bias};
 }
 
 /// The window with a gyroscope's rotations as the sensor's data have them, where its pictures have

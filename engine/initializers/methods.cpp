@@ -41,14 +41,22 @@ void add_planes(const Window& window, Initialization& result) {
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
-/// Weak for want of a plane rather than of parallax.
-void say_where_it_bends(const std::optional<Uncertainty>& judged_by, Verdict& verdict) {
+/// Weak for want of a plane, or of a camera as it is taken to be, rather than of parallax.
+void say_what_makes_it_weak(const std::optional<Uncertainty>& judged_by, Verdict& verdict) {
   constexpr double kMostOfIt = 0.7;  // a half of the variance
-  if (verdict.readiness != Readiness::weak || !judged_by || !judged_by->bend_sigma_deg) return;
-  if (*judged_by->bend_sigma_deg < kMostOfIt * judged_by->normal_sigma_deg) return;
-  verdict.reason = fmt::format(
-      "not flat, or bent by the lens: the normal varies by {:.2f} deg over the plane's tracks",
-      *judged_by->bend_sigma_deg);
+  if (verdict.readiness != Readiness::weak || !judged_by) return;
+  const auto is_most = [&](const std::optional<double>& part_deg) {
+    return part_deg && *part_deg >= kMostOfIt * judged_by->normal_sigma_deg;
+  };
+  if (is_most(judged_by->bend_sigma_deg))
+    verdict.reason = fmt::format(
+        "not flat, or bent by the lens: the normal varies by {:.2f} deg over the plane's tracks",
+        *judged_by->bend_sigma_deg);
+  else if (is_most(judged_by->neighbors_sigma_deg))
+    verdict.reason = fmt::format(
+        "parts of the picture disagree (lens, rolling shutter, relief): the normal moves by {:.2f} "
+        "deg with them",
+        *judged_by->neighbors_sigma_deg);
 }
 
 }  // namespace
@@ -84,7 +92,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   result.verdict = judged(evidence_of(window),
                           judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
                           travel / result.plane.distance);
-  say_where_it_bends(judged_by, *result.verdict);
+  say_what_makes_it_weak(judged_by, *result.verdict);
   result.verdict->scene = scene_of(window);
   result.verdict->planes = plane_evidence(window);
   result.verdict->criterion =

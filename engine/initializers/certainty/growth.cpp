@@ -153,10 +153,11 @@ double over_independent_noise(const Window& window, const Growing& growing, cons
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
   const auto u = uncertainty_of(window, plane_observations(window), motion, window.rotations);
   if (!u) return 1;
-  // Not what bends: with a bias that is held here everything does.
-  const double bend_deg = u->bend_sigma_deg.value_or(0);
-  const double flat_deg =
-      std::sqrt(std::max(0.0, u->normal_sigma_deg * u->normal_sigma_deg - bend_deg * bend_deg));
+  // Not what bends, nor what neighbors share: with a bias that is held here everything does.
+  double flat_deg2 = u->normal_sigma_deg * u->normal_sigma_deg;
+  for (const auto& part_deg : {u->bend_sigma_deg, u->neighbors_sigma_deg})
+    flat_deg2 -= part_deg.value_or(0) * part_deg.value_or(0);
+  const double flat_deg = std::sqrt(std::max(0.0, flat_deg2));
   return std::max(1.0, flat_deg / *whole.normal_sigma_deg);
 }
 

@@ -37,14 +37,6 @@ std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
   return curved;
 }
 
-FrameState state_of(const PlaneObservations& observations,
-                    const PlaneMotion& motion,
-                    int frame,
-                    int plane) {
-  return plane == 0 ? frame_state(observations, motion, frame)
-                    : frame_state(observations, motion, frame, motion.others[plane - 1].m);
-}
-
 int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
 
 /// J^T r of an observation over (u, phi, t), of its own error or another one, weighted as it is.
@@ -148,6 +140,22 @@ const std::vector<FrameObservations>& of_plane(const PlaneObservations& observat
   return plane == 0 ? observations.frames : observations.others[plane - 1];
 }
 
+FrameState state_of(const PlaneObservations& observations,
+                    const PlaneMotion& motion,
+                    int frame,
+                    int plane) {
+  return plane == 0 ? frame_state(observations, motion, frame)
+                    : frame_state(observations, motion, frame, motion.others[plane - 1].m);
+}
+
+FrameNormals curved_normals(const FrameObservations& f, const FrameState& state) {
+  FrameNormals normals =
+      f.weight.empty() ? frame_normals(f, state, Rotating::yes) : frame_normals_by_matrix(f, state);
+  if (const auto of_loss = curvature_weights(f, state))
+    normals.JtJ = frame_normals_by_matrix(*of_loss, state).JtJ;
+  return normals;
+}
+
 std::optional<Linearization> linearize(const PlaneObservations& observations,
                                        const PlaneMotion& motion,
                                        RotationModel model) {
@@ -161,15 +169,8 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
     for (int i = 1; i < frames; ++i) {
       const FrameObservations& f = of_plane(observations, k)[i];
       const FrameState state = state_of(observations, motion, i, k);
-      FrameNormals& normals = all.planes[k][i];
-      normals = f.weight.empty() ? frame_normals(f, state, Rotating::yes)
-                                 : frame_normals_by_matrix(f, state);
-      if (const auto of_loss = curvature_weights(f, state)) {
-        huber = true;
-        const double cost_of_weights = normals.cost;
-        normals = frame_normals_by_matrix(*of_loss, state);
-        normals.cost = cost_of_weights;
-      }
+      FrameNormals& normals = all.planes[k][i] = curved_normals(f, state);
+      huber = huber || curvature_weights(f, state);
       if (!normals.in_front) return std::nullopt;
       cost += normals.cost;
     }

@@ -28,6 +28,14 @@ int own_size(RotationModel model);
 /// The observations of the leading plane (0) or a further one.
 const std::vector<FrameObservations>& of_plane(const PlaneObservations& observations, int plane);
 
+/// Where a frame's errors to one of the planes are linearized.
+FrameState state_of(const PlaneObservations& observations,
+                    const PlaneMotion& motion,
+                    int frame,
+                    int plane);
+/// A frame's normal equations; under Huber's loss JtJ is what the loss itself bends by.
+FrameNormals curved_normals(const FrameObservations& observations, const FrameState& state);
+
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< the leading one first; one a frame
   double sigma_px = 0;                            ///< of a pixel's coordinate, from the residuals

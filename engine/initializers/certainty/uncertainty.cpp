@@ -3,6 +3,7 @@
 #include "engine/initializers/certainty/uncertainty.h"
 
 #include "engine/initializers/certainty/bend.h"
+#include "engine/initializers/certainty/neighbors.h"
 #include "engine/initializers/certainty/sandwich.h"
 #include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/common/window_checks.h"
@@ -107,6 +108,14 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                             bread,
                             *inverse,
                             residuals / std::max(1.0, residuals - unknowns));
+  std::vector<std::optional<Eigen::Matrix2d>> neighbors(observations.others.size() + 1);
+  if (!holds_bias)
+    neighbors =
+        neighbors_spread(window, observations, motion, model, linearized->sigma_px, spread.shared);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const int at = Layout::of_plane(static_cast<int>(k));
+    if (neighbors[k]) *neighbors[k] -= spread.shared.block<2, 2>(at, at);
+  }
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   add_lens(window, observations, motion, bread, *inverse, spread);
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
@@ -121,9 +130,12 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   // A bias that is held is wrong and bends what is flat; it has its own share already.
   const auto bent = [&](const Eigen::Matrix2d& flat, int plane) -> Eigen::Matrix2d {
     if (holds_bias) return flat;
+    if (neighbors[plane] && plane == 0)
+      result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[plane]->trace()));
+    const Eigen::Matrix2d all = flat + neighbors[plane].value_or(Eigen::Matrix2d::Zero());
     const auto bend = bend_of(observations, motion, plane, linearized->sigma_px);
     if (bend && plane == 0) result.bend_sigma_deg = degrees(std::sqrt(bend->trace()));
-    return bend ? Eigen::Matrix2d(flat + *bend) : flat;
+    return bend ? Eigen::Matrix2d(all + *bend) : all;
   };
   const auto tangents = normal_tangents(motion.normal);
   result.normal_covariance =

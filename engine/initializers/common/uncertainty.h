@@ -33,6 +33,8 @@ struct Uncertainty {
   /// Its part that comes from a plane that is none: how far its normal varies over the tracks,
   /// where that stands out of the noise.
   std::optional<double> bend_sigma_deg;
+  /// The part of what neighboring tracks have wrong together, where that stands out.
+  std::optional<double> neighbors_sigma_deg;
   std::optional<double> lens_sigma_deg;  ///< the lens' part of it; nothing: taken as exact
   std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
   std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i

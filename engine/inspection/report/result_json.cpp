@@ -175,8 +175,9 @@ ordered_json uncertainty_json(const Initialization& result) {
                       {"sigma", u.distance_ratio_sigmas[i]}});
   }
   const auto square = [](double x) { return x * x; };
-  const double other_squares =
-      square(u.lens_sigma_deg.value_or(0)) + square(u.bend_sigma_deg.value_or(0));
+  const double other_squares = square(u.lens_sigma_deg.value_or(0)) +
+                               square(u.neighbors_sigma_deg.value_or(0)) +
+                               square(u.bend_sigma_deg.value_or(0));
   ordered_json json = {
       {"rotations", to_string(u.rotations)},
       {"sigma_px", u.sigma_px},
@@ -185,6 +186,7 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"normal_sigma_deg", u.normal_sigma_deg},
       {"parts_deg",
        {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - other_squares))},
+        {"neighbors", optional_json(u.neighbors_sigma_deg)},
         {"bend", optional_json(u.bend_sigma_deg)},
         {"lens", optional_json(u.lens_sigma_deg)}}},
       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},

@@ -207,6 +207,67 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
   center.expect();
 }
 
+/// Moves what every frame sees by a smooth field over the picture, of up to about `most_px`, as a
+/// lens does that is not quite its model; what the reference frame sees is moved too.
+void bend_pictures(Window& window, double most_px, std::uint64_t seed) {
+  std::mt19937_64 random(seed + 1234);
+  std::normal_distribution<double> gauss(0, most_px / 4);
+  const Eigen::Matrix<double, 2, 6> field =
+      Eigen::Matrix<double, 2, 6>::NullaryExpr([&] { return gauss(random); });
+  for (Eigen::Matrix2Xd& points : window.points_px) {
+    for (int j = 0; j < points.cols(); ++j) {
+      const double x = (points(0, j) - 320) / 240;
+      const double y = (points(1, j) - 240) / 240;
+      Eigen::Matrix<double, 6, 1> terms;
+      terms << x * x, x * y, y * y, x * x * x, y * y * y, x * y * y;
+      points.col(j) += field * terms;
+    }
+  }
+}
+
+struct Honesty {
+  int windows = 0;
+  int told = 0;         ///< in which neighbors' part was the larger one
+  int beyond_four = 0;  ///< errors above four standard deviations
+  double squares = 0;
+};
+
+Honesty honesty_of_windows(double bent_by_px) {
+  const Method& method = find_method("gpo_joint");
+  Honesty all;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    Simulation truth = simulate({.motion = motion, .noise_px = 0.1, .seed = seed});
+    bend_pictures(truth.window, bent_by_px, seed);
+    truth = with_fitted_homographies(truth);
+    truth.window.rotations = RotationModel::free;
+    const Initialization result = method.initialize(truth.window, {}, {});
+    if (!result.ok) continue;
+    const Uncertainty& u = *result.uncertainty;
+    const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;
+    ++all.windows;
+    const double half = u.normal_sigma_deg * std::sqrt(0.5);
+    all.told += u.neighbors_sigma_deg.value_or(0) > half ? 1 : 0;
+    all.beyond_four += sigmas > 4 ? 1 : 0;
+    all.squares += sigmas * sigmas;
+  }
+  return all;
+}
+
+TEST(Uncertainty, KnowsWhatNeighborsHaveWrongTogether) {
+  const Honesty bent = honesty_of_windows(1);
+  ASSERT_GT(bent.windows, 100);
+  EXPECT_GT(bent.told, bent.windows / 2);
+  EXPECT_LT(bent.beyond_four, bent.windows / 10);
+}
+
+TEST(Uncertainty, SeldomFindsNeighborsAgreeingByChance) {
+  const Honesty noise = honesty_of_windows(0);
+  ASSERT_GT(noise.windows, 110);
+  EXPECT_LT(noise.told, 0.12 * noise.windows);
+  EXPECT_NEAR(noise.squares / noise.windows, 1, 0.3);
+}
+
 TEST(Uncertainty, OfKnownRotationsIsTheBound) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
