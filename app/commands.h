@@ -101,7 +101,9 @@ struct CalibrateArguments {
   std::optional<std::string> dictionary;  ///< OpenCV's name
   std::string model = "radial-tangential";
   int coefficients = 4;
-  std::filesystem::path output;  ///< camera.yaml
+  bool gyroscope = false;  ///< calibrates the gyroscope against the camera instead
+  std::optional<std::filesystem::path> figure;  ///< .png of the gyroscope's rates
+  std::filesystem::path output;                 ///< camera.yaml
 };
 
 /// The recording that comes with the program: beside the sources it was built from, else beside the
@@ -109,6 +111,7 @@ struct CalibrateArguments {
 std::filesystem::path example_recording();
 
 int calibrate_command(const CalibrateArguments& arguments);
+int calibrate_gyroscope_command(const CalibrateArguments& arguments);
 int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const InfoArguments& arguments);

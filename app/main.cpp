@@ -195,6 +195,12 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
                    "Of the radial-tangential model: 4 (k1 k2 p1 p2), 5 or 8")
       ->capture_default_str()
       ->check(CLI::IsMember({4, 5, 8}));
+  CLI::Option* gyroscope = command->add_flag(
+      "--gyroscope",
+      arguments.gyroscope,
+      "Instead of the lens: rotation, clock and bias of the gyroscope, from rotations by pictures");
+  command->add_option("--figure", arguments.figure, "Picture of the rates, before and after (.png)")
+      ->needs(gyroscope);
   command->add_option("--output", arguments.output, "camera.yaml to write")->required();
 }
 
@@ -244,7 +250,9 @@ int dispatch(const CLI::App& app, const AllArguments& arguments) {
     return convert_command(arguments.convert_recording, arguments.convert_output);
   if (app.got_subcommand("run")) return run_command(arguments.run);
   if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
-  if (app.got_subcommand("calibrate")) return calibrate_command(arguments.calibrate);
+  if (app.got_subcommand("calibrate"))
+    return arguments.calibrate.gyroscope ? calibrate_gyroscope_command(arguments.calibrate)
+                                         : calibrate_command(arguments.calibrate);
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);

@@ -1,0 +1,123 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/gyroscope_alignment.h"
+
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kMostOffset_s = 1;
+constexpr double kOffsetStep_s = 0.005;
+constexpr double kKnee = 2;  // of Huber's loss, in medians
+
+/// Wahba's problem by singular values (Markley 1988), reweighted.
+Alignment align(const Pairs& pairs) {
+  const std::size_t n = pairs.pictures.size();
+  Alignment result;
+  if (n < kLeastIntervals) return result;
+  std::vector<double> weights(n, 1);
+  for (int round = 0; round < 6; ++round) {
+    Vector3d mean_g = Vector3d::Zero(), mean_p = Vector3d::Zero();
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      mean_g += weights[k] * pairs.gyroscope[k];
+      mean_p += weights[k] * pairs.pictures[k];
+      sum += weights[k];
+    }
+    mean_g /= sum;
+    mean_p /= sum;
+    Matrix3d B = Matrix3d::Zero();
+    for (std::size_t k = 0; k < n; ++k)
+      B += weights[k] * (pairs.gyroscope[k] - mean_g) * (pairs.pictures[k] - mean_p).transpose();
+    const Eigen::JacobiSVD<Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    result.R = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    result.bias = mean_g - result.R * mean_p;
+    result.errors_rad_s.resize(n);
+    for (std::size_t k = 0; k < n; ++k)
+      result.errors_rad_s[k] =
+          (pairs.gyroscope[k] - result.R * pairs.pictures[k] - result.bias).norm();
+    const double knee = std::max(1e-6, kKnee * median(result.errors_rad_s));
+    result.cost = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double e = result.errors_rad_s[k];
+      weights[k] = e < knee ? 1 : knee / e;
+      result.cost += (e < knee ? 0.5 * e * e : knee * (e - 0.5 * knee)) / static_cast<double>(n);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::int64_t to_ns(double seconds) {
+  return static_cast<std::int64_t>(std::llround(1e9 * seconds));
+}
+
+std::vector<Interval> intervals_of(const std::vector<PictureRotations>& windows) {
+  std::vector<Interval> all;
+  for (const PictureRotations& window : windows) {
+    for (std::size_t i = 1; i < window.R_wc.size(); ++i) {
+      const std::int64_t from_ns = window.timestamps_ns[i - 1];
+      const std::int64_t to_ns = window.timestamps_ns[i];
+      const Vector3d turned = so3_log(window.R_wc[i - 1].transpose() * window.R_wc[i]);
+      all.push_back({from_ns, to_ns, turned / (1e-9 * static_cast<double>(to_ns - from_ns))});
+    }
+  }
+  return all;
+}
+
+Pairs pairs_at(const RateIntegral& integral,
+               const std::vector<Interval>& intervals,
+               double offset_s) {
+  Pairs pairs;
+  const std::int64_t offset_ns = to_ns(offset_s);
+  for (const Interval& one : intervals) {
+    const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
+    if (!rate) continue;
+    pairs.gyroscope.push_back(*rate);
+    pairs.pictures.push_back(one.rate_rad_s);
+  }
+  return pairs;
+}
+
+double correlation_of(const Pairs& pairs) {
+  std::vector<double> a, b;
+  for (std::size_t k = 0; k < pairs.pictures.size(); ++k) {
+    a.push_back(pairs.gyroscope[k].norm());
+    b.push_back(pairs.pictures[k].norm());
+  }
+  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
+  const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
+  const Eigen::ArrayXd dx = x - x.mean(), dy = y - y.mean();
+  return (dx * dy).sum() / std::sqrt(std::max(1e-300, dx.square().sum() * dy.square().sum()));
+}
+
+std::optional<GyroscopeStart> best_start(const RateIntegral& integral,
+                                         const std::vector<Interval>& intervals,
+                                         double around_s) {
+  std::optional<GyroscopeStart> best;
+  const int steps = static_cast<int>(kMostOffset_s / kOffsetStep_s);
+  for (int k = -steps; k <= steps; ++k) {
+    const double offset_s = around_s + k * kOffsetStep_s;
+    const Pairs pairs = pairs_at(integral, intervals, offset_s);
+    if (2 * pairs.pictures.size() < intervals.size()) continue;
+    const Alignment alignment = align(pairs);
+    if (!best || alignment.cost < best->alignment.cost) best = GyroscopeStart{offset_s, alignment};
+  }
+  if (best && !std::isfinite(best->alignment.cost)) return std::nullopt;
+  return best;
+}
+
+}  // namespace gpo

@@ -1,0 +1,154 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/gyroscope_fit.h"
+
+#include "engine/calibration/gyroscope_report.h"
+#include "engine/geometry/pose.h"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+struct Truth {
+  Matrix3d R_gyro_camera = Matrix3d::Identity();
+  double offset_s = 0;
+  Vector3d bias = Vector3d::Zero();
+  double drift = 0;
+};
+
+struct Recorded {
+  std::vector<PictureRotations> windows;
+  Gyroscope gyroscope;
+};
+
+/// Rates of a hand-held camera, in its own axes.
+Vector3d rate_at(double t_s) {
+  return {0.5 * std::sin(5.1 * t_s) + 0.2 * std::cos(13 * t_s),
+          0.6 * std::cos(3.7 * t_s + 1) + 0.1 * std::sin(17 * t_s),
+          0.4 * std::sin(4.3 * t_s + 2)};
+}
+
+constexpr std::int64_t kBegin_ns = 1'000'000'000'000;
+
+std::int64_t ns(double seconds) { return kBegin_ns + std::llround(1e9 * seconds); }
+
+/// Windows of ten frames at 30 Hz, each frame's rotation with `noise_rad` on each axis; a gyroscope
+/// of 200 Hz with 0.002 rad/s.
+Recorded record(const Truth& truth, double seconds, double noise_rad, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss;
+  const auto noise = [&](double sigma) -> Vector3d {
+    return sigma * Vector3d(gauss(random), gauss(random), gauss(random));
+  };
+  Recorded recorded;
+  for (double from_s = 0; from_s + 0.3 < seconds; from_s += std::max(0.3, seconds / 80)) {
+    PictureRotations window;
+    Matrix3d R = Matrix3d::Identity();
+    for (int i = 0; i < 10; ++i) {
+      const double at_s = from_s + i / 30.0;
+      window.timestamps_ns.push_back(ns(at_s));
+      window.R_wc.emplace_back(i == 0 ? R : Matrix3d(R * so3_exp(noise(noise_rad))));
+      for (int k = 0; k < 100; ++k) R = R * so3_exp(rate_at(at_s + (k + 0.5) / 3000) / 3000);
+    }
+    recorded.windows.push_back(window);
+  }
+  for (double at_s = -2; at_s < seconds + 2; at_s += 0.005) {
+    const double camera_s = at_s - truth.offset_s - truth.drift * (at_s - seconds / 2);
+    recorded.gyroscope.timestamps_ns.push_back(ns(at_s));
+    recorded.gyroscope.rates_rad_s.emplace_back(truth.R_gyro_camera * rate_at(camera_s) +
+                                                truth.bias + noise(0.002));
+  }
+  return recorded;
+}
+
+Matrix3d any_rotation(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss;
+  const double w = gauss(random), x = gauss(random), y = gauss(random), z = gauss(random);
+  return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+}
+
+TEST(GyroscopeFit, FindsRotationClockAndBias) {
+  double squares = 0;
+  int numbers = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Truth truth{any_rotation(seed),
+                      0.02 * static_cast<double>(seed) - 0.4,
+                      0.03 * any_rotation(seed + 99).col(0)};
+    const Recorded recorded = record(truth, 5, 0.002, seed);
+    const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
+    ASSERT_TRUE(fit.ok) << fit.reason;
+    EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, truth.R_gyro_camera), 1) << seed;
+    EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.002) << seed;
+    EXPECT_LT((fit.bias_rad_s - truth.bias).norm(), 0.01) << seed;
+    const Vector3d turned =
+        degrees(1) * so3_log(fit.R_gyro_camera.transpose() * truth.R_gyro_camera);
+    squares += (turned.array() / fit.rotation_sigma_deg.array()).square().sum();
+    squares +=
+        ((fit.bias_rad_s - truth.bias).array() / fit.bias_sigma_rad_s.array()).square().sum();
+    squares += std::pow((fit.time_offset_s - truth.offset_s) / fit.time_offset_sigma_s, 2);
+    numbers += 7;
+  }
+  // Standard deviations that are true: the mean of their squares is one, of few clusters a bit
+  // less.
+  EXPECT_GT(squares / numbers, 0.5);
+  EXPECT_LT(squares / numbers, 1.5);
+}
+
+TEST(GyroscopeFit, SurvivesWindowsThatAreWrong) {
+  const Truth truth{any_rotation(3), 0.04, {0.01, -0.02, 0.005}};
+  Recorded recorded = record(truth, 6, 0.001, 3);
+  for (std::size_t w = 0; w < recorded.windows.size(); w += 5)
+    for (std::size_t i = 1; i < recorded.windows[w].R_wc.size(); ++i)
+      recorded.windows[w].R_wc[i] *= so3_exp(0.02 * static_cast<double>(i) * Vector3d(1, -1, 0.5));
+  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
+  ASSERT_TRUE(fit.ok) << fit.reason;
+  EXPECT_EQ(fit.outliers, 4);
+  EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, truth.R_gyro_camera), 0.3);
+  EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.001);
+}
+
+TEST(GyroscopeFit, FindsADriftOfTheClocksInALongRecording) {
+  const Truth truth{any_rotation(4), 0.1, {0.01, 0, 0}, 2e-4};
+  const Recorded recorded = record(truth, 120, 0.001, 4);
+  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
+  ASSERT_TRUE(fit.ok) << fit.reason;
+  ASSERT_TRUE(fit.drift);
+  EXPECT_NEAR(*fit.drift, truth.drift, std::max(2e-5, 4 * fit.drift_sigma));
+}
+
+TEST(GyroscopeFit, TellsMirroredAxes) {
+  Recorded recorded = record({}, 5, 0.001, 5);
+  for (Vector3d& rate : recorded.gyroscope.rates_rad_s) rate.x() = -rate.x();
+  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
+  ASSERT_FALSE(fit.warnings.empty());
+  EXPECT_THAT(fit.warnings[0], HasSubstr("mirrored"));
+}
+
+TEST(GyroscopeFit, RefusesWhatCannotTell) {
+  Recorded still = record({}, 5, 0.001, 6);
+  for (Vector3d& rate : still.gyroscope.rates_rad_s) rate *= 0;
+  for (PictureRotations& window : still.windows)
+    for (Matrix3d& R : window.R_wc) R.setIdentity();
+  EXPECT_FALSE(fit_gyroscope(still.windows, still.gyroscope).ok);
+
+  const Recorded recorded = record({}, 5, 0.001, 7);
+  EXPECT_THAT(fit_gyroscope({recorded.windows[0]}, recorded.gyroscope).reason,
+              HasSubstr("the pictures tell 9 rotations, at least 12 are needed"));
+  Gyroscope elsewhere = recorded.gyroscope;
+  for (auto& time : elsewhere.timestamps_ns) time += 1'000'000'000'000;
+  EXPECT_THAT(fit_gyroscope(recorded.windows, elsewhere).reason, HasSubstr("does not cover"));
+}
+
+}  // namespace
+}  // namespace gpo::test
