@@ -46,10 +46,11 @@ int calibrate_gyroscope_command(const CalibrateArguments& arguments) {
   opened.recording = resolve_recordings({arguments.recording}).front();
   const auto recording = open(opened);
   if (!recording->gyroscope) throw InputError(recording->name + " has no gyroscope");
+  constexpr int kWindows = 80;
   const Interrupt interrupt;
   ProgressBar bar("rotations by pictures");
   const auto windows = rotations_over_recording(
-      recording, [&](int done, int of) { bar.show(done, of); }, interrupt.token());
+      recording, kWindows, [&](int done, int of) { bar.show(done, of); }, interrupt.token());
   interrupt.check("nothing was written");
   const GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
   if (fit.windows > 0) fmt::print("{}", to_text(fit, *recording->gyroscope));

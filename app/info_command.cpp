@@ -4,10 +4,13 @@
 #include "app/output.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
+#include "engine/calibration/gyroscope_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/studies/rotations_over_recording.h"
 
 #include <array>
+#include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,12 +32,27 @@ void check_json_file(const InfoArguments& arguments) {
                 std::array{NamedFile{"recording", arguments.recording}});
 }
 
+/// What pictures and gyroscope say of each other, from a few windows.
+std::string why_gyroscope_does_not_fit(const std::shared_ptr<const Recording>& recording,
+                                       double rate_hz) {
+  constexpr int kWindows = 12;
+  constexpr int kLeastFrames = 20;
+  if (!recording->gyroscope || recording->frame_count() < kLeastFrames) return "";
+  if (!recording->pictures && recording->tracks.empty()) return "";
+  const auto windows = rotations_over_recording(recording, kWindows);
+  return why_it_does_not_fit(
+      fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
+}
+
 }  // namespace
 
 int info_command(const InfoArguments& arguments) {
   const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
   if (to_file) check_json_file(arguments);
-  const RecordingInfo info = describe(*open_given(arguments.recording));
+  const std::shared_ptr<const Recording> recording = open_given(arguments.recording);
+  RecordingInfo info = describe(*recording);
+  if (const auto why = why_gyroscope_does_not_fit(recording, info.rate_hz); !why.empty())
+    info.notes.push_back(why);
   if (!arguments.wants_json) {
     fmt::print("{}", to_text(info));
     return kDone;

@@ -141,6 +141,24 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
   return text;
 }
 
+std::string why_it_does_not_fit(const GyroscopeFit& fit,
+                                const Gyroscope& recorded,
+                                double frame_period_s) {
+  constexpr double kMost_deg = 5;
+  constexpr double kSigmas = 5;
+  if (!fit.ok) return "";
+  std::vector<std::string> wrong;
+  const double apart_deg = rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera);
+  if (apart_deg > std::max(kMost_deg, kSigmas * fit.rotation_sigma_deg.maxCoeff()))
+    wrong.push_back(fmt::format("its axes are {:.0f} deg off", apart_deg));
+  const double late_s = fit.time_offset_s - 1e-9 * static_cast<double>(recorded.time_offset_ns);
+  if (std::abs(late_s) > std::max(0.5 * frame_period_s, kSigmas * fit.time_offset_sigma_s))
+    wrong.push_back(fmt::format("its clock is {:+.0f} ms off", 1e3 * late_s));
+  if (wrong.empty()) return "";
+  return fmt::format("the gyroscope does not fit the pictures: {}; see calibrate --gyroscope",
+                     fmt::join(wrong, ", "));
+}
+
 std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
   constexpr std::uint32_t kPictures = 0x222222, kBefore = 0xD55E00, kAfter = 0x0072B2;
   std::vector<Chart> charts;

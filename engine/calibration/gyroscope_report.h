@@ -20,6 +20,12 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 /// Rates about the camera's axes: pictures, gyroscope before and after; then what is left of each.
 std::vector<Chart> gyroscope_charts(const RatesOverTime& rates);
 
+/// Where rotation or clock are off what the recording says by five standard deviations and more
+/// than matters (5 deg, half a frame): one sentence; empty: they fit, or nothing tells.
+std::string why_it_does_not_fit(const GyroscopeFit& fit,
+                                const Gyroscope& recorded,
+                                double frame_period_s);
+
 /// Angle between two rotations [deg].
 double rotation_between_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 

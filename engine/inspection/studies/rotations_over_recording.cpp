@@ -15,7 +15,6 @@
 namespace gpo {
 namespace {
 
-constexpr int kMostWindows = 80;
 constexpr double kWindow_s = 0.3;
 constexpr int kFewestFrames = 5;
 constexpr int kMostFrames = 20;
@@ -59,7 +58,10 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
       R_wc.emplace_back(result.cameras[0].R_wc.transpose() * camera.R_wc);
     return R_wc;
   }
-  if (static_cast<int>(window.R_wc.size()) == window.frame_count()) return window.R_wc;
+  // A window whose rotations nothing told has I everywhere.
+  const bool told =
+      std::ranges::any_of(window.R_wc, [](const auto& R) { return !R.isIdentity(0); });
+  if (told) return window.R_wc;
   if (only_turns(window)) return turning_only(window);
   return {};
 }
@@ -68,6 +70,7 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
 
 std::vector<PictureRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
+    int most_windows,
     const std::function<void(int, int)>& progress,
     const std::stop_token& stop) {
   auto pictures_only = std::make_shared<Recording>(*recording);
@@ -79,7 +82,7 @@ std::vector<PictureRotations> rotations_over_recording(
   settings.frames = std::min(window_frames(*recording), recording->frame_count());
   const int step = settings.frames - 1;
   const int fit = std::max(1, (recording->frame_count() - 1) / std::max(1, step));
-  const int count = std::min(fit, kMostWindows);
+  const int count = std::min(fit, most_windows);
   std::vector<PictureRotations> windows;
   for (int w = 0; w < count && !stop.stop_requested(); ++w) {
     settings.start = step * static_cast<int>(static_cast<std::int64_t>(w) * fit / count);

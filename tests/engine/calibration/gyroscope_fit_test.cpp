@@ -4,8 +4,12 @@
 
 #include "engine/calibration/gyroscope_report.h"
 #include "engine/geometry/pose.h"
+#include "engine/inspection/studies/rotations_over_recording.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -148,6 +152,83 @@ TEST(GyroscopeFit, RefusesWhatCannotTell) {
   Gyroscope elsewhere = recorded.gyroscope;
   for (auto& time : elsewhere.timestamps_ns) time += 1'000'000'000'000;
   EXPECT_THAT(fit_gyroscope(recorded.windows, elsewhere).reason, HasSubstr("does not cover"));
+}
+
+class RealGyroscope : public testing::Test {
+ protected:
+  /// Skips the test where the recording is not on this machine.
+  void open(const std::string& name) {
+    const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << name << " is not on this machine";
+    recording_ = open_recording(folder);
+    windows_ = rotations_over_recording(recording_);
+  }
+  /// The recording's gyroscope as if it sat otherwise, and its clock ran late.
+  Gyroscope turned(const Matrix3d& R, double late_s) const {
+    Gyroscope gyroscope = *recording_->gyroscope;
+    for (Vector3d& rate : gyroscope.rates_rad_s) rate = R * rate;
+    for (auto& time : gyroscope.timestamps_ns) time += std::llround(1e9 * late_s);
+    return gyroscope;
+  }
+
+  std::shared_ptr<const Recording> recording_;
+  std::vector<PictureRotations> windows_;
+};
+
+/// All 24 proper ways to name three axes.
+std::vector<Matrix3d> axis_permutations() {
+  std::vector<Matrix3d> all;
+  for (const Matrix3d& first : {Matrix3d::Identity().eval(),
+                                so3_exp(Vector3d(0, M_PI / 2, 0)),
+                                so3_exp(Vector3d(0, M_PI, 0)),
+                                so3_exp(Vector3d(0, -M_PI / 2, 0)),
+                                so3_exp(Vector3d(M_PI / 2, 0, 0)),
+                                so3_exp(Vector3d(-M_PI / 2, 0, 0))})
+    for (int turns = 0; turns < 4; ++turns)
+      all.emplace_back(first * so3_exp(Vector3d(0, 0, turns * M_PI / 2)));
+  return all;
+}
+
+TEST_F(RealGyroscope, OfAPhoneIsFoundHoweverItsAxesAreNamed) {
+  open("phone-street");
+  if (IsSkipped()) return;
+  for (const Matrix3d& R : axis_permutations()) {
+    const GyroscopeFit fit = fit_gyroscope(windows_, turned(R, 0));
+    ASSERT_TRUE(fit.ok) << fit.reason;
+    EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, R * recording_->gyroscope->R_gyro_camera), 5);
+    EXPECT_GT(fit.time_offset_s, 0.006);  // +8 to 10 ms, by another's hand
+    EXPECT_LT(fit.time_offset_s, 0.012);
+    EXPECT_GT(fit.correlation, 0.9);
+  }
+}
+
+TEST_F(RealGyroscope, OfEurocIsWhereItsCalibrationSays) {
+  open("euroc-room");
+  if (IsSkipped()) return;
+  const Vector3d bias(-0.0022, 0.0208, 0.0765);  // of this flight, by its publishers
+  for (const double late_s : {0.0, 0.035}) {
+    for (const Vector3d& turn : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
+      const Matrix3d R = so3_exp(turn);
+      const GyroscopeFit fit = fit_gyroscope(windows_, turned(R, late_s));
+      ASSERT_TRUE(fit.ok) << fit.reason;
+      const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * R *
+                                                recording_->gyroscope->R_gyro_camera);
+      EXPECT_LT(off.norm(), 1.5);
+      EXPECT_LT((off.array() / fit.rotation_sigma_deg.array()).abs().maxCoeff(), 3);
+      EXPECT_NEAR(fit.time_offset_s, late_s, 0.005);
+      EXPECT_LT((fit.bias_rad_s - R * bias).norm(), 0.01);
+    }
+  }
+  EXPECT_EQ(
+      why_it_does_not_fit(
+          fit_gyroscope(windows_, turned(Matrix3d::Identity(), 0)), *recording_->gyroscope, 0.05),
+      "");
+  EXPECT_THAT(
+      why_it_does_not_fit(fit_gyroscope(windows_, turned(so3_exp(Vector3d(0, 0, 1)), 0.035)),
+                          *recording_->gyroscope,
+                          0.05),
+      testing::ContainsRegex("does not fit the pictures: its axes are 5[5-9] deg off, its "
+                             "clock is .3[0-9] ms off"));
 }
 
 }  // namespace
