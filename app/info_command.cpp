@@ -6,8 +6,11 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/report/topic_info.h"
 
 #include <array>
+#include <cstdio>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,17 +32,33 @@ void check_json_file(const InfoArguments& arguments) {
                 std::array{NamedFile{"recording", arguments.recording}});
 }
 
+/// Of a bag that is no recording its topics are told all the same, before the error is.
+RecordingInfo describe_given(const InfoArguments& arguments, const std::vector<TopicInfo>& topics) {
+  try {
+    return describe(*open_given(arguments.recording, {.topics = arguments.topics}));
+  } catch (const InputError&) {
+    if (!arguments.wants_json) {
+      fmt::print("{}", to_text(topics));
+      std::fflush(stdout);
+    }
+    throw;
+  }
+}
+
 }  // namespace
 
 int info_command(const InfoArguments& arguments) {
   const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
   if (to_file) check_json_file(arguments);
-  const RecordingInfo info = describe(*open_given(arguments.recording));
+  const auto topics = describe_topics(arguments.recording, arguments.topics);
+  const RecordingInfo info = describe_given(arguments, topics);
   if (!arguments.wants_json) {
-    fmt::print("{}", to_text(info));
+    fmt::print("{}{}", to_text(info), to_text(topics));
     return kDone;
   }
-  write_output(to_file ? arguments.json : "-", json_text(to_json(info), 2));
+  nlohmann::json json = to_json(info);
+  if (!topics.empty()) json["topics"] = to_json(topics);
+  write_output(to_file ? arguments.json : "-", json_text(json, 2));
   return kDone;
 }
 

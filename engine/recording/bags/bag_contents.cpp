@@ -57,7 +57,7 @@ auto read_stamped(Reading& reading, const BagMessage& message, Read read) {
   auto made = read_one(reading, message, kMostSmallBytes, read);
   if (made.header.stamp_ns != 0) return made;
   made.header.stamp_ns = message.recorded_ns;
-  reading.some_without_stamp = true;
+  reading.some_without_stamp |= message.recorded_ns != 0;
   return made;
 }
 

@@ -169,6 +169,15 @@ class RowReader {
   Blob blob_{nullptr, sqlite3_blob_close};
 };
 
+bool can_be_read(RowReader& rows, const BagMessage& message) {
+  try {
+    rows.read(message, kWholeMessage);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 Bag open_sqlite_bag(const fs::path& file) {
@@ -178,12 +187,14 @@ Bag open_sqlite_bag(const fs::path& file) {
   bag.file = file;
   TopicList topics(bag);
   add_topics(file, database, topics);
+  const auto rows = std::make_shared<RowReader>(file, database);
   if (!add_messages(file, database, topics)) {
+    // The last row may begin before the cut and end behind it.
+    while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
     bag.notes.push_back(fmt::format("the bag is cut or broken: {} messages of it can be read",
                                     bag.messages.size()));
   }
   topics.finish();
-  const auto rows = std::make_shared<RowReader>(file, database);
   bag.read = [rows](const BagMessage& message, std::uint64_t most_bytes) {
     return rows->read(message, most_bytes);
   };

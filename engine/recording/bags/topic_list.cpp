@@ -44,6 +44,11 @@ void TopicList::add_message(std::int64_t id,
   ++bag_.topics[found->second].messages;
 }
 
+void TopicList::drop_last() {
+  --bag_.topics[bag_.messages.back().topic].messages;
+  bag_.messages.pop_back();
+}
+
 void TopicList::clear_messages() {
   bag_.messages.clear();
   for (BagTopic& topic : bag_.topics) topic.messages = 0;

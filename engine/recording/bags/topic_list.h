@@ -26,6 +26,7 @@ class TopicList {
                    std::int64_t recorded_ns,
                    std::uint32_t chunk,
                    std::uint64_t place);
+  void drop_last();
   /// Forgets the messages.
   void clear_messages();
   /// Sorts the bag's topics by name; the last call.

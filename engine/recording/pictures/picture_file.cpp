@@ -79,6 +79,14 @@ int significant_bits(const cv::Mat& picture) {
   return 16;
 }
 
+cv::Mat gray_if_gray(const cv::Mat& bgr) {
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+  return gray ? channels[0] : bgr;
+}
+
 cv::Mat to_8_bits(const cv::Mat& picture, int bits) {
   if (picture.depth() == CV_8U) return picture;
   cv::Mat reduced;

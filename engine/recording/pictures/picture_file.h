@@ -24,6 +24,9 @@ void check_picture_size(const std::string& name, std::int64_t width, std::int64_
 /// Cameras of 10 or 12 bits store those in pictures of 16.
 int significant_bits(const cv::Mat& picture);
 
+/// One channel where all three are the same, else the picture itself.
+cv::Mat gray_if_gray(const cv::Mat& bgr);
+
 /// CV_8UC3; brighter than `bits` allow is white.
 cv::Mat to_8_bits(const cv::Mat& picture, int bits);
 
