@@ -28,7 +28,7 @@ std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_
 
 int convert_command(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
-  const auto opened = open_given(arguments.recording, {.topics = arguments.topics});
+  const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
   const Interrupt interrupt;
   const std::string nothing = "nothing is left of " + output.string();
   const auto truth = truth_of(*opened, interrupt.token());

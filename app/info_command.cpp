@@ -35,7 +35,7 @@ void check_json_file(const InfoArguments& arguments) {
 /// Of a bag that is no recording its topics are told all the same, before the error is.
 RecordingInfo describe_given(const InfoArguments& arguments, const std::vector<TopicInfo>& topics) {
   try {
-    return describe(*open_given(arguments.recording, {.topics = arguments.topics}));
+    return describe(*open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics}));
   } catch (const InputError&) {
     if (!arguments.wants_json) {
       fmt::print("{}", to_text(topics));

@@ -27,13 +27,16 @@ std::uint32_t crc32_of(std::string_view bytes) {
 }
 
 std::string record(McapOp op, const std::string& content) {
-  return std::string(1, static_cast<char>(op)) + stored_text<std::uint64_t>(content);
+  std::string bytes(1, static_cast<char>(op));
+  bytes += stored_text<std::uint64_t>(content);
+  return bytes;
 }
 
 /// ROS 2 has three words where ROS 1 has two: "sensor_msgs/msg/Image".
 std::string ros2_name(const std::string& type) {
-  const auto slash = type.find('/');
-  return type.substr(0, slash) + "/msg" + type.substr(slash);
+  const std::string_view all = type;
+  const auto slash = all.find('/');
+  return fmt::format("{}/msg{}", all.substr(0, slash), all.substr(slash));
 }
 
 std::string compressed(const std::string& bytes) {
@@ -75,8 +78,9 @@ class McapWriter {
     const std::uint64_t start = stream_.place();
     std::string summary = definitions_ + statistics() + chunk_indices_;
     // The sum is of all up to itself, also of the footer's beginning.
-    summary += record(McapOp::footer, stored(start) + stored(std::uint64_t{0}) + "sum.");
-    summary.resize(summary.size() - 4);
+    constexpr std::uint64_t kFooterBytes = 20;
+    summary += static_cast<char>(McapOp::footer);
+    summary += stored(kFooterBytes) + stored(start) + stored(std::uint64_t{0});
     stream_.write(summary);
     stream_.write(stored(crc32_of(summary)));
     stream_.write(kMcapMagic);
