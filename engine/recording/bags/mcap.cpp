@@ -17,6 +17,7 @@
 #include <zlib.h>
 
 namespace gpo {
+namespace mcap {
 namespace {
 
 constexpr std::uint64_t kFooterBytes = 20;
@@ -270,8 +271,10 @@ std::string read_message(const FileBytes& file,
 }
 
 }  // namespace
+}  // namespace mcap
 
 Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
+  using namespace mcap;
   Opening opening(file);
   if (!read_index(opening)) {
     opening.topics.clear_messages();

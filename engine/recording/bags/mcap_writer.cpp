@@ -17,6 +17,7 @@
 #include <zstd.h>
 
 namespace gpo {
+namespace mcap {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
@@ -153,9 +154,10 @@ class McapWriter {
 };
 
 }  // namespace
+}  // namespace mcap
 
 BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
-  const auto writer = std::make_shared<McapWriter>(file, topics);
+  const auto writer = std::make_shared<mcap::McapWriter>(file, topics);
   return {
       MessageEncoding::cdr,
       [writer](int topic, auto ns, const std::string& bytes) { writer->write(topic, ns, bytes); },

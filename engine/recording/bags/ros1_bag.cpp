@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 namespace gpo {
+namespace ros1 {
 namespace {
 
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
@@ -189,8 +190,10 @@ std::string read_message(const FileBytes& file,
 }
 
 }  // namespace
+}  // namespace ros1
 
 Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
+  using namespace ros1;
   Opening opening(file);
   const auto header = ros1_record(opening.reader(), kRos1Magic.size());
   if (!header || !header->is(Ros1Op::bag_header))

@@ -12,6 +12,7 @@
 #include <utility>
 
 namespace gpo {
+namespace ros1 {
 namespace {
 
 constexpr std::size_t kChunkBytes = 768 << 10;
@@ -135,9 +136,10 @@ class Ros1Writer {
 };
 
 }  // namespace
+}  // namespace ros1
 
 BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
-  const auto writer = std::make_shared<Ros1Writer>(file, topics);
+  const auto writer = std::make_shared<ros1::Ros1Writer>(file, topics);
   return {
       MessageEncoding::ros1,
       [writer](int topic, auto ns, const std::string& bytes) { writer->write(topic, ns, bytes); },

@@ -66,6 +66,9 @@ void TopicList::finish() {
   }
   bag_.topics = std::move(sorted);
   for (BagMessage& message : bag_.messages) message.topic = new_place[message.topic];
+  std::ranges::sort(bag_.messages, {}, [](const BagMessage& message) {
+    return std::pair(message.chunk, message.place);
+  });
 }
 
 }  // namespace gpo

@@ -29,7 +29,7 @@ class TopicList {
   void drop_last();
   /// Forgets the messages.
   void clear_messages();
-  /// Sorts the bag's topics by name; the last call.
+  /// Sorts the bag's topics by name, its messages as they lie in the file; the last call.
   void finish();
 
  private:

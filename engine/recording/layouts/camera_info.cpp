@@ -15,8 +15,8 @@
 namespace gpo {
 namespace {
 
-constexpr double kMostFocalLength = 1e6;  // [px]
-constexpr double kMostCoefficient = 1e6;
+constexpr double kLongestFocalLength_px = 1e6;  // [px]
+constexpr double kLargestCoefficient = 1e6;
 constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 
 /// ROS' names of models.
@@ -55,7 +55,7 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
          fmt::format("{} numbers", info.D.size()),
          fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
   }
-  const auto possible = [](double k) { return std::abs(k) <= kMostCoefficient; };
+  const auto possible = [](double k) { return std::abs(k) <= kLargestCoefficient; };
   if (!std::ranges::all_of(info.D, possible))
     fail(name, "D", "a coefficient that no lens has", "numbers of the order of 1");
   camera.distortion = model->distortion;
@@ -72,7 +72,7 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
   const auto& k = info.K;
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     fail(name, "K", "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
-  const auto possible = [](double f) { return f > 0 && f <= kMostFocalLength; };
+  const auto possible = [](double f) { return f > 0 && f <= kLongestFocalLength_px; };
   if (!possible(k[0]) || !possible(k[4]))
     fail(name, "K", "a focal length that no lens has", "fx, fy in pixels");
   if (std::max(info.width, info.height) > kLongestSide)

@@ -34,7 +34,7 @@ constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
 /// As `kTopics` counts them.
-enum Topic { pictures, camera_info, imu, truth, tf_static };
+enum class Topic { pictures, camera_info, imu, truth, tf_static };
 const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/camera_info", kCameraInfoType},
                                            {"/imu", kImuType},
@@ -65,18 +65,19 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::int64_t time = recording.timestamps_ns[i];
-    plan.push_back({pictures, time, i});
-    if (poses && poses->poses[i]) plan.push_back({truth, time, i});
+    plan.push_back({Topic::pictures, time, i});
+    if (poses && poses->poses[i]) plan.push_back({Topic::truth, time, i});
   }
   if (const auto& gyroscope = recording.gyroscope) {
     for (std::size_t i = 0; i < gyroscope->timestamps_ns.size(); ++i)
-      plan.push_back(
-          {imu, gyroscope->timestamps_ns[i] - gyroscope->time_offset_ns, static_cast<int>(i)});
+      plan.push_back({Topic::imu,
+                      gyroscope->timestamps_ns[i] - gyroscope->time_offset_ns,
+                      static_cast<int>(i)});
   }
   std::ranges::stable_sort(plan, {}, &Planned::time_ns);
   const std::int64_t first = plan.front().time_ns;
-  if (recording.gyroscope) plan.insert(plan.begin(), {tf_static, first, 0});
-  plan.insert(plan.begin(), {camera_info, first, 0});
+  if (recording.gyroscope) plan.insert(plan.begin(), {Topic::tf_static, first, 0});
+  plan.insert(plan.begin(), {Topic::camera_info, first, 0});
   return plan;
 }
 
@@ -90,21 +91,21 @@ class Messages {
 
   std::string operator()(const Planned& one) {
     switch (one.topic) {
-      case pictures:
+      case Topic::pictures:
         return picture(one);
-      case camera_info: {
+      case Topic::camera_info: {
         CameraInfoMessage info = camera_info_of(recording_.camera);
         info.header = {one.time_ns, kCamera};
         return camera_info_bytes(info, encoding_);
       }
-      case imu:
+      case Topic::imu:
         return sample(one);
-      case truth: {
+      case Topic::truth: {
         const Pose& pose = *poses_->poses[one.number];
         return transform_bytes(
             transform(one.time_ns, kWorld, kCamera, steady_(pose.R_wc), pose.p_wc), encoding_);
       }
-      case tf_static:
+      case Topic::tf_static:
         return transforms_bytes({mounting(one.time_ns)}, encoding_);
     }
     return {};
@@ -230,8 +231,8 @@ void write_bag(const Recording& recording,
   const BagWriter writer = format.open(unfinished.path(), kTopics);
   Messages messages(recording, poses, writer.encoding);
   for (const Planned& one : plan) {
-    writer.write(one.topic, one.time_ns, messages(one));
-    if (progress && one.topic == pictures) progress(one.number + 1, recording.frame_count());
+    writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
+    if (progress && one.topic == Topic::pictures) progress(one.number + 1, recording.frame_count());
   }
   writer.finish();
   for (const auto& [name, text] : files) write_file(folder / name, text);
