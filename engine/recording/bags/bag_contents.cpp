@@ -120,11 +120,12 @@ template <class T>
 void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
   const auto time = [](const T& one) { return one.header.stamp_ns; };
   std::ranges::stable_sort(all, {}, time);
-  const auto again = std::ranges::unique(all, {}, time);
-  if (again.empty()) return;
-  notes.push_back(
-      fmt::format("{} {} are left out: they have the time stamps of others", again.size(), things));
-  all.erase(again.begin(), again.end());
+  const auto same_time = [&](const T& a, const T& b) { return time(a) == time(b); };
+  const auto again = std::unique(all.begin(), all.end(), same_time);  // clang 14 cannot do ranges'
+  if (again == all.end()) return;
+  notes.push_back(fmt::format(
+      "{} {} are left out: they have the time stamps of others", all.end() - again, things));
+  all.erase(again, all.end());
 }
 
 }  // namespace
