@@ -13,7 +13,7 @@ test_packages=(
   libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache
   clang libclang-rt-dev  # tests/fuzz
   # bags that we did not write
-  python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs
+  python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
 )
 benchmark_packages=(libbenchmark-dev)
 

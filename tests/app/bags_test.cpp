@@ -4,9 +4,10 @@
 // what ROS' library reads of the bags that we write.
 #include "tests/app/program.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <regex>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -28,19 +29,19 @@ using test::shell;
 using test::write_file;
 using ::testing::HasSubstr;
 
-constexpr const char* kWindow = " --frames 20 ";
+constexpr const char* kBagWindow = " --frames 20 ";
 
 /// Debian's, whatever other Python comes first on this machine.
-Outcome python(const std::string& arguments) {
+Outcome debians_python(const std::string& arguments) {
   return shell("PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 " + arguments);
 }
 
-#define SKIP_WITHOUT_MODULES(modules)                   \
-  if (python("-c 'import " modules "'").exit_code != 0) \
+#define SKIP_WITHOUT_MODULES(modules)                           \
+  if (debians_python("-c 'import " modules "'").exit_code != 0) \
   GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
 
 /// The room, which is not ours to publish, where it is; else the bundled desk.
-fs::path recording() {
+fs::path source_recording() {
   const fs::path room = fs::path(GPO_SHARED_DIR) / "data" / "euroc-room";
   return fs::exists(room) ? room : desk();
 }
@@ -49,14 +50,15 @@ fs::path recording() {
 void put_beside(const fs::path& folder) {
   for (const auto& [from, to] :
        {std::pair("plane.yaml", "plane.yaml"), std::pair("mav0/imu0/sensor.yaml", "imu.yaml")}) {
-    if (fs::exists(recording() / from)) fs::copy_file(recording() / from, folder / to);
+    if (fs::exists(source_recording() / from))
+      fs::copy_file(source_recording() / from, folder / to);
   }
 }
 
 /// The recording's pictures without any compression, in gray.
 fs::path gray_pictures(const fs::path& folder) {
   fs::create_directories(folder);
-  for (const auto& file : fs::directory_iterator(recording() / "mav0/cam0/data")) {
+  for (const auto& file : fs::directory_iterator(source_recording() / "mav0/cam0/data")) {
     const cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_GRAYSCALE);
     cv::imwrite((folder / file.path().stem()).string() + ".pgm", gray);
   }
@@ -69,7 +71,7 @@ std::string table_of(const Outcome& outcome) {
 }
 
 /// Numbers as they are but for the last digits of a double: rotations go through quaternions.
-void expect_same(const json& a, const json& b, const std::string& where) {
+void expect_same_numbers(const json& a, const json& b, const std::string& where) {
   if (a.is_number_float() && b.is_number_float()) {
     const double one = a.get<double>();
     EXPECT_NEAR(one, b.get<double>(), 1e-9 * (1 + std::abs(one))) << where;
@@ -82,18 +84,18 @@ void expect_same(const json& a, const json& b, const std::string& where) {
   }
   ASSERT_EQ(a.size(), b.size()) << where;
   for (auto item = a.items().begin(); item != a.items().end(); ++item)
-    expect_same(item.value(),
-                a.is_object() ? b.at(item.key()) : b.at(std::stoul(item.key())),
-                where + "." + item.key());
+    expect_same_numbers(item.value(),
+                        a.is_object() ? b.at(item.key()) : b.at(std::stoul(item.key())),
+                        where + "." + item.key());
 }
 
-struct Result {
+struct BagResult {
   std::string table;
   json numbers;
 };
 
-Result result_of(const fs::path& path, const fs::path& file) {
-  const Outcome outcome = program("run " + path.string() + kWindow + "--json " + file.string());
+BagResult result_of(const fs::path& path, const fs::path& file) {
+  const Outcome outcome = program("run " + path.string() + kBagWindow + "--json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, Not(HasSubstr("cut")));
   json numbers = json::parse(read_file(file));
@@ -102,11 +104,11 @@ Result result_of(const fs::path& path, const fs::path& file) {
   return {table_of(outcome), numbers};
 }
 
-void expect_same_results(const fs::path& bag, const fs::path& folder) {
-  const Result of_folder = result_of(recording(), folder / "folder.json");
-  const Result of_bag = result_of(bag, folder / "bag.json");
+void expect_results_of_folder(const fs::path& bag, const fs::path& folder) {
+  const BagResult of_folder = result_of(source_recording(), folder / "folder.json");
+  const BagResult of_bag = result_of(bag, folder / "bag.json");
   EXPECT_EQ(of_folder.table, of_bag.table);
-  expect_same(of_folder.numbers, of_bag.numbers, bag.filename().string());
+  expect_same_numbers(of_folder.numbers, of_bag.numbers, bag.filename().string());
 }
 
 class RosBag : public testing::TestWithParam<const char*> {};
@@ -119,14 +121,14 @@ TEST_P(RosBag, OfPythonsRosbagGivesTheNumbersOfTheFolder) {
   const fs::path bag = folder / "room.bag";
   const bool raw = compression == "lz4";
   const std::string pictures = raw ? gray_pictures(folder / "gray").string() : "";
-  const Outcome made = python(fmt::format("tests/app/bags/make_ros1_bag.py {} {} {} {}",
-                                          recording().string(),
-                                          bag.string(),
-                                          compression,
-                                          pictures));
+  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros1_bag.py {} {} {} {}",
+                                                  source_recording().string(),
+                                                  bag.string(),
+                                                  compression,
+                                                  pictures));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
-  expect_same_results(bag, folder);
+  expect_results_of_folder(bag, folder);
   const std::string info = program("info " + bag.string()).out;
   EXPECT_THAT(
       info, HasSubstr("topics        /cam0/camera_info (sensor_msgs/CameraInfo, 1): camera_info"));
@@ -137,17 +139,17 @@ TEST(Ros2Database, OfPythonGivesTheNumbersOfTheFolder) {
   SKIP_WITHOUT_MODULES("sqlite3, numpy, yaml");
   const fs::path folder = fresh_folder();
   const fs::path bag = folder / "room.db3";
-  const Outcome made = python(fmt::format("tests/app/bags/make_ros2_db3.py {} {} {}",
-                                          recording().string(),
-                                          bag.string(),
-                                          gray_pictures(folder / "gray").string()));
+  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros2_db3.py {} {} {}",
+                                                  source_recording().string(),
+                                                  bag.string(),
+                                                  gray_pictures(folder / "gray").string()));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
-  expect_same_results(bag, folder);
+  expect_results_of_folder(bag, folder);
   // Cut, it is read up to the cut.
   const std::string bytes = read_file(bag);
   write_file(folder / "cut.db3", bytes.substr(0, bytes.size() * 6 / 10));
-  const Outcome cut = program("run " + (folder / "cut.db3").string() + kWindow);
+  const Outcome cut = program("run " + (folder / "cut.db3").string() + kBagWindow);
   EXPECT_EQ(cut.exit_code, 0) << cut.err;
   EXPECT_THAT(cut.err, HasSubstr("the bag is cut or broken: "));
 }
@@ -159,11 +161,11 @@ TEST_P(ConvertedBag, GivesTheNumbersOfTheFolder) {
   const fs::path folder = fresh_folder();
   const std::string format = GetParam();
   const fs::path bag = folder / (format == "mcap" ? "new/room.mcap" : "new/room.bag");
-  const std::string line =
-      "convert " + recording().string() + " --format " + format + " --output " + bag.string();
+  const std::string line = "convert " + source_recording().string() + " --format " + format +
+                           " --output " + bag.string();
   const Outcome outcome = program(line);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  expect_same_results(bag, folder);
+  expect_results_of_folder(bag, folder);
   const BadInput again{line, "found something there already, expected no file"};
   EXPECT_THAT(program(line).err, HasSubstr(again.message));
 }
@@ -189,7 +191,7 @@ TEST(ConvertedBag, IsReadByRosItself) {
              "    assert message.header.stamp == time\n"
              "for topic, message, time in bag.read_messages('/camera_info'):\n"
              "    print(message.distortion_model, message.K[0])\n");
-  const Outcome read = python((folder / "read.py").string() + " " + bag.string());
+  const Outcome read = debians_python((folder / "read.py").string() + " " + bag.string());
   EXPECT_EQ(read.exit_code, 0) << read.err;
   EXPECT_THAT(read.out, HasSubstr("/image_raw 60 True"));
   EXPECT_THAT(read.out, HasSubstr("/imu "));

@@ -5,6 +5,8 @@
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
+#include <cstring>
+#include <functional>
 
 #include <gmock/gmock.h>
 

@@ -8,15 +8,16 @@
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 
-#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 class Messages : public testing::TestWithParam<MessageEncoding> {};
@@ -115,10 +116,10 @@ TEST(CameraInfo, RefusesWhatIsNoCamera) {
 }
 
 /// One pixel in the middle of a picture of one color.
-cv::Vec<double, 3> middle(const std::string& encoding,
-                          const std::string& pattern,
-                          int channels,
-                          int depth) {
+cv::Vec<double, 3> middle_pixel(const std::string& encoding,
+                                const std::string& pattern,
+                                int channels,
+                                int depth) {
   constexpr int kSide = 8;
   std::string pixels;
   for (int y = 0; y < kSide; ++y) {
@@ -140,16 +141,16 @@ cv::Vec<double, 3> middle(const std::string& encoding,
 TEST(BagPicture, KnowsRosEncodings) {
   const cv::Vec<double, 3> red(10, 20, 200);  // blue, green, red
   const std::string r = "\xC8", g = "\x14", b = "\x0A";
-  EXPECT_EQ(middle("bgr8", b + g + r + b + g + r, 3, 1), red);
-  EXPECT_EQ(middle("rgb8", r + g + b + r + g + b, 3, 1), red);
-  EXPECT_EQ(middle("rgba8", r + g + b + "x" + r + g + b + "x", 4, 1), red);
-  EXPECT_EQ(middle("bayer_rggb8", r + g + g + b, 1, 1), red);
-  EXPECT_EQ(middle("bayer_bggr8", b + g + g + r, 1, 1), red);
-  EXPECT_EQ(middle("bayer_gbrg8", g + b + r + g, 1, 1), red);
-  EXPECT_EQ(middle("bayer_grbg8", g + r + b + g, 1, 1), red);
-  EXPECT_EQ(middle("mono8", r + r, 1, 1), cv::Vec3d(200, 200, 200));
+  EXPECT_EQ(middle_pixel("bgr8", b + g + r + b + g + r, 3, 1), red);
+  EXPECT_EQ(middle_pixel("rgb8", r + g + b + r + g + b, 3, 1), red);
+  EXPECT_EQ(middle_pixel("rgba8", r + g + b + "x" + r + g + b + "x", 4, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_rggb8", r + g + g + b, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_bggr8", b + g + g + r, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_gbrg8", g + b + r + g, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_grbg8", g + r + b + g, 1, 1), red);
+  EXPECT_EQ(middle_pixel("mono8", r + r, 1, 1), cv::Vec3d(200, 200, 200));
   const std::string gray16 = g + "\x01";  // 0x0114
-  EXPECT_EQ(middle("mono16", gray16 + gray16, 1, 2), cv::Vec3d(276, 276, 276));
+  EXPECT_EQ(middle_pixel("mono16", gray16 + gray16, 1, 2), cv::Vec3d(276, 276, 276));
 }
 
 TEST(BagPicture, RefusesWhatIsNone) {
