@@ -142,7 +142,7 @@ int calibrate_command(const CalibrateArguments& arguments) {
   }
   const Board board = board_of(arguments, recording);
   question_square(board.square_m);
-  const auto pictures = open_pictures(recording, kCacheBytes);
+  const auto pictures = open_pictures(recording, kCacheBytes, arguments.topics);
   ProgressBar bar("looking for the board");
   const BoardSearch search = find_calibration_views(
       *pictures, board, kMostFrames, [&](int done, int of) { bar.show(done, of); });

@@ -5,6 +5,8 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/settings/settings.h"
+#include "engine/recording/bags/topic_roles.h"
+#include "engine/recording/layouts/write_recording.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -29,6 +31,7 @@ inline constexpr std::size_t kDefaultCacheMib = FrameCache::kDefaultByteLimit >>
 struct InspectArguments {
   std::filesystem::path recording;
   std::optional<std::filesystem::path> tracks;
+  TopicChoices topics;  ///< of a bag
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
@@ -43,6 +46,7 @@ struct InfoArguments {
   std::filesystem::path recording;
   bool wants_json = false;
   std::filesystem::path json;  ///< file to write; empty or "-": standard output
+  TopicChoices topics;         ///< of a bag
 };
 
 struct RunArguments {
@@ -69,6 +73,7 @@ struct SnapshotArguments {
 
 struct EvaluateArguments {
   std::vector<std::filesystem::path> recordings;
+  TopicChoices topics;  ///< of bags
   std::string methods = "all";
   std::string lengths = "5:60:5";            ///< of the windows [frames]
   std::string starts = "0:end:10";           ///< of the windows
@@ -84,6 +89,7 @@ struct EvaluateArguments {
 
 struct ViewArguments {
   std::optional<std::filesystem::path> recording;
+  TopicChoices topics;  ///< of the recording, if it is a bag
   std::size_t cache_mib = kDefaultCacheMib;
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
@@ -93,6 +99,7 @@ struct ViewArguments {
 
 struct CalibrateArguments {
   std::filesystem::path recording;   ///< needs no calibration
+  TopicChoices topics;               ///< of a bag
   std::optional<std::string> board;  ///< "CxR" inner corners, of a ChArUco board squares; default:
                                      ///< the recording's board.yaml
   std::optional<std::string> pattern;     ///< "chessboard" (the default) or "charuco"
@@ -106,13 +113,20 @@ struct CalibrateArguments {
   std::filesystem::path output;                 ///< camera.yaml
 };
 
+struct ConvertArguments {
+  std::filesystem::path recording;
+  TopicChoices topics;  ///< of a bag
+  RecordingFormat format = RecordingFormat::euroc;
+  std::filesystem::path output;  ///< folder, or of a bag the file
+};
+
 /// The recording that comes with the program: beside the sources it was built from, else beside the
 /// executable or where it is run.
 std::filesystem::path example_recording();
 
 int calibrate_command(const CalibrateArguments& arguments);
 int calibrate_gyroscope_command(const CalibrateArguments& arguments);
-int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output);
+int convert_command(const ConvertArguments& arguments);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int run_command(const RunArguments& arguments);

@@ -5,7 +5,7 @@
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/recording/board/board_truth.h"
-#include "engine/recording/layouts/euroc_writer.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,8 @@
 namespace gpo {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Stored, or computed from a board in view.
 std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_token& stop) {
@@ -24,15 +26,16 @@ std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_
 
 }  // namespace
 
-int convert_command(const std::filesystem::path& recording, const std::filesystem::path& output) {
-  const auto opened = open_given(recording);
+int convert_command(const ConvertArguments& arguments) {
+  const fs::path& output = arguments.output;
+  const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
   const Interrupt interrupt;
   const std::string nothing = "nothing is left of " + output.string();
   const auto truth = truth_of(*opened, interrupt.token());
   interrupt.check(nothing);
   {
     ProgressBar bar("writing " + output.string());
-    write_euroc(*opened, truth, output, [&](int done, int of) {
+    write_recording(*opened, truth, arguments.format, output, [&](int done, int of) {
       bar.show(done, of);
       interrupt.check(nothing);
     });

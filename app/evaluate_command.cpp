@@ -45,7 +45,8 @@ Recordings open_all(const EvaluateArguments& arguments) {
   resolve_recordings(arguments.recordings);  // all recipes at once
   Recordings recordings;
   for (const fs::path& path : arguments.recordings) {
-    recordings.push_back(open_given(path, {.tracks = {}, .cache_bytes = cache_bytes(arguments)}));
+    recordings.push_back(open_given(
+        path, {.tracks = {}, .cache_bytes = cache_bytes(arguments), .topics = arguments.topics}));
     const Recording& recording = *recordings.back();
     for (const std::string& note : recording.notes) {
       fmt::print(stderr, "{}: {}\n", recording.name, note);

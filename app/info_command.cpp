@@ -7,10 +7,13 @@
 #include "engine/calibration/gyroscope_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/report/topic_info.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
 
 #include <array>
+#include <cstdio>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -44,20 +47,37 @@ std::string why_gyroscope_does_not_fit(const std::shared_ptr<const Recording>& r
       fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
 }
 
+/// Of a bag that is no recording its topics are told all the same, before the error is.
+std::shared_ptr<const Recording> open_or_tell(const InfoArguments& arguments,
+                                              const std::vector<TopicInfo>& topics) {
+  try {
+    return open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
+  } catch (const InputError&) {
+    if (!arguments.wants_json) {
+      fmt::print("{}", to_text(topics));
+      std::fflush(stdout);
+    }
+    throw;
+  }
+}
+
 }  // namespace
 
 int info_command(const InfoArguments& arguments) {
   const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
   if (to_file) check_json_file(arguments);
-  const std::shared_ptr<const Recording> recording = open_given(arguments.recording);
+  const auto topics = describe_topics(arguments.recording, arguments.topics);
+  const std::shared_ptr<const Recording> recording = open_or_tell(arguments, topics);
   RecordingInfo info = describe(*recording);
   if (const auto why = why_gyroscope_does_not_fit(recording, info.rate_hz); !why.empty())
     info.notes.push_back(why);
   if (!arguments.wants_json) {
-    fmt::print("{}", to_text(info));
+    fmt::print("{}{}", to_text(info), to_text(topics));
     return kDone;
   }
-  write_output(to_file ? arguments.json : "-", json_text(to_json(info), 2));
+  nlohmann::json json = to_json(info);
+  if (!topics.empty()) json["topics"] = to_json(topics);
+  write_output(to_file ? arguments.json : "-", json_text(json, 2));
   return kDone;
 }
 

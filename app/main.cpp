@@ -41,12 +41,23 @@ void add_cache(CLI::App& command, std::size_t& mib) {
       ->check(CLI::Range(16, 1'000'000));
 }
 
+void add_topics(CLI::App& command, TopicChoices& topics) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--topic",
+          [&topics](const std::vector<std::string>& texts) { topics = parse_topic_choices(texts); },
+          fmt::format("Of a bag with several: ROLE=NAME, e.g. image=/cam0/image_raw; roles: {}",
+                      fmt::join(ChoiceKeys<TopicRole>::keys, ", ")))
+      ->allow_extra_args(false);
+}
+
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command
       .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
       ->required();
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
+  add_topics(command, arguments.topics);
   add_cache(command, arguments.cache_mib);
   add_settings(command, arguments.settings, arguments.given);
 }
@@ -60,6 +71,7 @@ void add_info(CLI::App& app, InfoArguments& arguments) {
                    arguments.json,
                    "As JSON, into a file; without one, or as -, to standard output")
       ->expected(0, 1);
+  add_topics(*command, arguments.topics);
   command->callback([command, &arguments] {
     arguments.wants_json = command->count("--json") > 0;
     // `info --json RECORDING` has always printed; there the recording looks like the file.
@@ -141,6 +153,7 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
       "Interrupted (exit code 1) or killed, the same line goes on where it was");
   command->add_option(
       "recording", arguments.recordings, "Folders or files of recordings, or recipes");
+  add_topics(*command, arguments.topics);
   add_experiment(*command, arguments);
   arguments.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--jobs", arguments.jobs, "Windows of so many starts are computed at once")
@@ -201,7 +214,22 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
       "Instead of the lens: rotation, clock and bias of the gyroscope, from rotations by pictures");
   command->add_option("--figure", arguments.figure, "Picture of the rates, before and after (.png)")
       ->needs(gyroscope);
+  add_topics(*command, arguments.topics);
   command->add_option("--output", arguments.output, "camera.yaml to write")->required();
+}
+
+void add_convert(CLI::App& app, ConvertArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("convert", "Writes any recording as an EuRoC folder, or as a bag of ROS");
+  command
+      ->add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
+      ->required();
+  add_topics(*command, arguments.topics);
+  add_choice<RecordingFormat>(*command, "--format", "Default: euroc", arguments.format);
+  command
+      ->add_option(
+          "--output", arguments.output, "Folder to write; of a bag the file, .bag or .mcap")
+      ->required();
 }
 
 struct AllArguments {
@@ -210,8 +238,7 @@ struct AllArguments {
   InfoArguments info;
   RunArguments run;
   SnapshotArguments snapshot;
-  std::filesystem::path convert_recording;
-  std::filesystem::path convert_output;
+  ConvertArguments convert;
   std::filesystem::path recipe;
   std::filesystem::path synthesize_output;
   ViewArguments view;
@@ -222,17 +249,13 @@ void declare(CLI::App& app, AllArguments& arguments) {
   CLI::App* view = app.add_subcommand("view", "The window; the default");
   view->add_option(
       "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
+  add_topics(*view, arguments.view.topics);
   add_cache(*view, arguments.view.cache_mib);
   add_settings(*view, arguments.view.settings, arguments.view.given);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");
   add_info(app, arguments.info);
-  CLI::App* convert = app.add_subcommand("convert", "Writes any recording as an EuRoC folder");
-  convert
-      ->add_option(
-          "recording", arguments.convert_recording, "Folder or file of a recording, or a recipe")
-      ->required();
-  convert->add_option("--output", arguments.convert_output, "Folder to write")->required();
+  add_convert(app, arguments.convert);
   add_run(app, arguments.run);
   add_snapshot(app, arguments.snapshot);
   add_evaluate(app, arguments.evaluate);
@@ -246,8 +269,7 @@ void declare(CLI::App& app, AllArguments& arguments) {
 
 int dispatch(const CLI::App& app, const AllArguments& arguments) {
   if (app.got_subcommand("info")) return info_command(arguments.info);
-  if (app.got_subcommand("convert"))
-    return convert_command(arguments.convert_recording, arguments.convert_output);
+  if (app.got_subcommand("convert")) return convert_command(arguments.convert);
   if (app.got_subcommand("run")) return run_command(arguments.run);
   if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
   if (app.got_subcommand("calibrate"))

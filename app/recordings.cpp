@@ -78,9 +78,12 @@ std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOpti
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-std::function<Worker::Opened(const fs::path&)> opener_for_window(std::size_t cache_mib) {
-  return [cache_mib](const fs::path& path) {
-    return Worker::with_inspector(open_given(path, {.tracks = {}, .cache_bytes = cache_mib << 20}));
+std::function<Worker::Opened(const fs::path&)> opener_for_window(
+    std::size_t cache_mib, const std::optional<fs::path>& recording, const TopicChoices& topics) {
+  return [=](const fs::path& path) {
+    OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
+    if (path == recording) options.topics = topics;
+    return Worker::with_inspector(open_given(path, options));
   };
 }
 

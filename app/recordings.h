@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace gpo {
@@ -24,8 +25,11 @@ std::vector<std::filesystem::path> resolve_recordings(
 std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
                                             const OpenOptions& options = {});
 
-/// The same for the window's worker.
+/// The same for the window's worker. The topics are those of one recording, of others they are
+/// found.
 std::function<Worker::Opened(const std::filesystem::path&)> opener_for_window(
-    std::size_t cache_mib);
+    std::size_t cache_mib,
+    const std::optional<std::filesystem::path>& recording = {},
+    const TopicChoices& topics = {});
 
 }  // namespace gpo

@@ -35,18 +35,20 @@ constexpr const char* kTitle = "GPO Inspector";
 
 /// Everything between opening the window and closing it.
 struct Session {
-  std::size_t cache_mib;
+  const ViewArguments& arguments;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
   Gui gui{window};
-  WorkbenchHost host{
-      gui, opener_for_window(cache_mib), example_recording(), [] { glfwPostEmptyEvent(); }};
+  WorkbenchHost host{gui,
+                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
+                     example_recording(),
+                     [] { glfwPostEmptyEvent(); }};
   std::deque<ScriptLine> script;
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
 
-  explicit Session(std::size_t cache) : cache_mib(cache) {}
+  explicit Session(const ViewArguments& from) : arguments(from) {}
 
   void draw() {
     host.size = window.size();
@@ -120,7 +122,7 @@ std::filesystem::path example_recording() {
 }
 
 int view_command(const ViewArguments& arguments) {
-  const auto& [recording, cache_mib, settings, given, session_file, script] = arguments;
+  const auto& [recording, topics, cache_mib, settings, given, session_file, script] = arguments;
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }
@@ -128,7 +130,7 @@ int view_command(const ViewArguments& arguments) {
   if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
   if (session_file) read_session(*session_file);  // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session(cache_mib);
+  Session session(arguments);
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.state.recent = recent_files();

@@ -46,6 +46,7 @@ const std::vector<Room> kRooms = {
     {"engine/files", {"engine/base"}},
     {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},
     {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
+    {"engine/recording/bags", {"engine/base", "engine/files", "engine/geometry", "engine/recording/pictures"}},
     {"engine/recording/board", {"engine/base", "engine/files", "engine/geometry", "engine/recording", "engine/recording/pictures"}},
     {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
     {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend", "engine/recording/"}},
@@ -88,7 +89,7 @@ const Names kPure = {"engine/base/",
                      "engine/truth/",
                      "engine/evaluation/"};
 const Names kLibrariesOfPicturesAndFiles = {
-    "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib"};
+    "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib", "bzlib", "lz4frame", "zstd", "sqlite3"};
 /// The engine needs no screen and no command line.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 

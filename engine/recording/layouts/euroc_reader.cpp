@@ -8,6 +8,7 @@
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/gyroscope_file.h"
+#include "engine/recording/layouts/imu_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
 #include "engine/recording/layouts/truth_file.h"
 #include "engine/recording/pictures/picture_files.h"
@@ -79,37 +80,6 @@ void add_pictures(Recording& recording,
   add_picture_files(recording, std::move(list.files), cache_bytes);
 }
 
-/// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has
-/// them.
-struct ImuCalibration {
-  Eigen::Matrix3d R_body_gyro = Eigen::Matrix3d::Identity();
-  std::optional<Eigen::Vector3d> bias_rad_s;
-  std::optional<double> bias_sigma_rad_s;
-};
-
-double positive_number(const YamlEntry& entry, const std::string& expected) {
-  const double value = number(entry, expected);
-  if (value <= 0) yaml_fail(entry, expected);
-  return value;
-}
-
-ImuCalibration read_imu_calibration(const fs::path& file, std::vector<std::string>& notes) {
-  ImuCalibration result;
-  if (!is_file(file)) {
-    notes.emplace_back("no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
-    return result;
-  }
-  const auto root = load_yaml(file);
-  if (const auto T_BS = find(root, "T_BS")) result.R_body_gyro = rigid_motion(*T_BS).R_wc;
-  if (const auto bias = find(root, "gyroscope_bias")) {
-    const auto b = numbers(*bias, 3, "3 (x, y, z) in rad/s");
-    result.bias_rad_s = Eigen::Vector3d(b[0], b[1], b[2]);
-  }
-  if (const auto sigma = find(root, "gyroscope_bias_sigma"))
-    result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
-  return result;
-}
-
 /// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
 std::optional<fs::path> truth_folder(const fs::path& folder) {
   for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
@@ -145,20 +115,22 @@ void add_gyroscope(Recording& recording,
   const auto file = if_file(folder / "imu0" / "data.csv");
   if (!file) return;
   Gyroscope gyroscope = read_gyroscope(*file, TimeUnit::nanoseconds);
-  const auto imu = read_imu_calibration(folder / "imu0" / "sensor.yaml", recording.notes);
-  gyroscope.R_gyro_camera =
-      imu.R_body_gyro.transpose() * recording.T_body_camera.value_or(Pose{}).R_wc;
+  ImuCalibration imu;
+  if (const auto sensor = if_file(folder / "imu0" / "sensor.yaml")) {
+    imu = read_imu_calibration(*sensor);
+  } else {
+    recording.notes.emplace_back(
+        "no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
+  }
+  const Eigen::Matrix3d R_body_gyro = imu.R_body_gyro.value_or(Eigen::Matrix3d::Identity());
+  gyroscope.R_gyro_camera = R_body_gyro.transpose() * recording.T_body_camera.value_or(Pose{}).R_wc;
   gyroscope.time_offset_ns = time_offset_ns;
-  if (imu.bias_rad_s) {
-    gyroscope.bias_rad_s = *imu.bias_rad_s;
-    gyroscope.bias_known = true;
-    gyroscope.bias_source = "imu0/sensor.yaml";
-  } else if (true_mean_bias_rad_s) {
+  set_bias(gyroscope, imu, "imu0/sensor.yaml");
+  if (!imu.bias_rad_s && true_mean_bias_rad_s) {
     gyroscope.bias_rad_s = *true_mean_bias_rad_s;
     gyroscope.bias_known = true;
     gyroscope.bias_source = "mean of the ground truth's";
   }
-  if (imu.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *imu.bias_sigma_rad_s;
   recording.gyroscope = std::move(gyroscope);
 }
 

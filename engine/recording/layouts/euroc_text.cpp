@@ -46,6 +46,13 @@ std::string transformation_yaml(const Pose& pose) {
   return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
 }
 
+std::string bias_yaml(const Gyroscope& gyroscope) {
+  std::string text;
+  if (!gyroscope.bias_rad_s.isZero(0))
+    text = fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
+  return text + fmt::format("gyroscope_bias_sigma: {}  # [rad/s]\n", gyroscope.bias_sigma_rad_s);
+}
+
 std::string lens_yaml(const Camera& camera) {
   return fmt::format(
       "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"

@@ -4,6 +4,7 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
+#include "engine/window/gyroscope.h"
 
 #include <optional>
 #include <span>
@@ -46,6 +47,11 @@ std::string yaml_list(std::span<const double> values);
 std::string yaml_list(const Eigen::Vector3d& values);
 /// `T_BS` as EuRoC's sensor.yaml has it; reads back as the same numbers.
 std::string transformation_yaml(const Pose& pose);
+/// `gyroscope_bias`, unless it is zero, and `gyroscope_bias_sigma`.
+std::string bias_yaml(const Gyroscope& gyroscope);
+/// Beside poses that are not to be interpolated.
+inline constexpr const char* kNoInterpolation =
+    "longest_gap_s: 0  # over which poses are interpolated: frames without one stay without\n";
 /// `resolution` to `distortion_coefficients`.
 std::string lens_yaml(const Camera& camera);
 

@@ -8,6 +8,7 @@
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/layouts/sidecar_files.h"
+#include "engine/recording/pictures/picture_file.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
@@ -34,12 +35,10 @@ std::string camera_yaml(const Recording& recording) {
 std::string imu_yaml(const Gyroscope& gyroscope, const Pose& T_body_camera) {
   const Pose T_body_gyro{T_body_camera.R_wc * gyroscope.R_gyro_camera.transpose(),
                          Eigen::Vector3d::Zero()};
-  std::string text = fmt::format("sensor_type: imu\n{}rate_hz: {}\n",
-                                 transformation_yaml(T_body_gyro),
-                                 rate_hz(gyroscope.timestamps_ns));
-  if (!gyroscope.bias_rad_s.isZero(0))
-    text += fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
-  return text + fmt::format("gyroscope_bias_sigma: {}  # [rad/s]\n", gyroscope.bias_sigma_rad_s);
+  const std::string text = fmt::format("sensor_type: imu\n{}rate_hz: {}\n",
+                                       transformation_yaml(T_body_gyro),
+                                       rate_hz(gyroscope.timestamps_ns));
+  return text + bias_yaml(gyroscope);
 }
 
 std::string imu_csv(const Gyroscope& gyroscope) {
@@ -76,12 +75,7 @@ void write_pictures(const Recording& recording,
     const std::string name = fmt::format("{:019d}.png", recording.timestamps_ns[i]);
     list += fmt::format("{},{}\n", recording.timestamps_ns[i], name);
     if (!recording.pictures) continue;
-    const cv::Mat bgr = recording.pictures->bgr(i);
-    cv::Mat channels[3];
-    cv::split(bgr, channels);
-    const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
-                      cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
-    write_picture(cam / "data" / name, gray ? channels[0] : bgr);
+    write_picture(cam / "data" / name, gray_if_gray(recording.pictures->bgr(i)));
     if (progress) progress(i + 1, recording.frame_count());
   }
   write_file(cam / "data.csv", list);
@@ -92,19 +86,7 @@ void write_truth(const Recording& recording, const GroundTruth& truth, const fs:
   make_folder(folder);
   write_file(folder / "data.csv", truth_csv(recording, truth));
   write_file(folder / "sensor.yaml",
-             "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) +
-                 "longest_gap_s: 0  # over which poses are interpolated: frames without one stay "
-                 "without\n");
-}
-
-void write_sidecars(const Recording& recording, const fs::path& folder) {
-  if (recording.plane) write_file(folder / "plane.yaml", plane_yaml(*recording.plane));
-  if (recording.board) write_file(folder / "board.yaml", board_yaml(*recording.board));
-  if (recording.tracks.empty()) return;
-  std::string text = "frame,track,x,y\n";
-  for (const TrackObservation& o : recording.tracks)
-    text += fmt::format("{},{},{},{}\n", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
-  write_file(folder / "tracks.csv", text);
+             "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
 }
 
 }  // namespace
@@ -124,7 +106,8 @@ void write_euroc(const Recording& recording,
     write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));
   }
   if (truth) write_truth(recording, *truth, mav);
-  write_sidecars(recording, unfinished.path());
+  for (const auto& [name, text] : sidecar_texts(recording))
+    write_file(unfinished.path() / name, text);
   write_pictures(recording, mav / "cam0", progress);
   unfinished.finish();
 }

@@ -3,6 +3,7 @@
 #include "engine/recording/layouts/layouts.h"
 
 #include "engine/files/folder.h"
+#include "engine/recording/layouts/bag_reader.h"
 #include "engine/recording/layouts/euroc_reader.h"
 #include "engine/recording/layouts/pictures_reader.h"
 #include "engine/recording/layouts/tum_reader.h"
@@ -27,7 +28,7 @@ std::optional<fs::path> any_folder(const fs::path& path) {
 }  // namespace
 
 std::span<const Layout> layouts() {
-  static constexpr std::array<Layout, 4> kLayouts = {
+  static constexpr std::array<Layout, 5> kLayouts = {
       {{"EuRoC", "cam0/data.csv (EuRoC)", "", find_euroc, has_euroc_pictures, read_euroc},
        {"TUM RGB-D", "rgb.txt (TUM RGB-D)", "rgb.txt", find_tum, always, read_tum},
        {"pictures",
@@ -36,6 +37,7 @@ std::span<const Layout> layouts() {
         find_pictures,
         always,
         read_pictures},
+       {"ROS bag", "a bag of ROS (bag, db3, mcap)", "", find_bag, always, nullptr, read_bag},
        {"tracks", "tracks.csv", "tracks.csv", any_folder, never, read_pictures}}};
   return kLayouts;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/recording.h"
 
 #include <cstddef>
@@ -24,6 +25,11 @@ struct Layout {
   Recording (*read)(const std::filesystem::path& found,
                     const std::optional<std::filesystem::path>& tracks,
                     std::size_t cache_bytes);
+  /// Instead of `read`, where there are topics to choose from.
+  Recording (*read_topics)(const std::filesystem::path& found,
+                           const std::optional<std::filesystem::path>& tracks,
+                           std::size_t cache_bytes,
+                           const TopicChoices& choices) = nullptr;
 };
 
 /// All of them, in the order in which they are tried. The last one is tracks alone, for what has

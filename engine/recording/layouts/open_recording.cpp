@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
+#include "engine/recording/bags/open_bag.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/sidecar_files.h"
 #include "engine/recording/pictures/video_file.h"
@@ -94,8 +95,19 @@ Found find_recording(const fs::path& path, const OpenOptions& options) {
   }
   throw InputError(path.string() +
                    ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or "
-                   "mp4, avi, mov, mkv");
+                   "mp4, avi, mov, mkv, bag, db3, mcap");
 }
+
+Recording read(const Found& found, const OpenOptions& options) {
+  const auto& [layout, path, folder, tracks] = found;
+  if (layout->read_topics != nullptr)
+    return layout->read_topics(path, tracks, options.cache_bytes, options.topics);
+  if (options.topics.empty()) return layout->read(path, tracks, options.cache_bytes);
+  throw InputError(fmt::format(
+      "{}: found {} and no topics, expected a bag for --topic", path.string(), layout->title));
+}
+
+bool is_recording_file(const fs::path& path) { return is_video_name(path) || is_bag_name(path); }
 
 void add_sidecars(Recording& recording, const Found& found) {
   const auto beside = [&](const char* name) {
@@ -155,11 +167,11 @@ std::string name_of(const fs::path& path) {
 
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
   const Found found = find_recording(path, options);
-  Recording recording = found.layout->read(found.path, found.tracks, options.cache_bytes);
+  Recording recording = read(found, options);
   recording.layout = (recording.pictures ? *found.layout : layouts().back()).title;
   recording.path = path;
   recording.cache_folder = options.cache_folder;
-  recording.name = name_of(is_video_name(path) || is_folder(path) ? path : found.folder);
+  recording.name = name_of(is_recording_file(path) || is_folder(path) ? path : found.folder);
   add_sidecars(recording, found);
   take_bias_from_rest(recording);
   add_notes(recording);

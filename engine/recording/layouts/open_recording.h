@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/recording.h"
 
 #include <cstddef>
@@ -16,6 +17,7 @@ struct OpenOptions {
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
   /// Where what was found in the pictures is kept for the next time; empty: nowhere.
   std::filesystem::path cache_folder{};
+  TopicChoices topics{};  ///< of a bag
 };
 
 /// Opens a folder or a file; finds out which layout it is. Pictures are not decoded yet, but each

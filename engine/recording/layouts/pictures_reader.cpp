@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
+#include "engine/recording/layouts/bag_reader.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/gyroscope_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
@@ -128,12 +129,16 @@ std::optional<fs::path> find_pictures(const fs::path& path) {
   return found ? std::optional(path) : std::nullopt;
 }
 
-std::shared_ptr<const FrameCache> open_pictures(const fs::path& path, std::size_t cache_bytes) {
+std::shared_ptr<const FrameCache> open_pictures(const fs::path& path,
+                                                std::size_t cache_bytes,
+                                                const TopicChoices& topics) {
+  if (!find_pictures(path) && find_bag(path)) return open_bag_pictures(path, cache_bytes, topics);
   Recording recording;  // not calibrated: of any size
   if (const auto video = video_at(path)) {
     if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).pictures;
-    throw InputError(path.string() +
-                     ": found a file that is no video, expected a folder or mp4, avi, mov, mkv");
+    throw InputError(
+        path.string() +
+        ": found a file that is no video, expected a folder or mp4, avi, mov, mkv, bag, db3, mcap");
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
     if (!is_folder(folder)) continue;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>
@@ -17,9 +18,10 @@ Recording read_pictures(const std::filesystem::path& path,
                         std::size_t cache_bytes);
 
 /// Only the pictures of a video, of a folder with one or with numbered pictures, or of any layout's
-/// folder; of whatever size, without a calibration. Throws InputError where there are none.
+/// folder, or of a bag; of whatever size, without a calibration. Throws InputError where there are none.
 std::shared_ptr<const FrameCache> open_pictures(const std::filesystem::path& path,
-                                                std::size_t cache_bytes);
+                                                std::size_t cache_bytes,
+                                                const TopicChoices& topics = {});
 
 /// The path itself, where it is a video or a folder with a video or with numbered pictures.
 std::optional<std::filesystem::path> find_pictures(const std::filesystem::path& path);

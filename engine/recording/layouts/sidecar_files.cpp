@@ -116,4 +116,16 @@ std::string plane_yaml(const Plane& plane) {
       plane.distance);
 }
 
+std::map<std::string, std::string> sidecar_texts(const Recording& recording) {
+  std::map<std::string, std::string> files;
+  if (recording.plane) files["plane.yaml"] = plane_yaml(*recording.plane);
+  if (recording.board) files["board.yaml"] = board_yaml(*recording.board);
+  if (recording.tracks.empty()) return files;
+  std::string& text = files["tracks.csv"];
+  text = "frame,track,x,y\n";
+  for (const TrackObservation& o : recording.tracks)
+    text += fmt::format("{},{},{},{}\n", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
+  return files;
+}
+
 }  // namespace gpo

@@ -5,6 +5,7 @@
 #include "engine/recording/recording.h"
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace gpo {
@@ -20,5 +21,8 @@ Plane read_plane(const std::filesystem::path& file);
 /// What the two read.
 std::string board_yaml(const Board& board);
 std::string plane_yaml(const Plane& plane);
+
+/// The files plane.yaml, board.yaml and tracks.csv of what a recording has: names and texts.
+std::map<std::string, std::string> sidecar_texts(const Recording& recording);
 
 }  // namespace gpo

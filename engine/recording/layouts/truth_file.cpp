@@ -35,7 +35,7 @@ Pose pose_of(const CsvTable& table, const CsvRow& row, const std::array<int, 4>&
 PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
   path.timestamps_ns = csv_time_stamps(table, unit);
-  path.longest_gap_ns = 3 * std::min(median_period_ns(path.timestamps_ns), INT64_MAX / 4);
+  path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   path.poses.reserve(table.rows.size());
   for (const auto& row : table.rows) path.poses.push_back(pose_of(table, row, quaternion));
   return path;
@@ -59,6 +59,10 @@ std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string
 }
 
 }  // namespace
+
+std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns) {
+  return 3 * std::min(median_period_ns(timestamps_ns), INT64_MAX / 4);
+}
 
 PosePath read_euroc_path(const std::filesystem::path& file) {
   const CsvTable table =
@@ -115,18 +119,23 @@ void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMo
   if (const auto gap = nanoseconds(root, "longest_gap_s")) path.longest_gap_ns = *gap;
 }
 
+void read_mounting_beside(const std::filesystem::path& folder,
+                          PosePath& path,
+                          TruthMounting& mounting) {
+  const auto yaml = if_file(folder / "groundtruth.yaml");
+  if (!yaml) return;
+  read_truth_clock(*yaml, path, mounting);
+  if (const auto T = find(load_yaml(*yaml), "T_truth_camera"))
+    mounting.T_measured_camera = rigid_motion(*T);
+}
+
 std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns) {
   const auto file = if_file(folder / "groundtruth.txt");
   if (!file) return std::nullopt;
   PosePath path = read_tum_path(*file);
   TruthMounting mounting;
-  if (const auto yaml = if_file(folder / "groundtruth.yaml")) {
-    read_truth_clock(*yaml, path, mounting);
-    if (const auto T = find(load_yaml(*yaml), "T_truth_camera")) {
-      mounting.T_measured_camera = rigid_motion(*T);
-    }
-  }
+  read_mounting_beside(folder, path, mounting);
   return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
 }
 

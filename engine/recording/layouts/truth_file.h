@@ -40,6 +40,9 @@ struct TruthMounting {
   std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
 };
 
+/// Three median periods: over longer gaps poses are not interpolated unless a file says so.
+std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns);
+
 /// Camera poses at the frames' times. `source` is for people.
 GroundTruth camera_truth(const PosePath& path,
                          const TruthMounting& mounting,
@@ -50,9 +53,14 @@ GroundTruth camera_truth(const PosePath& path,
 /// Throws InputError.
 void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
 
-/// Of a groundtruth.txt beside the recording, with the hand-eye calibration `T_truth_camera` and
-/// the clock of groundtruth.yaml, if there is one; nothing without groundtruth.txt. Throws
-/// InputError.
+/// The same keys and the hand-eye calibration `T_truth_camera` of the groundtruth.yaml in a folder,
+/// if there is one. Throws InputError.
+void read_mounting_beside(const std::filesystem::path& folder,
+                          PosePath& path,
+                          TruthMounting& mounting);
+
+/// Of a groundtruth.txt beside the recording, with what groundtruth.yaml says; nothing without
+/// groundtruth.txt. Throws InputError.
 std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns);
 

@@ -18,38 +18,43 @@ namespace gpo {
 
 namespace {
 
-[[noreturn]] void refuse_format(const std::filesystem::path& file) {
-  throw InputError(file.string() + ": found something that cannot be decoded, expected a picture");
+[[noreturn]] void refuse_format(const std::string& name) {
+  throw InputError(name + ": found something that cannot be decoded, expected a picture");
 }
 
 /// Refuses what would not fit into memory, and formats whose decoders nobody asked for.
-void check_header(const std::filesystem::path& file, std::string_view bytes) {
-  constexpr std::int64_t kMostPixels = 64'000'000;
-  constexpr std::int64_t kLongestSide = 65'535;
+void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_picture_header(bytes);
-  if (!header) refuse_format(file);
-  const auto& [width, height, bits] = *header;
-  if (width > kLongestSide || height > kLongestSide || width * height > kMostPixels) {
-    throw InputError(fmt::format("{}: found a picture of {}x{}, expected at most {} million pixels",
-                                 file.string(),
-                                 width,
-                                 height,
-                                 kMostPixels / 1'000'000));
-  }
-  if (bits > 16) {
+  if (!header) refuse_format(name);
+  check_picture_size(name, header->width, header->height);
+  if (header->bits > 16) {
     throw InputError(
-        fmt::format("{}: found {} bits a channel, expected 8 or 16", file.string(), bits));
+        fmt::format("{}: found {} bits a channel, expected 8 or 16", name, header->bits));
   }
 }
 
 }  // namespace
 
+void check_picture_size(const std::string& name, std::int64_t width, std::int64_t height) {
+  constexpr std::int64_t kMostPixels = 64'000'000;
+  constexpr std::int64_t kLongestSide = 65'535;
+  if (width <= kLongestSide && height <= kLongestSide && width * height <= kMostPixels) return;
+  throw InputError(fmt::format("{}: found a picture of {}x{}, expected at most {} million pixels",
+                               name,
+                               width,
+                               height,
+                               kMostPixels / 1'000'000));
+}
+
 cv::Mat read_picture(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file);
+  return decode_picture(read_file(file), file.string());
+}
+
+cv::Mat decode_picture(std::string_view bytes, const std::string& name) {
   if (!is_whole_picture(bytes)) {
-    throw InputError(file.string() + ": found a cut or broken picture, expected a whole one");
+    throw InputError(name + ": found a cut or broken picture, expected a whole one");
   }
-  check_header(file, bytes);
+  check_header(name, bytes);
   cv::Mat picture;
   try {
     std::string needed = without_remarks(bytes);
@@ -59,7 +64,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
     picture.release();
   }
   if (picture.empty() || picture.depth() > CV_16U || picture.depth() == CV_8S) {
-    refuse_format(file);
+    refuse_format(name);
   }
   return picture;
 }
@@ -72,6 +77,14 @@ int significant_bits(const cv::Mat& picture) {
     if (largest < std::exp2(bits)) return bits;
   }
   return 16;
+}
+
+cv::Mat gray_if_gray(const cv::Mat& bgr) {
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+  return gray ? channels[0] : bgr;
 }
 
 cv::Mat to_8_bits(const cv::Mat& picture, int bits) {

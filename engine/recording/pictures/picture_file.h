@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include <opencv2/core.hpp>
 
@@ -11,10 +14,18 @@ namespace gpo {
 /// Decodes a picture file: blue, green, red, of 8 or 16 bits each. Throws InputError where it is
 /// missing, cut or broken; a half picture is never returned.
 cv::Mat read_picture(const std::filesystem::path& file);
+/// The same of a picture file's bytes; `name` stands for the file in messages.
+cv::Mat decode_picture(std::string_view bytes, const std::string& name);
+
+/// Throws InputError where a picture of this size would not fit into memory.
+void check_picture_size(const std::string& name, std::int64_t width, std::int64_t height);
 
 /// How many bits of a picture's pixels are used, judged by the brightest: 8, 10, 12, 14 or 16.
 /// Cameras of 10 or 12 bits store those in pictures of 16.
 int significant_bits(const cv::Mat& picture);
+
+/// One channel where all three are the same, else the picture itself.
+cv::Mat gray_if_gray(const cv::Mat& bgr);
 
 /// CV_8UC3; brighter than `bits` allow is white.
 cv::Mat to_8_bits(const cv::Mat& picture, int bits);

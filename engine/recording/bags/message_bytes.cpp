@@ -1,0 +1,201 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/bags/message_bytes.h"
+
+#include <array>
+#include <cstring>
+#include <initializer_list>
+#include <stdexcept>
+#include <string_view>
+
+namespace gpo {
+namespace {
+
+/// The opposite of a MessageCursor, little-endian.
+class MessageBytes {
+ public:
+  explicit MessageBytes(MessageEncoding encoding) : cdr_(encoding == MessageEncoding::cdr) {}
+
+  template <class T>
+  void number(T value) {
+    if (cdr_) bytes_.resize((bytes_.size() + sizeof(T) - 1) / sizeof(T) * sizeof(T));
+    std::array<char, sizeof(T)> stored;
+    std::memcpy(stored.data(), &value, sizeof(T));
+    bytes_.append(stored.data(), stored.size());
+  }
+  void data(std::string_view data) {
+    number(static_cast<std::uint32_t>(data.size()));
+    bytes_ += data;
+  }
+  void text(const std::string& text) {
+    data(cdr_ ? std::string_view(text.c_str(), text.size() + 1) : std::string_view(text));
+  }
+  void doubles(const auto& values) {
+    for (const double value : values) number(value);
+  }
+  void zeros(int count) {
+    for (int i = 0; i < count; ++i) number(0.0);
+  }
+  void header(const MessageHeader& header) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    std::int64_t seconds = header.stamp_ns / kSecond;
+    if (header.stamp_ns % kSecond < 0) --seconds;
+    if (!cdr_) number(std::uint32_t{0});  // seq
+    number(static_cast<std::int32_t>(seconds));
+    number(static_cast<std::uint32_t>(header.stamp_ns - seconds * kSecond));
+    text(header.frame_id);
+  }
+  std::string message() const { return (cdr_ ? std::string("\0\1\0\0", 4) : "") + bytes_; }
+
+ private:
+  bool cdr_;
+  std::string bytes_;  ///< without CDR's head, from which multiples do not count
+};
+
+void add_transform(MessageBytes& bytes, const PoseMessage& message) {
+  bytes.header(message.header);
+  bytes.text(message.child_frame_id);
+  bytes.doubles(message.position);
+  bytes.doubles(message.quaternion_xyzw);
+}
+
+/// A type's fields, where the two ROS do not differ, and the types that they have.
+struct Definition {
+  const char* name;
+  const char* fields;
+  std::initializer_list<const char*> parts;
+  const char* ros1_sum;
+};
+
+const std::array<Definition, 9> kDefinitions = {
+    {{"sensor_msgs/Image",
+      "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n"
+      "uint32 step\nuint8[] data\n",
+      {"std_msgs/Header"},
+      "060021388200f6f0f447d0fcd9c64743"},
+     {"sensor_msgs/CameraInfo",
+      "",
+      {"std_msgs/Header", "sensor_msgs/RegionOfInterest"},
+      "c9a58c1b0b154e0e6da7578cb991d214"},
+     {"sensor_msgs/RegionOfInterest",
+      "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n",
+      {},
+      ""},
+     {"sensor_msgs/Imu",
+      "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+      "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+      "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+      "float64[9] linear_acceleration_covariance\n",
+      {"std_msgs/Header", "geometry_msgs/Quaternion", "geometry_msgs/Vector3"},
+      "6a62c6daae103f4ff57a132d6f95cec2"},
+     {"geometry_msgs/TransformStamped",
+      "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
+      {"std_msgs/Header",
+       "geometry_msgs/Transform",
+       "geometry_msgs/Vector3",
+       "geometry_msgs/Quaternion"},
+      "b5764a33bfeb3588febc2682852579b0"},
+     {"tf2_msgs/TFMessage",
+      "geometry_msgs/TransformStamped[] transforms\n",
+      {"geometry_msgs/TransformStamped",
+       "std_msgs/Header",
+       "geometry_msgs/Transform",
+       "geometry_msgs/Vector3",
+       "geometry_msgs/Quaternion"},
+      "94810edda583a504dfda3829e70d7eec"},
+     {"geometry_msgs/Transform",
+      "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
+      {},
+      ""},
+     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n", {}, ""},
+     {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n", {}, ""}}};
+
+const Definition& definition_of(std::string_view name) {
+  for (const Definition& one : kDefinitions)
+    if (one.name == name) return one;
+  throw std::out_of_range("a message that is not written");
+}
+
+std::string fields_of(std::string_view name, bool ros1) {
+  if (name == "std_msgs/Header") {
+    return ros1 ? "uint32 seq\ntime stamp\nstring frame_id\n"
+                : "builtin_interfaces/Time stamp\nstring frame_id\n";
+  }
+  if (name != "sensor_msgs/CameraInfo") return definition_of(name).fields;
+  const std::string matrices = ros1 ? "float64[] D\nfloat64[9] K\nfloat64[9] R\nfloat64[12] P\n"
+                                    : "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\n";
+  return "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n" +
+         matrices + "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n";
+}
+
+}  // namespace
+
+std::string image_bytes(const ImageMessage& message, MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  bytes.header(message.header);
+  bytes.number(message.height);
+  bytes.number(message.width);
+  bytes.text(message.encoding);
+  bytes.number(static_cast<std::uint8_t>(message.big_endian));
+  bytes.number(message.step);
+  bytes.data(message.data);
+  return bytes.message();
+}
+
+std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  bytes.header(message.header);
+  bytes.number(message.height);
+  bytes.number(message.width);
+  bytes.text(message.distortion_model);
+  bytes.number(static_cast<std::uint32_t>(message.D.size()));
+  bytes.doubles(message.D);
+  bytes.doubles(message.K);
+  const auto& k = message.K;
+  bytes.doubles(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+  bytes.doubles(std::array<double, 12>{k[0], 0, k[2], 0, 0, k[4], k[5], 0, 0, 0, 1, 0});
+  for (int i = 0; i < 6; ++i) bytes.number(std::uint32_t{0});  // binning, region of interest
+  bytes.number(std::uint8_t{0});
+  return bytes.message();
+}
+
+std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  bytes.header(message.header);
+  bytes.doubles(std::array<double, 5>{0, 0, 0, 1, -1});  // no orientation: its covariance is -1
+  bytes.zeros(8);
+  bytes.doubles(message.angular_velocity);
+  bytes.zeros(9);
+  bytes.doubles(message.linear_acceleration);
+  bytes.zeros(9);
+  return bytes.message();
+}
+
+std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  add_transform(bytes, message);
+  return bytes.message();
+}
+
+std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  bytes.number(static_cast<std::uint32_t>(messages.size()));
+  for (const PoseMessage& message : messages) add_transform(bytes, message);
+  return bytes.message();
+}
+
+MessageType message_type(const std::string& name, MessageEncoding encoding) {
+  const bool ros1 = encoding == MessageEncoding::ros1;
+  const Definition& definition = definition_of(name);
+  MessageType type{definition.name, definition.ros1_sum, fields_of(name, ros1)};
+  std::vector<std::string> parts(definition.parts.begin(), definition.parts.end());
+  if (!ros1) parts.emplace_back("builtin_interfaces/Time");
+  for (const std::string& part : parts) {
+    const bool time = part == "builtin_interfaces/Time";
+    type.definition += std::string(80, '=') + "\nMSG: " + part + "\n" +
+                       (time ? "int32 sec\nuint32 nanosec\n" : fields_of(part, ros1));
+  }
+  return type;
+}
+
+}  // namespace gpo

@@ -1,0 +1,48 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/base/choice.h"
+#include "engine/recording/bags/bag.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// What a bag's topics are read as.
+enum class TopicRole { image, camera_info, imu, truth };
+inline constexpr int kTopicRoles = 4;
+template <>
+struct ChoiceKeys<TopicRole> {
+  static constexpr const char* name = "topic";
+  static constexpr std::array<const char*, kTopicRoles> keys = {
+      "image", "camera_info", "imu", "truth"};
+};
+
+/// The topics that a user chose, by name.
+using TopicChoices = std::map<TopicRole, std::string>;
+
+/// "image=/cam0/image_raw", as often as there are roles. Throws SettingError.
+TopicChoices parse_topic_choices(const std::vector<std::string>& texts);
+
+struct TopicRoles {
+  std::array<std::optional<int>, kTopicRoles> topics;  ///< of `Bag::topics`
+  std::vector<std::string> notes;                      ///< "several topics with ..."
+
+  std::optional<int> of(TopicRole role) const { return topics[static_cast<std::size_t>(role)]; }
+};
+
+/// Finds a topic with messages for each role by its type: the chosen one, else the one whose name
+/// begins most like the pictures', of those the first by name; one that its name calls depth or
+/// accelerations only where there is no other. Throws InputError where there are no pictures, or no
+/// such topic as was chosen.
+TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
+
+/// "/imu (sensor_msgs/Imu, 200)", with commas between and only the first of very many.
+std::string topics_text(const Bag& bag);
+
+}  // namespace gpo

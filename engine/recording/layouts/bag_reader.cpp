@@ -1,0 +1,232 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/bag_reader.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/recording/bags/bag_contents.h"
+#include "engine/recording/bags/bag_picture.h"
+#include "engine/recording/bags/frame_tree.h"
+#include "engine/recording/bags/open_bag.h"
+#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/layouts/camera_info.h"
+#include "engine/recording/layouts/imu_file.h"
+#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/truth_file.h"
+#include "engine/recording/pictures/picture_file.h"
+#include "engine/recording/pictures/picture_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> bags_in(const fs::path& folder) {
+  std::vector<fs::path> bags = files_in(folder);
+  std::erase_if(bags, [](const fs::path& file) { return !is_bag_name(file); });
+  std::ranges::sort(bags);
+  return bags;
+}
+
+/// What is opened, and what it has for which purpose.
+struct OpenedBag {
+  std::shared_ptr<const Bag> bag;
+  TopicRoles roles;
+  BagContents contents;
+
+  const BagTopic& topic(TopicRole role) const { return bag->topics[*roles.of(role)]; }
+  /// "room.bag: /imu0", of a topic that has the role.
+  std::string name(TopicRole role) const {
+    return fmt::format("{}: {}", bag->file.string(), topic(role).name);
+  }
+};
+
+OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
+  OpenedBag opened;
+  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path)));
+  opened.roles = topic_roles(*opened.bag, choices);
+  opened.contents = read_contents(*opened.bag, opened.roles);
+  return opened;
+}
+
+/// Decodes the first picture: it tells how many bits are significant, and the camera's size where
+/// the calibration does not.
+std::shared_ptr<const FrameCache> pictures_of(const OpenedBag& opened,
+                                              Camera& camera,
+                                              std::size_t cache_bytes) {
+  const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image)](
+                        const BagMessage& message, int frame) {
+    const std::string name =
+        fmt::format("{}: {}: picture {}", bag->file.string(), topic.name, frame);
+    return std::pair(bag_picture(bag->read(message, kWholeMessage), topic, name), name);
+  };
+  const auto& messages = opened.contents.pictures;
+  const auto [first, first_name] = read(messages.front(), 0);
+  check_size(first_name, first.size(), camera);
+  camera.width = first.cols;
+  camera.height = first.rows;
+  const auto decode = [read, messages, camera, bits = significant_bits(first)](int frame) {
+    const auto [picture, name] = read(messages[frame], frame);
+    check_size(name, picture.size(), camera);
+    return to_8_bits(picture, bits);
+  };
+  return std::make_shared<const FrameCache>(static_cast<int>(messages.size()), decode, cache_bytes);
+}
+
+/// A camera.yaml beside the bag was put there to be used; else what the bag says; else whatever
+/// calibration lies beside it.
+Calibration calibration_of(const OpenedBag& opened,
+                           const fs::path& folder,
+                           std::vector<std::string>& notes) {
+  const auto& info = opened.contents.camera_info;
+  const bool calibrated = info && is_calibrated(*info);
+  if (const auto file = if_file(folder / "camera.yaml")) {
+    if (calibrated) {
+      notes.push_back(
+          fmt::format("camera.yaml is read, not {}", opened.topic(TopicRole::camera_info).name));
+    }
+    return read_calibration(*file);
+  }
+  if (!calibrated) return read_calibration(calibration_in(folder));
+  Calibration calibration;
+  calibration.camera = camera_of(*info, opened.name(TopicRole::camera_info));
+  return calibration;
+}
+
+Gyroscope gyroscope_of(const OpenedBag& opened) {
+  Gyroscope gyroscope;
+  gyroscope.file = opened.bag->file;
+  for (const ImuMessage& sample : opened.contents.imu) {
+    if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite()) {
+      throw InputError(fmt::format("{}: found a sample that is no number at {} ns, expected rad/s",
+                                   opened.name(TopicRole::imu),
+                                   sample.header.stamp_ns));
+    }
+    gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
+    gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
+    gyroscope.rates_rad_s.push_back(sample.angular_velocity);
+    gyroscope.accelerations_m_s2.push_back(sample.linear_acceleration);
+  }
+  return gyroscope;
+}
+
+/// The body is the IMU.
+void add_gyroscope(Recording& recording,
+                   const OpenedBag& opened,
+                   const Calibration& calibration,
+                   const fs::path& folder) {
+  recording.T_body_camera = calibration.T_body_camera;
+  if (!opened.roles.of(TopicRole::imu)) return;
+  const auto& contents = opened.contents;
+  const std::string& imu_frame = contents.imu.front().header.frame_id;
+  if (!recording.T_body_camera) {
+    recording.T_body_camera =
+        transform_between(contents.transforms, imu_frame, contents.camera_frame);
+  }
+  if (!recording.T_body_camera) {
+    recording.notes.push_back(
+        fmt::format("no /tf_static from {} to {}: the gyroscope's axes are taken as the camera's",
+                    legible(imu_frame, 60),
+                    legible(contents.camera_frame, 60)));
+  }
+  Gyroscope gyroscope = gyroscope_of(opened);
+  gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
+  gyroscope.time_offset_ns = calibration.time_offset_ns;
+  if (const auto file = if_file(folder / "imu.yaml"))
+    set_bias(gyroscope, read_imu_calibration(*file), "imu.yaml");
+  recording.gyroscope = std::move(gyroscope);
+}
+
+PosePath path_of(const OpenedBag& opened) {
+  PosePath path;
+  for (const PoseMessage& one : opened.contents.truth) {
+    const auto pose = one.pose();
+    if (!pose) {
+      throw InputError(
+          fmt::format("{}: found a pose at {} ns whose quaternion has the norm {:g}, "
+                      "expected a unit quaternion",
+                      opened.name(TopicRole::truth),
+                      one.header.stamp_ns,
+                      one.quaternion_xyzw.norm()));
+    }
+    path.timestamps_ns.push_back(one.header.stamp_ns);
+    path.poses.push_back(*pose);
+  }
+  path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
+  return path;
+}
+
+void add_truth(Recording& recording, const OpenedBag& opened, const fs::path& folder) {
+  if (!opened.roles.of(TopicRole::truth)) {
+    recording.truth = truth_beside(folder, recording.timestamps_ns);
+    return;
+  }
+  const auto& contents = opened.contents;
+  PosePath path = path_of(opened);
+  TruthMounting mounting;
+  const std::string& measured = contents.truth.front().child_frame_id;
+  const std::string& name = opened.topic(TopicRole::truth).name;
+  if (const auto T = transform_between(contents.transforms, measured, contents.camera_frame)) {
+    mounting.T_measured_camera = *T;
+  } else if (!is_file(folder / "groundtruth.yaml")) {
+    recording.notes.push_back(
+        fmt::format("no /tf_static from what {} measures{} to {}: it is taken as the camera",
+                    name,
+                    measured.empty() ? "" : ", " + legible(measured, 60) + ",",
+                    legible(contents.camera_frame, 60)));
+  }
+  read_mounting_beside(folder, path, mounting);
+  recording.truth = camera_truth(path, mounting, name, recording.timestamps_ns);
+}
+
+}  // namespace
+
+std::optional<fs::path> find_bag(const fs::path& path) {
+  const bool found = is_folder(path) ? !bags_in(path).empty() : is_bag_name(path);
+  return found ? std::optional(path) : std::nullopt;
+}
+
+fs::path bag_at(const fs::path& path) {
+  if (!is_folder(path)) return path;
+  const auto bags = bags_in(path);
+  if (bags.size() == 1) return bags.front();
+  throw InputError(fmt::format("{}: found {} bags ({}, {}), expected one; name the file to open",
+                               path.string(),
+                               bags.size(),
+                               bags[0].filename().string(),
+                               bags[1].filename().string()));
+}
+
+Recording read_bag(const fs::path& path,
+                   const std::optional<fs::path>& tracks,
+                   std::size_t cache_bytes,
+                   const TopicChoices& choices) {
+  const OpenedBag opened = open_with_roles(path, choices);
+  const fs::path folder = folder_of(opened.bag->file);
+  Recording recording;
+  for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
+    recording.notes.insert(recording.notes.end(), notes->begin(), notes->end());
+  const Calibration calibration = calibration_of(opened, folder, recording.notes);
+  recording.camera = calibration.camera;
+  recording.timestamps_ns = opened.contents.picture_times_ns;
+  recording.pictures = pictures_of(opened, recording.camera, cache_bytes);
+  recording.picture_files = {opened.bag->file};
+  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
+  add_gyroscope(recording, opened, calibration, folder);
+  add_truth(recording, opened, folder);
+  return recording;
+}
+
+std::shared_ptr<const FrameCache> open_bag_pictures(const fs::path& path,
+                                                    std::size_t cache_bytes,
+                                                    const TopicChoices& choices) {
+  Camera of_any_size;
+  return pictures_of(open_with_roles(path, choices), of_any_size, cache_bytes);
+}
+
+}  // namespace gpo

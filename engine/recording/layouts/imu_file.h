@@ -1,0 +1,29 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+struct Gyroscope;
+
+/// The gyroscope's axes in the body, and its bias and how sure that is, where the sensor's file has
+/// them.
+struct ImuCalibration {
+  std::optional<Eigen::Matrix3d> R_body_gyro;
+  std::optional<Eigen::Vector3d> bias_rad_s;
+  std::optional<double> bias_sigma_rad_s;
+};
+
+/// EuRoC's imu0/sensor.yaml: `T_BS`, `gyroscope_bias`, `gyroscope_bias_sigma`, each optional.
+/// Throws InputError.
+ImuCalibration read_imu_calibration(const std::filesystem::path& file);
+
+/// Takes over what is said of the bias. `source` is for people.
+void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
+
+}  // namespace gpo

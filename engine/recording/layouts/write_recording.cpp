@@ -1,0 +1,254 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/write_recording.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
+#include "engine/recording/bags/bag_writer.h"
+#include "engine/recording/bags/message_bytes.h"
+#include "engine/recording/layouts/camera_info.h"
+#include "engine/recording/layouts/euroc_text.h"
+#include "engine/recording/layouts/euroc_writer.h"
+#include "engine/recording/layouts/sidecar_files.h"
+#include "engine/recording/pictures/picture_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The frames of the bags that we write.
+constexpr const char* kCamera = "camera";
+constexpr const char* kImu = "imu";
+constexpr const char* kWorld = "world";
+
+/// As `kTopics` counts them.
+enum class Topic { pictures, camera_info, imu, truth, tf_static };
+const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
+                                           {"/camera_info", kCameraInfoType},
+                                           {"/imu", kImuType},
+                                           {"/ground_truth", "geometry_msgs/TransformStamped"},
+                                           {"/tf_static", kTransformsType}};
+
+PoseMessage transform(std::int64_t time_ns,
+                      const char* parent,
+                      const char* child,
+                      const Eigen::Quaterniond& q,
+                      const Eigen::Vector3d& p) {
+  return {{time_ns, parent}, child, p, q.coeffs()};
+}
+
+/// A message without its time.
+struct Planned {
+  Topic topic;
+  std::int64_t time_ns;  ///< camera's clock
+  int number;            ///< of the picture, pose or sample
+};
+
+bool lacks_truth(const GroundTruth& truth) {
+  return !std::ranges::all_of(truth.poses, [](const auto& pose) { return pose.has_value(); });
+}
+
+/// What is written, in the order of time. What never changes comes first.
+std::vector<Planned> plan_of(const Recording& recording, const std::optional<GroundTruth>& poses) {
+  std::vector<Planned> plan;
+  for (int i = 0; i < recording.frame_count(); ++i) {
+    const std::int64_t time = recording.timestamps_ns[i];
+    plan.push_back({Topic::pictures, time, i});
+    if (poses && poses->poses[i]) plan.push_back({Topic::truth, time, i});
+  }
+  if (const auto& gyroscope = recording.gyroscope) {
+    for (std::size_t i = 0; i < gyroscope->timestamps_ns.size(); ++i)
+      plan.push_back({Topic::imu,
+                      gyroscope->timestamps_ns[i] - gyroscope->time_offset_ns,
+                      static_cast<int>(i)});
+  }
+  std::ranges::stable_sort(plan, {}, &Planned::time_ns);
+  const std::int64_t first = plan.front().time_ns;
+  if (recording.gyroscope) plan.insert(plan.begin(), {Topic::tf_static, first, 0});
+  plan.insert(plan.begin(), {Topic::camera_info, first, 0});
+  return plan;
+}
+
+/// Bytes of the planned messages.
+class Messages {
+ public:
+  Messages(const Recording& recording,
+           const std::optional<GroundTruth>& poses,
+           MessageEncoding encoding)
+      : recording_(recording), poses_(poses), encoding_(encoding) {}
+
+  std::string operator()(const Planned& one) {
+    switch (one.topic) {
+      case Topic::pictures:
+        return picture(one);
+      case Topic::camera_info: {
+        CameraInfoMessage info = camera_info_of(recording_.camera);
+        info.header = {one.time_ns, kCamera};
+        return camera_info_bytes(info, encoding_);
+      }
+      case Topic::imu:
+        return sample(one);
+      case Topic::truth: {
+        const Pose& pose = *poses_->poses[one.number];
+        return transform_bytes(
+            transform(one.time_ns, kWorld, kCamera, steady_(pose.R_wc), pose.p_wc), encoding_);
+      }
+      case Topic::tf_static:
+        return transforms_bytes({mounting(one.time_ns)}, encoding_);
+    }
+    return {};
+  }
+
+ private:
+  std::string picture(const Planned& one) const {
+    const cv::Mat unpadded = gray_if_gray(recording_.pictures->bgr(one.number));
+    const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
+    const bool gray = pixels.channels() == 1;
+    const std::size_t bytes = pixels.total() * pixels.elemSize();
+    return image_bytes({{one.time_ns, kCamera},
+                        static_cast<std::uint32_t>(pixels.rows),
+                        static_cast<std::uint32_t>(pixels.cols),
+                        gray ? "mono8" : "bgr8",
+                        false,
+                        static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
+                        {reinterpret_cast<const char*>(pixels.data), bytes}},
+                       encoding_);
+  }
+
+  std::string sample(const Planned& one) const {
+    const Gyroscope& gyroscope = *recording_.gyroscope;
+    ImuMessage message{{one.time_ns, kImu}, gyroscope.rates_rad_s[one.number]};
+    if (!gyroscope.accelerations_m_s2.empty())
+      message.linear_acceleration = gyroscope.accelerations_m_s2[one.number];
+    return imu_bytes(message, encoding_);
+  }
+
+  /// The camera in the axes of the gyroscope.
+  PoseMessage mounting(std::int64_t time_ns) const {
+    const Eigen::Matrix3d& R_gyro_camera = recording_.gyroscope->R_gyro_camera;
+    const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
+    const Eigen::Vector3d p_gyro =
+        R_gyro_camera * T_body_camera.R_wc.transpose() * T_body_camera.p_wc;
+    return transform(time_ns, kImu, kCamera, Eigen::Quaterniond(R_gyro_camera), p_gyro);
+  }
+
+  const Recording& recording_;
+  const std::optional<GroundTruth>& poses_;
+  MessageEncoding encoding_;
+  SteadyQuaternions steady_;
+};
+
+/// What no message has a field for: file names and texts.
+std::map<std::string, std::string> beside_bag(const Recording& recording,
+                                              const std::optional<GroundTruth>& poses) {
+  auto files = sidecar_texts(recording);
+  const auto& gyroscope = recording.gyroscope;
+  const bool unusual = gyroscope && gyroscope->bias_sigma_rad_s != Gyroscope{}.bias_sigma_rad_s;
+  if (gyroscope && (unusual || !gyroscope->bias_rad_s.isZero(0)))
+    files["imu.yaml"] = bias_yaml(*gyroscope);
+  if (poses && lacks_truth(*poses)) files["groundtruth.yaml"] = kNoInterpolation;
+  return files;
+}
+
+/// Files that are read with a bag must be this bag's.
+void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
+  for (const char* name : {"plane.yaml",
+                           "board.yaml",
+                           "imu.yaml",
+                           "camera.yaml",
+                           "groundtruth.txt",
+                           "groundtruth.yaml",
+                           "tracks.csv"}) {
+    const auto ours = files.find(name);
+    const auto there = if_file(folder / name);
+    if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
+    throw InputError(
+        fmt::format("{}: found the file of another recording, expected none beside a bag "
+                    "that is to be written",
+                    there->string()));
+  }
+}
+
+struct BagFormat {
+  const char* ending;
+  BagWriter (*open)(const fs::path& file, const std::vector<WrittenTopic>& topics);
+  std::int64_t earliest_ns;
+};
+
+/// As `RecordingFormat` counts them after the first.
+constexpr std::array<BagFormat, 2> kBags = {
+    {{".bag", ros1_writer, 0},
+     {".mcap",
+      mcap_writer,
+      std::numeric_limits<std::int32_t>::min() * std::int64_t{1'000'000'000}}}};
+
+void check_bag(const Recording& recording,
+               const std::vector<Planned>& plan,
+               const BagFormat& format,
+               const fs::path& output) {
+  const std::string name = output.string();
+  if (output.extension() != format.ending)
+    throw InputError(fmt::format("{}: found another ending, expected {}", name, format.ending));
+  std::error_code none;
+  if (fs::exists(output, none))
+    throw InputError(name + ": found something there already, expected no file");
+  if (!recording.pictures)
+    throw InputError(recording.path.string() + ": found no pictures, expected some for a bag");
+  const std::int64_t first = plan.front().time_ns;
+  if (first < format.earliest_ns) {
+    throw InputError(
+        fmt::format("{}: found the time {} ns, expected none before 1970 in a bag of "
+                    "ROS 1; --format mcap takes it",
+                    recording.path.string(),
+                    first));
+  }
+}
+
+void write_bag(const Recording& recording,
+               const std::optional<GroundTruth>& poses,
+               const BagFormat& format,
+               const fs::path& output,
+               const std::function<void(int done, int of)>& progress) {
+  const auto plan = plan_of(recording, poses);
+  check_bag(recording, plan, format, output);
+  const fs::path folder = folder_of(output);
+  const auto files = beside_bag(recording, poses);
+  check_beside(folder, files);
+  make_folder(folder);
+  UnfinishedFile unfinished(output);
+  const BagWriter writer = format.open(unfinished.path(), kTopics);
+  Messages messages(recording, poses, writer.encoding);
+  for (const Planned& one : plan) {
+    writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
+    if (progress && one.topic == Topic::pictures) progress(one.number + 1, recording.frame_count());
+  }
+  writer.finish();
+  for (const auto& [name, text] : files) write_file(folder / name, text);
+  unfinished.finish();
+}
+
+}  // namespace
+
+void write_recording(const Recording& recording,
+                     const std::optional<GroundTruth>& truth,
+                     RecordingFormat format,
+                     const fs::path& output,
+                     const std::function<void(int done, int of)>& progress) {
+  if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
+  const auto& bag = kBags[static_cast<std::size_t>(format) - 1];
+  write_bag(recording, truth, bag, output, progress);
+}
+
+}  // namespace gpo

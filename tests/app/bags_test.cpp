@@ -1,0 +1,253 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Bags that ROS' own library, or Python's, made of a recording give the recording's results; and
+// what ROS' library reads of the bags that we write.
+#include "tests/app/program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::BadInput;
+using test::desk;
+using test::fresh_folder;
+using test::Outcome;
+using test::program;
+using test::read_file;
+using test::shell;
+using test::write_file;
+using ::testing::HasSubstr;
+
+constexpr const char* kBagWindow = " --frames 20 ";
+
+/// Debian's, whatever other Python comes first on this machine.
+Outcome debians_python(const std::string& arguments) {
+  return shell("PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 " + arguments);
+}
+
+#define SKIP_WITHOUT_MODULES(modules)                           \
+  if (debians_python("-c 'import " modules "'").exit_code != 0) \
+  GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
+
+/// The room, which is not ours to publish, where it is; else the bundled desk.
+fs::path source_recording() {
+  const fs::path room = fs::path(GPO_SHARED_DIR) / "data" / "euroc-room";
+  return fs::exists(room) ? room : desk();
+}
+
+/// What a bag has no message for.
+void put_beside(const fs::path& folder) {
+  for (const auto& [from, to] :
+       {std::pair("plane.yaml", "plane.yaml"), std::pair("mav0/imu0/sensor.yaml", "imu.yaml")}) {
+    if (fs::exists(source_recording() / from))
+      fs::copy_file(source_recording() / from, folder / to);
+  }
+}
+
+/// The recording's pictures without any compression, in gray.
+fs::path gray_pictures(const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const auto& file : fs::directory_iterator(source_recording() / "mav0/cam0/data")) {
+    const cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::imwrite((folder / file.path().stem()).string() + ".pgm", gray);
+  }
+  return folder;
+}
+
+/// The table without what names the recording or measures time.
+std::string table_of(const Outcome& outcome) {
+  return std::regex_replace(outcome.out, std::regex("(recording|time|truth) .*\n"), "");
+}
+
+/// Numbers as they are but for the last digits of a double: rotations go through quaternions.
+void expect_same_numbers(const json& a, const json& b, const std::string& where) {
+  if (a.is_number_float() && b.is_number_float()) {
+    const double one = a.get<double>();
+    EXPECT_NEAR(one, b.get<double>(), 1e-9 * (1 + std::abs(one))) << where;
+    return;
+  }
+  ASSERT_EQ(a.is_structured(), b.is_structured()) << where;
+  if (!a.is_structured()) {
+    EXPECT_EQ(a, b) << where;
+    return;
+  }
+  ASSERT_EQ(a.size(), b.size()) << where;
+  for (auto item = a.items().begin(); item != a.items().end(); ++item)
+    expect_same_numbers(item.value(),
+                        a.is_object() ? b.at(item.key()) : b.at(std::stoul(item.key())),
+                        where + "." + item.key());
+}
+
+struct BagResult {
+  std::string table;
+  json numbers;
+};
+
+BagResult result_of(const fs::path& path, const fs::path& file) {
+  const Outcome outcome = program("run " + path.string() + kBagWindow + "--json " + file.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, Not(HasSubstr("cut")));
+  json numbers = json::parse(read_file(file));
+  for (const char* key : {"recording", "timing_ms"}) numbers.erase(key);
+  if (numbers.contains("truth")) numbers["truth"].erase("source");
+  return {table_of(outcome), numbers};
+}
+
+void expect_results_of_folder(const fs::path& bag, const fs::path& folder) {
+  const BagResult of_folder = result_of(source_recording(), folder / "folder.json");
+  const BagResult of_bag = result_of(bag, folder / "bag.json");
+  EXPECT_EQ(of_folder.table, of_bag.table);
+  expect_same_numbers(of_folder.numbers, of_bag.numbers, bag.filename().string());
+}
+
+class RosBag : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Compressions, RosBag, testing::Values("none", "bz2", "lz4"));
+
+TEST_P(RosBag, OfPythonsRosbagGivesTheNumbersOfTheFolder) {
+  SKIP_WITHOUT_MODULES("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg, numpy, yaml");
+  const fs::path folder = fresh_folder();
+  const std::string compression = GetParam();
+  const fs::path bag = folder / "room.bag";
+  const bool raw = compression == "lz4";
+  const std::string pictures = raw ? gray_pictures(folder / "gray").string() : "";
+  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros1_bag.py {} {} {} {}",
+                                                  source_recording().string(),
+                                                  bag.string(),
+                                                  compression,
+                                                  pictures));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  put_beside(folder);
+  expect_results_of_folder(bag, folder);
+  const std::string info = program("info " + bag.string()).out;
+  EXPECT_THAT(
+      info, HasSubstr("topics        /cam0/camera_info (sensor_msgs/CameraInfo, 1): camera_info"));
+  EXPECT_THAT(info, HasSubstr("/truth (geometry_msgs/TransformStamped, "));
+}
+
+TEST(Ros2Database, OfPythonGivesTheNumbersOfTheFolder) {
+  SKIP_WITHOUT_MODULES("sqlite3, numpy, yaml");
+  const fs::path folder = fresh_folder();
+  const fs::path bag = folder / "room.db3";
+  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros2_db3.py {} {} {}",
+                                                  source_recording().string(),
+                                                  bag.string(),
+                                                  gray_pictures(folder / "gray").string()));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  put_beside(folder);
+  expect_results_of_folder(bag, folder);
+  // Cut, it is read up to the cut.
+  const std::string bytes = read_file(bag);
+  write_file(folder / "cut.db3", bytes.substr(0, bytes.size() * 6 / 10));
+  const Outcome cut = program("run " + (folder / "cut.db3").string() + kBagWindow);
+  EXPECT_EQ(cut.exit_code, 0) << cut.err;
+  EXPECT_THAT(cut.err, HasSubstr("the bag is cut or broken: "));
+}
+
+class ConvertedBag : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Formats, ConvertedBag, testing::Values("rosbag", "mcap"));
+
+TEST_P(ConvertedBag, GivesTheNumbersOfTheFolder) {
+  const fs::path folder = fresh_folder();
+  const std::string format = GetParam();
+  const fs::path bag = folder / (format == "mcap" ? "new/room.mcap" : "new/room.bag");
+  const std::string line = "convert " + source_recording().string() + " --format " + format +
+                           " --output " + bag.string();
+  const Outcome outcome = program(line);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_results_of_folder(bag, folder);
+  const BadInput again{line, "found something there already, expected no file"};
+  EXPECT_THAT(program(line).err, HasSubstr(again.message));
+}
+
+TEST(ConvertedBag, IsReadByRosItself) {
+  SKIP_WITHOUT_MODULES("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg");
+  const fs::path folder = fresh_folder();
+  const fs::path bag = folder / "desk.bag";
+  ASSERT_EQ(
+      program("convert " + desk().string() + " --format rosbag --output " + bag.string()).exit_code,
+      0);
+  // Types are those that are installed: the sums of their definitions are compared.
+  write_file(folder / "read.py",
+             "import rosbag, sys, sensor_msgs.msg as s, tf2_msgs.msg as t, geometry_msgs.msg as g\n"
+             "known = {c._type: c for c in (s.Image, s.CameraInfo, s.Imu, t.TFMessage, "
+             "g.TransformStamped)}\n"
+             "bag = rosbag.Bag(sys.argv[1])\n"
+             "for name, about in sorted(bag.get_type_and_topic_info().topics.items()):\n"
+             "    print(name, about.message_count, known[about.msg_type]._md5sum == "
+             "bag.get_type_and_topic_info().msg_types[about.msg_type])\n"
+             "for topic, message, time in bag.read_messages('/image_raw'):\n"
+             "    assert len(message.data) == message.height * message.step\n"
+             "    assert message.header.stamp == time\n"
+             "for topic, message, time in bag.read_messages('/camera_info'):\n"
+             "    print(message.distortion_model, message.K[0])\n");
+  const Outcome read = debians_python((folder / "read.py").string() + " " + bag.string());
+  EXPECT_EQ(read.exit_code, 0) << read.err;
+  EXPECT_THAT(read.out, HasSubstr("/image_raw 60 True"));
+  EXPECT_THAT(read.out, HasSubstr("/imu "));
+  EXPECT_THAT(read.out, Not(HasSubstr("False")));
+  EXPECT_THAT(read.out, HasSubstr("plumb_bob 498.2"));
+}
+
+TEST(RealBags, AreDescribedOrRefused) {
+  const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
+  if (!fs::exists(folder)) GTEST_SKIP() << "the bags are not on this machine";
+  for (const char* name :
+       {"rosbagjs_example.bag", "rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
+    const Outcome outcome = program("info " + (folder / name).string());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.out, HasSubstr("/turtle1/pose (turtlesim/Pose, 1344)"));
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": found no camera among /rosout"));
+  }
+  for (const char* name : {"klintan_sample.db3", "geocam.db3", "geocam.mcap"}) {
+    const Outcome outcome = program("info " + (folder / name).string());
+    EXPECT_THAT(outcome.out, HasSubstr("(sensor_msgs/Image, ")) << name;
+    EXPECT_THAT(outcome.out, HasSubstr(": imu\n")) << name;
+    // Geocam's pictures are headers alone.
+    if (std::string(name).starts_with("geocam")) {
+      EXPECT_EQ(outcome.exit_code, 2);
+      EXPECT_THAT(outcome.err, HasSubstr("picture 0: found a cut or broken picture"));
+    }
+  }
+}
+
+TEST(HostileBag, IsRefusedWithOneLine) {
+  const fs::path folder = fresh_folder();
+  const std::string of_4_gib = std::string("\xFF\xFF\xFF\xFF", 4) + std::string(20, 'x');
+  for (const std::string& bytes : {std::string(),
+                                   std::string("no bag at all"),
+                                   std::string("#ROSBAG V2.0\n"),
+                                   "#ROSBAG V2.0\n" + of_4_gib,
+                                   std::string("\x89MCAP0\r\n") + of_4_gib,
+                                   std::string("SQLite format 3\0", 16) + of_4_gib}) {
+    write_file(folder / "hostile.bag", bytes);
+    const Outcome outcome = program("run " + (folder / "hostile.bag").string());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("hostile.bag: found "));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_LT(outcome.peak_kib, 1 << 20);
+  }
+}
+
+TEST(HostileBag, OfVeryMuchInVeryFewBytesIsRefused) {
+  const fs::path seeds = fs::path(GPO_SOURCE_DIR) / "tests/fuzz/seeds/bag";
+  for (const char* name : {"bomb.bag", "claims_4_GiB.bag"}) {
+    const Outcome outcome = program("info " + (seeds / name).string());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_LT(outcome.peak_kib, 1 << 20);
+  }
+}
+
+}  // namespace
+}  // namespace gpo

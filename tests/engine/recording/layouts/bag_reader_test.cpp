@@ -1,0 +1,198 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/bag_reader.h"
+
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/layouts/write_recording.h"
+#include "tests/engine/recording/bags/small_bag.h"
+#include "tests/engine/test_folder.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using test::kPeriod_ns;
+using test::kStart_ns;
+using test::TestFolder;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A bag of pictures on some topics, of which each has its own pixels.
+fs::path pictures_on(const TestFolder& folder, const std::vector<std::string>& names) {
+  std::vector<WrittenTopic> topics;
+  for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
+  const fs::path file = folder.path() / "pictures.mcap";
+  const BagWriter writer = mcap_writer(file, topics);
+  for (int i = 0; i < 3; ++i) {
+    for (std::size_t topic = 0; topic < names.size(); ++topic) {
+      const std::string pixels(64 * 48, static_cast<char>(10 * topic + i));
+      writer.write(static_cast<int>(topic),
+                   kStart_ns,
+                   image_bytes(test::image_of(2 - i, pixels, 64, 48), writer.encoding));
+    }
+  }
+  writer.finish();
+  return file;
+}
+
+TEST(BagReader, ReadsAllThatARecordingHas) {
+  const TestFolder folder;
+  const auto recording =
+      open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  EXPECT_EQ(recording->layout, "ROS bag");
+  EXPECT_EQ(recording->name, "small.bag");
+  ASSERT_EQ(recording->frame_count(), 20);
+  EXPECT_EQ(recording->timestamps_ns[7], kStart_ns + 7 * kPeriod_ns);
+  EXPECT_EQ(recording->camera, test::small_camera());
+  const std::string pixels = test::pixels_of(7, 64, 48);
+  EXPECT_EQ(recording->pictures->bgr(7).at<cv::Vec3b>(0, 1)[0], static_cast<uchar>(pixels[1]));
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_EQ(recording->gyroscope->rates_rad_s[7], Eigen::Vector3d(0.1 * 7, 0.2, 0.3));
+  // The camera is turned by 2 atan(0.6 / 0.8) about z.
+  ASSERT_TRUE(recording->T_body_camera);
+  EXPECT_LT((recording->gyroscope->R_gyro_camera.col(0) - Eigen::Vector3d(0.28, 0.96, 0)).norm(),
+            1e-12);
+  EXPECT_EQ(recording->T_body_camera->p_wc, Eigen::Vector3d(0.1, 0.2, 0.3));
+  ASSERT_TRUE(recording->truth && recording->truth->poses[7]);
+  EXPECT_LT((recording->truth->poses[7]->p_wc - Eigen::Vector3d(4.6, 2.2, 3.3)).norm(), 1e-12);
+  EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no errors of the plane"));
+}
+
+TEST(BagReader, OfSeveralCamerasTheChosenOneIsRead) {
+  const TestFolder folder;
+  folder.write("camera.yaml", test::kCameraYaml);
+  const fs::path file = pictures_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
+  const auto first = open_recording(file);
+  EXPECT_EQ(int(first->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
+  EXPECT_THAT(first->notes,
+              Contains("3 topics with pictures: /cam0/image is read; --topic image=/cam1/depth "
+                       "reads another"));
+  const auto second =
+      open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam1/image"}}});
+  EXPECT_EQ(int(second->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
+  EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with pictures"))));
+  EXPECT_THAT(error_of([&] {
+                open_recording(file, {.tracks = {}, .topics = {{TopicRole::imu, "/cam1/image"}}});
+              }),
+              HasSubstr("--topic: found 3 messages of sensor_msgs/Image in /cam1/image, expected "
+                        "sensor_msgs/Imu"));
+  EXPECT_THAT(error_of([&] {
+                open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam2"}}});
+              }),
+              HasSubstr("--topic: found no topic /cam2 among /cam0/image (sensor_msgs/Image, 3)"));
+}
+
+TEST(BagReader, TopicChoicesHaveARoleAndAName) {
+  EXPECT_EQ(parse_topic_choices({"image=/a=b", "imu=/c"}),
+            (TopicChoices{{TopicRole::image, "/a=b"}, {TopicRole::imu, "/c"}}));
+  const auto error = [](const std::vector<std::string>& texts) {
+    return error_of([&] { parse_topic_choices(texts); });
+  };
+  EXPECT_THAT(error({"/cam0"}), HasSubstr("topic: found '/cam0', expected ROLE=NAME"));
+  EXPECT_THAT(error({"picture=/cam0"}),
+              HasSubstr("expected one of image, camera_info, imu, truth"));
+  EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
+}
+
+TEST(BagReader, PicturesAreInTheOrderOfTheirOwnTimes) {
+  const TestFolder folder;
+  folder.write("camera.yaml", test::kCameraYaml);
+  const auto recording = open_recording(pictures_on(folder, {"/image"}));
+  EXPECT_THAT(recording->timestamps_ns,
+              ElementsAre(kStart_ns, kStart_ns + kPeriod_ns, kStart_ns + 2 * kPeriod_ns));
+  EXPECT_EQ(int(recording->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 2);
+  EXPECT_EQ(int(recording->pictures->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
+}
+
+TEST(BagReader, WithoutCalibrationItAsksForOne) {
+  const TestFolder folder;
+  const fs::path file = pictures_on(folder, {"/image"});
+  EXPECT_THAT(error_of([&] { open_recording(file); }),
+              HasSubstr("found no calibration, expected camera.yaml"));
+  EXPECT_EQ(open_bag_pictures(file, 1 << 20, {})->count(), 3);
+}
+
+TEST(BagReader, ACameraYamlBesideItIsPreferred) {
+  const TestFolder folder;
+  const fs::path file = test::write_small_bag(folder.path() / "small.bag", ros1_writer);
+  folder.write("camera.yaml", test::kCameraYaml);
+  const auto recording = open_recording(file);
+  EXPECT_EQ(recording->camera.fx, 60);
+  EXPECT_THAT(recording->notes, Contains("camera.yaml is read, not /cam0/camera_info"));
+}
+
+TEST(BagReader, AFolderWithOneBagIsThatBag) {
+  const TestFolder folder;
+  test::write_small_bag(folder.path() / "small.bag", ros1_writer);
+  EXPECT_EQ(open_recording(folder.path())->frame_count(), 20);
+  test::write_small_bag(folder.path() / "small.mcap", mcap_writer);
+  EXPECT_THAT(error_of([&] { open_recording(folder.path()); }),
+              HasSubstr("found 2 bags (small.bag, small.mcap), expected one; name the file"));
+}
+
+TEST(BagReader, TopicsAreOfBagsOnly) {
+  const TestFolder folder;
+  folder.write("camera.yaml", test::kCameraYaml);
+  folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
+  EXPECT_THAT(error_of([&] {
+                open_recording(folder.path(), {.tracks = {}, .topics = {{TopicRole::imu, "/imu"}}});
+              }),
+              HasSubstr("found pictures and no topics, expected a bag for --topic"));
+}
+
+class WrittenBag : public testing::TestWithParam<RecordingFormat> {};
+INSTANTIATE_TEST_SUITE_P(Formats,
+                         WrittenBag,
+                         testing::Values(RecordingFormat::rosbag, RecordingFormat::mcap),
+                         [](const auto& info) { return std::string(to_string(info.param)); });
+
+TEST_P(WrittenBag, OpensAsTheSameRecording) {
+  const TestFolder folder;
+  folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 0.5\n");
+  Recording changed =
+      *open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  changed.gyroscope->bias_rad_s = {0.01, 0.02, 0.03};
+  changed.gyroscope->time_offset_ns = 1'234'567;
+  changed.truth->poses[3].reset();
+  const fs::path file =
+      folder.path() / "written" / (GetParam() == RecordingFormat::mcap ? "new.mcap" : "new.bag");
+  write_recording(changed, changed.truth, GetParam(), file);
+  const auto written = open_recording(file);
+  EXPECT_EQ(written->timestamps_ns, changed.timestamps_ns);
+  EXPECT_EQ(written->camera, changed.camera);
+  EXPECT_EQ(written->plane->distance, 0.5);
+  EXPECT_EQ(cv::norm(written->pictures->bgr(5), changed.pictures->bgr(5), cv::NORM_INF), 0);
+  const Gyroscope& gyroscope = *written->gyroscope;
+  EXPECT_EQ(gyroscope.rates_rad_s, changed.gyroscope->rates_rad_s);
+  EXPECT_EQ(gyroscope.accelerations_m_s2, changed.gyroscope->accelerations_m_s2);
+  EXPECT_EQ(gyroscope.timestamps_ns[4], changed.gyroscope->timestamps_ns[4] - 1'234'567);
+  EXPECT_EQ(gyroscope.bias_rad_s, changed.gyroscope->bias_rad_s);
+  EXPECT_TRUE(gyroscope.R_gyro_camera.isApprox(changed.gyroscope->R_gyro_camera, 1e-14));
+  EXPECT_FALSE(written->truth->poses[3]);
+  EXPECT_LT((written->truth->poses[4]->p_wc - changed.truth->poses[4]->p_wc).norm(), 1e-14);
+  EXPECT_THAT(error_of([&] { write_recording(changed, changed.truth, GetParam(), file); }),
+              HasSubstr("found something there already, expected no file"));
+}
+
+TEST(WrittenBag, RefusesWhatWouldBeReadWithIt) {
+  const TestFolder folder;
+  const auto recording =
+      open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  const auto error = [&](const char* name) {
+    return error_of([&] {
+      write_recording(*recording, recording->truth, RecordingFormat::mcap, folder.path() / name);
+    });
+  };
+  EXPECT_THAT(error("new.bag"), HasSubstr("found another ending, expected .mcap"));
+  folder.write("board.yaml", "pattern: chessboard\n");
+  EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: found the file of another recording"));
+  EXPECT_FALSE(fs::exists(folder.path() / "new.mcap"));
+}
+
+}  // namespace
+}  // namespace gpo

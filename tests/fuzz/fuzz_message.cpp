@@ -1,0 +1,43 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The first byte chooses the encoding and the type.
+#include "engine/recording/bags/bag_picture.h"
+#include "engine/recording/bags/messages.h"
+#include "engine/recording/layouts/camera_info.h"
+#include "tests/fuzz/fuzzed_file.h"
+
+#include <array>
+#include <iostream>
+#include <string>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  std::cerr.setstate(std::ios::failbit);  // OpenCV would tell each failure
+  constexpr std::array<const char*, 10> kTypes = {"sensor_msgs/Image",
+                                                  "sensor_msgs/CompressedImage",
+                                                  gpo::kCameraInfoType,
+                                                  gpo::kImuType,
+                                                  gpo::kTransformsType,
+                                                  "geometry_msgs/PoseStamped",
+                                                  "geometry_msgs/PoseWithCovarianceStamped",
+                                                  "geometry_msgs/TransformStamped",
+                                                  "nav_msgs/Odometry",
+                                                  "std_msgs/String"};
+  const std::size_t kind = data[0] % (2 * kTypes.size());
+  const bool cdr = kind >= kTypes.size();
+  const gpo::MessageEncoding encoding =
+      cdr ? gpo::MessageEncoding::cdr : gpo::MessageEncoding::ros1;
+  const std::string type = kTypes[kind % kTypes.size()];
+  const auto bytes = gpo::fuzz::bytes_of(data + 1, size - 1);
+  gpo::fuzz::parse([&] {
+    gpo::read_header(bytes, encoding);
+    gpo::read_imu(bytes, encoding);
+    if (gpo::is_picture_type(type)) gpo::bag_picture(bytes, {"/camera", type, encoding}, "camera");
+    if (const auto pose = gpo::read_pose(bytes, encoding, type)) pose->pose();
+    if (type == gpo::kTransformsType) gpo::read_transforms(bytes, encoding);
+    if (type != gpo::kCameraInfoType) return;
+    const auto info = gpo::read_camera_info(bytes, encoding);
+    if (info && gpo::is_calibrated(*info)) gpo::camera_of(*info, "camera");
+  });
+  return 0;
+}
