@@ -47,6 +47,7 @@ const std::vector<Room> kRooms = {
     {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},
     {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
     {"engine/recording/board", {"engine/base", "engine/files", "engine/geometry", "engine/recording", "engine/recording/pictures"}},
+    {"engine/recording/loggers", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording", "engine/recording/pictures"}},
     {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
     {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
