@@ -46,8 +46,9 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
   auto videos = videos_in(path);
-  if (is_file(path / "data.jsonl"))  // whose second video, if any, is another camera
-    std::erase_if(videos, [](const fs::path& file) { return file.stem() != "data"; });
+  const auto is_other = [](const fs::path& file) { return file.stem() != "data"; };
+  if (is_file(path / "data.jsonl") && !std::ranges::all_of(videos, is_other))
+    std::erase_if(videos, is_other);  // of a second camera
   if (videos.size() > 1) {
     throw InputError(path.string() + ": found " + std::to_string(videos.size()) + " videos (" +
                      videos[0].filename().string() + ", " + videos[1].filename().string() +

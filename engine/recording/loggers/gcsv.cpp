@@ -6,8 +6,14 @@
 #include "engine/recording/loggers/logger_files.h"
 #include "engine/recording/loggers/signed_axes.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 

@@ -11,7 +11,9 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,9 +37,10 @@ std::optional<fs::path> find_stray_scanner(const fs::path& folder,
   return found ? std::optional(folder) : std::nullopt;
 }
 
+/// Others, too, call their data that.
 std::optional<fs::path> find_spectacular(const fs::path& folder,
-                                         const std::optional<fs::path>& /*video*/) {
-  return if_file(folder / "data.jsonl");
+                                         const std::optional<fs::path>& video) {
+  return video && video->stem() == "data" ? if_file(folder / "data.jsonl") : std::nullopt;
 }
 
 std::optional<fs::path> find_gcsv(const fs::path& /*folder*/,

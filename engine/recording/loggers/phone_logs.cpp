@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -9,6 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>

@@ -6,6 +6,7 @@
 #include "engine/recording/pictures/libav.h"
 
 #include <array>
+#include <cstdint>
 #include <fstream>
 #include <memory>
 #include <string_view>

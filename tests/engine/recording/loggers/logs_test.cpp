@@ -214,6 +214,12 @@ TEST_F(LoggedVideo, OfSpectacularAiHasItsCalibrationClockAndAxes) {
       1e-12);
 }
 
+TEST_F(LoggedVideo, BesideOtherDataIsNotSpectacularAis) {
+  video("clip.mp4", true);
+  folder.write("data.jsonl", "[]\n");
+  EXPECT_FALSE(open()->gyroscope);
+}
+
 class BadSpectacular : public testing::TestWithParam<BadLog> {};
 
 TEST_P(BadSpectacular, IsRefusedInOneLine) {
