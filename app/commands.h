@@ -56,6 +56,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> true_trajectory;
   std::optional<TrajectoryFormat> trajectory_format;  ///< of both; default: tum
   std::optional<std::filesystem::path> points;
+  std::optional<std::filesystem::path> tracks_out;
 };
 
 struct SnapshotArguments {

@@ -9,6 +9,7 @@
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
+#include "engine/inspection/studies/tracks_table.h"
 
 #include <algorithm>
 #include <array>
@@ -37,7 +38,8 @@ std::vector<NamedFile> outputs_of(const RunArguments& arguments) {
   return {{"--json", arguments.json},
           {"--trajectory", arguments.trajectory},
           {"--true-trajectory", arguments.true_trajectory},
-          {"--points", arguments.points}};
+          {"--points", arguments.points},
+          {"--tracks-out", arguments.tracks_out}};
 }
 
 /// The table makes room where standard output is wanted for something else.
@@ -69,6 +71,7 @@ int run_command(const RunArguments& arguments) {
     write_trajectory(*arguments.trajectory, estimated_path(*inspection));
   if (arguments.true_trajectory)
     write_trajectory(*arguments.true_trajectory, true_path(*inspection));
+  if (arguments.tracks_out) write_output(*arguments.tracks_out, tracks_csv(*inspection));
   if (ok && arguments.points) write_output(*arguments.points, to_ply(*inspection));
   return ok ? kDone : kFailed;
 }

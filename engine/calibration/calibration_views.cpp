@@ -23,6 +23,7 @@ namespace gpo {
 namespace {
 
 constexpr std::size_t kLeastCorners = 8;
+constexpr std::size_t kCornersOfTag = 4;
 constexpr double kMostBlurred = 2;  // times the median width of edges
 
 using Feature = Eigen::Matrix<double, 6, 1>;
@@ -76,14 +77,22 @@ std::optional<double> edge_width(const cv::Mat& gray,
   return std::max(1.0, contrast / slope);
 }
 
+/// How far from an edge of the board it is plain on both sides, of the edge's length: a marker must
+/// not be met beside the edge of a square, nor a tag's code or its neighbor beside that of a tag.
+double gap_beside_edge(const Board& board) {
+  if (board.markers) return (1 - board.markers->side_m / board.square_m) / 2;
+  if (!board.tags) return 1;
+  constexpr double kCode = 6;  // bits
+  const double border = board.tags->border / (kCode + 2 * board.tags->border);
+  return board.tags->alone ? border : std::min(border, board.tags->spacing);
+}
+
 /// The larger of the medians along rows and columns, since motion blurs in one direction; infinite
 /// where there is no contrast.
 double edge_width(const cv::Mat& gray,
                   const std::vector<Eigen::Vector2d>& corners,
                   const Board& board) {
-  // A marker must not be met beside the edge.
-  const double gap = board.markers ? (1 - board.markers->side_m / board.square_m) / 2 : 1;
-  const double reach = std::min(0.25, 0.9 * gap);
+  const double reach = std::min(0.25, 0.9 * gap_beside_edge(board));
   std::vector<double> widths[2];
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
     const auto add = [&](int direction, int next) {
@@ -176,7 +185,8 @@ BoardSearch find_calibration_views(const FrameCache& pictures,
                                    search.size.height));
     }
     CalibrationView view{frame, find_board(gray, board)};
-    const bool found = seen_count(view.corners) >= kLeastCorners;
+    const bool single_tag = board.tags && board.tags->alone;
+    const bool found = seen_count(view.corners) >= (single_tag ? kCornersOfTag : kLeastCorners);
     if (found) view.edge_px = edge_width(gray, view.corners, board);
     const std::scoped_lock lock(mutex);
     ++search.examined;

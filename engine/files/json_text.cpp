@@ -16,17 +16,21 @@ nlohmann::ordered_json optional_json(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json read_json(const std::filesystem::path& file) {
+nlohmann::ordered_json parse_json(std::string_view text) {
   using Json = nlohmann::ordered_json;
-  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
   constexpr int kDeepest = 16;
   bool too_deep = false;
   const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
     too_deep |= depth > kDeepest;
     return depth <= kDeepest;
   };
-  Json json = Json::parse(read_file(file, kMostBytes), keep, false);
+  Json json = Json::parse(text, keep, false);
   return too_deep ? Json(Json::value_t::discarded) : json;
+}
+
+nlohmann::ordered_json read_json(const std::filesystem::path& file) {
+  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+  return parse_json(read_file(file, kMostBytes));
 }
 
 }  // namespace gpo

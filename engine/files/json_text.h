@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -17,8 +18,10 @@ std::string json_text(const nlohmann::ordered_json& json, int indent);
 /// What is unknown is null.
 nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
-/// Reads a file of JSON that the program wrote; discarded (`is_discarded`) where it is none, or so
-/// deep that libraries run out of stack. Throws InputError where it cannot be read or is too large.
+/// Discarded (`is_discarded`) where it is no JSON, or so deep that libraries run out of stack.
+nlohmann::ordered_json parse_json(std::string_view text);
+
+/// The same of a file. Throws InputError where it cannot be read or is too large.
 nlohmann::ordered_json read_json(const std::filesystem::path& file);
 
 }  // namespace gpo

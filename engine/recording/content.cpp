@@ -71,13 +71,19 @@ std::string digest_of(const GroundTruth& truth) {
   return sha256(text);
 }
 
+std::string tags_text(const Board& board) {
+  if (!board.tags) return "";
+  return fmt::format(
+      "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
+}
+
 std::string text_of(const Board& board) {
   return fmt::format("{}x{} {} {} {}",
                      board.columns,
                      board.rows,
                      board.square_m,
                      board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : "");
+                     board.markers ? board.markers->dictionary : tags_text(board));
 }
 
 std::string digest_of(const std::vector<TrackObservation>& tracks) {

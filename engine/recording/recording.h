@@ -26,12 +26,22 @@ struct BoardMarkers {
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
 };
 
-/// A chessboard on the true plane, or a ChArUco board: one with markers.
+/// AprilTags (36h11) side by side, as Kalibr prints them; or one alone.
+struct BoardTags {
+  double spacing = 0;          ///< from a tag to the next, in a tag's sides [-]
+  int border = 2;              ///< width of the black border around a tag's code [bits]
+  std::optional<int> alone{};  ///< the number of a tag that is alone, or kAnyTag
+  static constexpr int kAnyTag = -1;
+};
+
+/// A chessboard on the true plane; a ChArUco board, one with markers; or a board of tags, whose
+/// corners are those of the tags.
 struct Board {
-  int columns = 0;                        ///< inner corners along a row
-  int rows = 0;                           ///< inner corners along a column
-  double square_m = 0;                    ///< side of a square
+  int columns = 0;                        ///< inner corners along a row; of tags: two a tag
+  int rows = 0;                           ///< inner corners along a column; of tags: two a tag
+  double square_m = 0;                    ///< side of a square, or of a tag
   std::optional<BoardMarkers> markers{};  ///< of a ChArUco board; none: a plain chessboard
+  std::optional<BoardTags> tags{};        ///< of a board of tags
 };
 
 /// What was recorded, immutable once opened. Shared between threads by shared_ptr<const>.
@@ -46,6 +56,9 @@ struct Recording {
   /// Where `pictures` come from: a video, or one file a frame; empty where they are not from files.
   std::vector<std::filesystem::path> picture_files;
   std::optional<Gyroscope> gyroscope;
+  /// Rolling shutter: from the first row to the last, where the camera's log tells it; negative:
+  /// the last row first.
+  std::optional<double> readout_s;
   std::optional<GroundTruth> truth;  ///< from a file; truth from the board is computed on demand
   std::optional<Plane> plane;        ///< true plane, in the truth's world
   std::optional<Board> board;

@@ -124,6 +124,10 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"board.yaml",
                  "pattern: chessboard\ncolumns: 1000000000\nrows: 6\nsquare: 1\n",
                  "board.yaml:2: key `columns`"},
+        Replaced{"board.yaml",
+                 "pattern: aprilgrid\ntagCols: 1000000000\ntagRows: 6\ntagSize: 1\n",
+                 "board.yaml:2: key `tagCols`"},
+        Replaced{"board.yaml", "pattern: apriltag\ntagSize: .inf\n", "board.yaml:2: key `tagSize`"},
         Replaced{
             "plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"}));
 
@@ -141,6 +145,40 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"imu0/data.csv", "1,0,0,0\n2,0,0", "imu0/data.csv:2: found 3 columns"},
         Replaced{"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
         Replaced{"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}));
+
+/// What a logger wrote beside a video that is not looked at before.
+class HostileLog : public ::testing::TestWithParam<Replaced> {};
+
+TEST_P(HostileLog, IsRefusedWithOneLine) {
+  const auto& [file, content, message] = GetParam();
+  const fs::path folder = fresh_folder();
+  write_file(folder / "camera.yaml", kCamera);
+  write_file(folder / "data.mp4", "no video");
+  write_file(folder / "odometry.csv", "1,0,0,0,0,0,0,0,1\n");
+  write_file(folder / file, content);
+  expect_one_line(program("info " + folder.string()), message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    HostileLog,
+    ::testing::Values(
+        Replaced{"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
+        Replaced{"data.gcsv",
+                 "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
+                 "data.gcsv:201: found no table"},
+        Replaced{"data.gcsv",
+                 "GYROFLOW IMU LOG\ntscale,1e308\ngscale,1\nt,gx,gy,gz\n1e308,1,2,3\n",
+                 "data.gcsv:5: found another time"},
+        Replaced{"data.jsonl", repeated("[", 5'000'000), "data.jsonl:1: found a line of"},
+        Replaced{
+            "data.jsonl", repeated("{\"a\":", 5'000) + "\n", "data.jsonl:1: found a line that"},
+        Replaced{"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
+        Replaced{"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: found no column"},
+        Replaced{"Gyroscope.csv", kZeros, "Gyroscope.csv"},
+        Replaced{"camera_matrix.csv", "1e999,0,1\n", "camera_matrix.csv:1: found \"1e999\""},
+        Replaced{"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
+        Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: found something"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Pictures,

@@ -291,6 +291,17 @@ TEST(Run, RefusesOneFileForTwoOutputs) {
   EXPECT_EQ(program(run + "--json /dev/null --points /dev/null").exit_code, 0);
 }
 
+TEST(Run, TracksThatItWritesAreReadBackToTheSameResult) {
+  const std::string file = (fresh_folder() / "tracks.csv").string();
+  const json written = run_json(desk().string() + " --frames 12 --tracks-out " + file);
+  EXPECT_THAT(read_file(file), testing::StartsWith("#frame,track,x,y,plane,verdict,residual_px,"));
+  const json read = run_json(desk().string() + " --frames 12 --tracks " + file);
+  EXPECT_EQ(read["window"]["tracks"], written["window"]["tracks"]);
+  EXPECT_EQ(read["window"]["inliers"], written["window"]["inliers"]);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(read["plane"]["normal"][k], written["plane"]["normal"][k], 1e-6);
+}
+
 TEST(Run, DoesNotWriteOverWhatItReads) {
   const fs::path file = fresh_folder() / "tracks.csv";
   test::write_file(file, "frame,track,x,y\n0,1,2,3\n");

@@ -48,6 +48,7 @@ const std::vector<Room> kRooms = {
     {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
     {"engine/recording/bags", {"engine/base", "engine/files", "engine/geometry", "engine/recording/pictures"}},
     {"engine/recording/board", {"engine/base", "engine/files", "engine/geometry", "engine/recording", "engine/recording/pictures"}},
+    {"engine/recording/loggers", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording", "engine/recording/pictures"}},
     {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
     {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend", "engine/recording/"}},
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},

@@ -181,7 +181,23 @@ void add_truth(Table& table, const RecordingInfo& info) {
   if (const auto& u = info.truth->uncertainty) table.row("  certain to", uncertainty_text(*u));
 }
 
+std::string tags_text(const Board& board) {
+  const BoardTags& tags = *board.tags;
+  const double side_mm = board.square_m * 1e3;
+  if (tags.alone) {
+    const bool any = *tags.alone == BoardTags::kAnyTag;
+    return fmt::format(
+        "AprilTag{} of {:g} mm", any ? "" : fmt::format(" {}", *tags.alone), side_mm);
+  }
+  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, {:g} of it apart",
+                     board.columns / 2,
+                     board.rows / 2,
+                     side_mm,
+                     tags.spacing);
+}
+
 std::string board_text(const Board& board) {
+  if (board.tags) return tags_text(board);
   const std::string counts = fmt::format(
       "{} x {} inner corners, squares of {:g} mm", board.columns, board.rows, board.square_m * 1e3);
   if (!board.markers) return fmt::format("chessboard, {}", counts);
@@ -191,7 +207,22 @@ std::string board_text(const Board& board) {
                      board.markers->dictionary);
 }
 
+nlohmann::json tags_json(const Board& board) {
+  const BoardTags& tags = *board.tags;
+  if (tags.alone) {
+    nlohmann::json json = {{"pattern", "apriltag"}, {"tag_m", board.square_m}};
+    if (*tags.alone != BoardTags::kAnyTag) json["id"] = *tags.alone;
+    return json;
+  }
+  return {{"pattern", "aprilgrid"},
+          {"tag_columns", board.columns / 2},
+          {"tag_rows", board.rows / 2},
+          {"tag_m", board.square_m},
+          {"tag_spacing", tags.spacing}};
+}
+
 nlohmann::json to_json(const Board& board) {
+  if (board.tags) return tags_json(board);
   nlohmann::json json = {{"pattern", board.markers ? "charuco" : "chessboard"},
                          {"columns", board.columns},
                          {"rows", board.rows},
@@ -217,6 +248,7 @@ RecordingInfo describe(const Recording& recording) {
   info.rate_hz = gpo::rate_hz(times);
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
   info.camera = recording.camera;
+  info.readout_s = recording.readout_s;
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
   info.truth = describe_truth(recording);
   info.plane = recording.plane;
@@ -237,6 +269,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"gaps", to_json(info.gaps, "after_frame")},
                          {"camera", to_json(info.camera)},
                          {"notes", info.notes}};
+  if (info.readout_s) json["readout_ms"] = 1e3 * *info.readout_s;
   if (const auto& gyroscope = info.gyroscope) {
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
@@ -276,6 +309,12 @@ std::string to_text(const RecordingInfo& info) {
             fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
   add_camera(table, info.camera);
+  if (info.readout_s) {
+    table.row("readout",
+              fmt::format("{:.2f} ms, {} row first",
+                          1e3 * std::abs(*info.readout_s),
+                          *info.readout_s < 0 ? "last" : "first"));
+  }
   add_gyroscope(table, info.gyroscope);
   add_truth(table, info);
   if (info.plane) {

@@ -54,6 +54,7 @@ struct RecordingInfo {
   double rate_hz = 0;         ///< 1 / median period; 0 for a single frame
   std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
   Camera camera;
+  std::optional<double> readout_s;  ///< as `Recording::readout_s`
   std::optional<GyroscopeInfo> gyroscope;
   std::optional<TruthInfo> truth;
   std::optional<Plane> plane;

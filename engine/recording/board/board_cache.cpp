@@ -88,13 +88,19 @@ std::string key_of(const Camera& camera) {
                      fmt::join(camera.coefficients, " "));
 }
 
+std::string tags_text(const Board& board) {
+  if (!board.tags) return "";
+  return fmt::format(
+      "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
+}
+
 std::string key_of(const Board& board) {
   return fmt::format("{}x{} {} {} {}\n",
                      board.columns,
                      board.rows,
                      board.square_m,
                      board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : "");
+                     board.markers ? board.markers->dictionary : tags_text(board));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_corners.h"
 
+#include "engine/recording/board/april_tags.h"
 #include "engine/recording/board/charuco.h"
 
 #include <algorithm>
@@ -168,6 +169,7 @@ Corners find_chessboard(const cv::Mat& gray, const Board& board) {
 }  // namespace
 
 Corners find_board(const cv::Mat& gray, const Board& board) {
+  if (board.tags) return find_april_tags(gray, board);
   return board.markers ? find_charuco(gray, board) : find_chessboard(gray, board);
 }
 

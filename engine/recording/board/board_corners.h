@@ -18,7 +18,7 @@ namespace gpo {
 /// A chessboard is found whole or not at all. Which end is first: the one with a dark square
 /// inside, where the board's turns differ in that; else the one whose rows run to the right, which
 /// is another one once the camera has rolled (`board_symmetries`). Of a ChArUco board corners may
-/// be hidden, which are NaN; its markers tell the ends apart.
+/// be hidden, which are NaN; its markers tell the ends apart. So do the tags of a board of tags.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
 }  // namespace gpo

@@ -20,6 +20,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kMostRmsPx = 2;  // a pose that fits worse is none
 constexpr std::size_t kLeastCorners = 6;
+constexpr std::size_t kLeastCornersOfTag = 4;
 
 /// Corners that are seen: on the board [m], in the picture, and undistorted [px].
 struct Seen {
@@ -169,11 +170,21 @@ BoardPose with_uncertainty(const Seen& seen, const Camera& camera, const Pose& T
 
 }  // namespace
 
+const char* board_title(const Board& board) {
+  if (board.tags) return board.tags->alone ? "AprilTag" : "AprilGrid";
+  return board.markers ? "ChArUco board" : "chessboard";
+}
+
 std::vector<Eigen::Vector3d> board_points(const Board& board) {
+  const auto along = [&](int corner) {
+    if (!board.tags) return corner * board.square_m;
+    const int tag = corner / 2;
+    return (tag * (1 + board.tags->spacing) + corner % 2) * board.square_m;
+  };
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(column * board.square_m, row * board.square_m, 0);
+      points.emplace_back(along(column), along(row), 0);
     }
   }
   return points;
@@ -183,7 +194,9 @@ std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_
                                     const Board& board,
                                     const Camera& camera) {
   const Seen seen = seen_corners(corners_raw_px, board, camera);
-  if (seen.points.size() < kLeastCorners || nearly_collinear(seen.points, board)) {
+  const bool single_tag = board.tags && board.tags->alone;
+  const std::size_t least = single_tag ? kLeastCornersOfTag : kLeastCorners;
+  if (seen.points.size() < least || nearly_collinear(seen.points, board)) {
     return std::nullopt;
   }
   std::optional<BoardPose> best;
@@ -208,7 +221,7 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
 }
 
 std::vector<Pose> board_symmetries(const Board& board) {
-  if (board.markers || (board.columns + board.rows) % 2 != 0) return {Pose{}};
+  if (board.markers || board.tags || (board.columns + board.rows) % 2 != 0) return {Pose{}};
   const Eigen::Vector3d center(
       0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
   const bool quarters = board.columns == board.rows && board.columns % 2 == 0;

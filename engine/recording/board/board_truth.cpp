@@ -88,7 +88,7 @@ GroundTruth in_one_frame(const BoardViews& views,
                          const Board& board,
                          double most_rms_px) {
   GroundTruth truth;
-  truth.source = board.markers ? "ChArUco board" : "chessboard";
+  truth.source = board_title(board);
   truth.poses.resize(frames.size());
   truth.uncertainties.resize(frames.size());
   const auto symmetries = board_symmetries(board);

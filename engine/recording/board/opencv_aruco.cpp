@@ -7,6 +7,13 @@
 #endif
 
 namespace gpo {
+namespace {
+
+using Quads = std::vector<std::vector<cv::Point2f>>;
+constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;  // any will do to look for quads
+constexpr double kMostCorrected = 0.4;                   // of the bits that the family can correct
+
+}  // namespace
 
 #if !GPO_ARUCO_IN_OBJDETECT
 
@@ -15,6 +22,24 @@ OpencvMarkers detect_markers(const cv::Mat& gray, int dictionary) {
   cv::aruco::detectMarkers(
       gray, cv::aruco::getPredefinedDictionary(dictionary), seen.corners, seen.ids);
   return seen;
+}
+
+Quads dark_quads(const cv::Mat& gray) {
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
+  Quads quads, others;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(
+      gray, cv::aruco::getPredefinedDictionary(kFamily), quads, ids, parameters, others);
+  quads.insert(quads.end(), others.begin(), others.end());
+  return quads;
+}
+
+std::optional<MarkerCode> identify_marker(const cv::Mat& bits, int dictionary) {
+  MarkerCode code;
+  const bool known = cv::aruco::getPredefinedDictionary(dictionary)
+                         ->identify(bits, code.id, code.quarters, kMostCorrected);
+  return known ? std::optional(code) : std::nullopt;
 }
 
 int marker_dictionary_size(int dictionary) {
@@ -28,6 +53,24 @@ OpencvMarkers detect_markers(const cv::Mat& gray, int dictionary) {
   cv::aruco::ArucoDetector(cv::aruco::getPredefinedDictionary(dictionary))
       .detectMarkers(gray, seen.corners, seen.ids);
   return seen;
+}
+
+Quads dark_quads(const cv::Mat& gray) {
+  cv::aruco::DetectorParameters parameters;
+  parameters.cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
+  Quads quads, others;
+  std::vector<int> ids;
+  cv::aruco::ArucoDetector(cv::aruco::getPredefinedDictionary(kFamily), parameters)
+      .detectMarkers(gray, quads, ids, others);
+  quads.insert(quads.end(), others.begin(), others.end());
+  return quads;
+}
+
+std::optional<MarkerCode> identify_marker(const cv::Mat& bits, int dictionary) {
+  MarkerCode code;
+  const bool known = cv::aruco::getPredefinedDictionary(dictionary)
+                         .identify(bits, code.id, code.quarters, kMostCorrected);
+  return known ? std::optional(code) : std::nullopt;
 }
 
 int marker_dictionary_size(int dictionary) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -28,6 +29,17 @@ struct OpencvMarkers {
 
 /// `dictionary` is one of OpenCV's cv::aruco::DICT_..., here and below.
 OpencvMarkers detect_markers(const cv::Mat& gray, int dictionary);
+
+/// Dark quadrilaterals, by the way in which AprilTag finds them: what may be a tag. Clockwise [px].
+std::vector<std::vector<cv::Point2f>> dark_quads(const cv::Mat& gray);
+
+/// A marker's number, and by how many quarters what was read of it is turned.
+struct MarkerCode {
+  int id = 0;
+  int quarters = 0;
+};
+/// Of the bits inside of a marker's border, a square of 0 and 1; nothing where it is none.
+std::optional<MarkerCode> identify_marker(const cv::Mat& bits, int dictionary);
 
 /// How many markers it has.
 int marker_dictionary_size(int dictionary);

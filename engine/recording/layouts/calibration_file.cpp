@@ -290,7 +290,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
   return result;
 }
 
-std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
   for (const std::string& name : calibration_names()) {
     if (is_file(folder / name)) return folder / name;
   }
@@ -298,7 +298,11 @@ std::filesystem::path calibration_in(const std::filesystem::path& folder) {
   for (const auto& file : files_in(folder)) {
     if (is_camchain(file)) chains.insert(file);
   }
-  if (!chains.empty()) return *chains.begin();
+  return chains.empty() ? std::nullopt : std::optional(*chains.begin());
+}
+
+std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+  if (const auto file = find_calibration(folder)) return *file;
   throw InputError(folder.string() +
                    ": found no calibration, expected camera.yaml (the names and formats of EuRoC, "
                    "OpenCV and Kalibr are known, too; `gpo-inspector calibrate` makes one)");

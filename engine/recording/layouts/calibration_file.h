@@ -33,7 +33,9 @@ bool is_picture_rate(double rate_hz);
 const char* distortion_name(Distortion distortion);
 
 /// The calibration in a folder, by the names that people and tools give it: camera.yaml,
-/// sensor.yaml, camchain-imucam.yaml, calibration.xml, ... Throws InputError where there is none.
+/// sensor.yaml, camchain-imucam.yaml, calibration.xml, ...; nothing where there is none.
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
+/// The same. Throws InputError where there is none.
 std::filesystem::path calibration_in(const std::filesystem::path& folder);
 
 /// EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/bags/open_bag.h"
+#include "engine/recording/board/board_pose.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/sidecar_files.h"
 #include "engine/recording/pictures/video_file.h"
@@ -147,7 +148,7 @@ void add_notes(Recording& recording) {
   const bool from_board = !recording.truth && recording.board && recording.pictures;
   if (from_board) {
     notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",
-                                   recording.board->markers ? "ChArUco board" : "chessboard"));
+                                   board_title(*recording.board)));
   }
   if (!from_board && !recording.truth) {
     notes.emplace_back("no ground truth: no metrics");

@@ -9,11 +9,14 @@
 #include "engine/recording/layouts/gyroscope_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
 #include "engine/recording/layouts/truth_file.h"
+#include "engine/recording/loggers/logs.h"
 #include "engine/recording/pictures/picture_files.h"
 #include "engine/recording/pictures/video_file.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 namespace gpo {
@@ -43,7 +46,10 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
 /// The one video to open, or nothing.
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
-  const auto videos = videos_in(path);
+  auto videos = videos_in(path);
+  const auto is_other = [](const fs::path& file) { return file.stem() != "data"; };
+  if (is_file(path / "data.jsonl") && !std::ranges::all_of(videos, is_other))
+    std::erase_if(videos, is_other);  // of a second camera
   if (videos.size() > 1) {
     throw InputError(path.string() + ": found " + std::to_string(videos.size()) + " videos (" +
                      videos[0].filename().string() + ", " + videos[1].filename().string() +
@@ -66,10 +72,11 @@ std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   return times;
 }
 
-/// Times of the frames: the file's, else the video's, else regular ones.
+/// Times of the frames: the file's, else the log's, else the video's, else regular ones.
 void set_times(Recording& recording,
                const fs::path& folder,
                std::optional<int> count,
+               const std::optional<Log>& log,
                const std::vector<std::int64_t>& video_times,
                const std::optional<double>& rate_hz,
                const std::string& calibration_name) {
@@ -80,6 +87,15 @@ void set_times(Recording& recording,
                        " time stamps, expected " + std::to_string(*count) + ", one a picture");
     }
     recording.timestamps_ns = *std::move(stored);
+    return;
+  }
+  if (log && !log->frame_times_ns.empty()) {
+    if (count && std::ssize(log->frame_times_ns) != *count) {
+      throw InputError(log->frames_file.string() + ": found " +
+                       std::to_string(log->frame_times_ns.size()) + " frames, expected " +
+                       std::to_string(*count) + ", one a picture");
+    }
+    recording.timestamps_ns = log->frame_times_ns;
     return;
   }
   if (!video_times.empty()) {
@@ -94,23 +110,54 @@ void set_times(Recording& recording,
   }
 }
 
+/// A gyroscope's table, where its maker knows nothing of the camera.
+std::optional<Gyroscope> plain_gyroscope(const fs::path& folder) {
+  for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"})
+    if (const auto file = if_file(folder / name))
+      return read_gyroscope(*file, TimeUnit::by_sample_rate);
+  return std::nullopt;
+}
+
 void add_gyroscope(Recording& recording,
-                   const fs::path& folder,
+                   Gyroscope gyroscope,
                    std::int64_t time_offset_ns,
                    const std::string& calibration_name) {
-  for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"}) {
-    const auto file = if_file(folder / name);
-    if (!file) continue;
-    Gyroscope gyroscope = read_gyroscope(*file, TimeUnit::by_sample_rate);
-    gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
-    gyroscope.time_offset_ns = time_offset_ns;
-    recording.gyroscope = std::move(gyroscope);
-    if (!recording.T_body_camera) {
-      recording.notes.push_back("no T_BS in " + calibration_name +
-                                ": the gyroscope's axes are taken as the camera's");
-    }
-    return;
-  }
+  gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
+  gyroscope.time_offset_ns = time_offset_ns;
+  recording.gyroscope = std::move(gyroscope);
+  if (recording.T_body_camera) return;
+  recording.notes.push_back("no T_BS in " + calibration_name +
+                            ": the gyroscope's axes are taken as the camera's");
+}
+
+/// A log's camera has the axes of the stored picture, a recording's those of the shown one.
+Pose of_shown_picture(const Pose& T_body_stored, int quarter_turns) {
+  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
+  return T_body_stored * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
+}
+
+void add_log(Recording& recording, const Log& log, int quarter_turns) {
+  if (log.T_body_camera && !recording.T_body_camera)
+    recording.T_body_camera = of_shown_picture(*log.T_body_camera, quarter_turns);
+  recording.readout_s = log.readout_s;
+  recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
+  if (log.true_poses.empty() || recording.truth) return;
+  recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
+}
+
+struct FoundCalibration {
+  Calibration calibration;
+  fs::path file;
+};
+
+/// A calibration that somebody made goes before what a log says of the camera.
+FoundCalibration calibration_of(const fs::path& folder, const std::optional<Log>& log) {
+  const auto file = find_calibration(folder);
+  const bool logged = log && log->camera && (!file || *file == log->camera_file);
+  if (!logged) return {read_calibration(calibration_in(folder)), calibration_in(folder)};
+  Calibration calibration;
+  calibration.camera = *log->camera;
+  return {calibration, log->camera_file};
 }
 
 /// The calibration may leave the size to the pictures; without pictures it may not.
@@ -154,30 +201,36 @@ Recording read_pictures(const fs::path& path,
                         const std::optional<fs::path>& tracks,
                         std::size_t cache_bytes) {
   const fs::path folder = is_folder(path) ? path : folder_of(path);
+  const auto video = video_at(path);
+  std::optional<Log> log = log_beside(folder, video);
   Recording recording;
-  const fs::path calibration_file = calibration_in(folder);
+  const auto [calibration, calibration_file] = calibration_of(folder, log);
   const std::string name = calibration_file.filename().string();
-  const auto calibration = read_calibration(calibration_file);
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
-  std::vector<std::int64_t> video_times;
-  if (const auto video = video_at(path)) {
-    auto opened = open_video(*video, recording.camera, cache_bytes);
+  VideoFile opened;
+  if (video) {
+    opened = open_video(*video, recording.camera, cache_bytes);
     recording.pictures = opened.pictures;
     recording.picture_files = {*video};
-    video_times = std::move(opened.timestamps_ns);
   } else if (auto files = pictures_in(folder); !files.empty()) {
     add_picture_files(recording, std::move(files), cache_bytes);
   }
   check_size_is_known(recording.camera, calibration_file);
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
-  set_times(recording, folder, count, video_times, calibration.rate_hz, name);
+  set_times(recording, folder, count, log, opened.timestamps_ns, calibration.rate_hz, name);
   if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
     read_tracks(*tracks, recording.frame_count());  // names the line
   }
-  add_gyroscope(recording, folder, calibration.time_offset_ns, name);
   recording.truth = truth_beside(folder, recording.timestamps_ns);
+  auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
+  if (!gyroscope && !log && video) {
+    log = log_inside(*video, opened.first_frame_s);
+    if (log) gyroscope = log->gyroscope;
+  }
+  if (log) add_log(recording, *log, opened.quarter_turns);
+  if (gyroscope) add_gyroscope(recording, std::move(*gyroscope), calibration.time_offset_ns, name);
   return recording;
 }
 

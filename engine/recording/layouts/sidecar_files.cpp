@@ -3,8 +3,11 @@
 #include "engine/recording/layouts/sidecar_files.h"
 
 #include "engine/files/yaml_entry.h"
+#include "engine/recording/board/april_tags.h"
 #include "engine/recording/board/charuco.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -65,15 +68,74 @@ Board charuco_board(const YamlEntry& root) {
   return board;
 }
 
+int tag_count(const YamlEntry& root, const std::string& key) {
+  const auto entry = at(root, key, "a count of tags, 1 to 50");
+  const std::int64_t count = integer(entry, "a count of tags, 1 to 50");
+  if (count < 1 || count > 50) yaml_fail(entry, "a count of tags, 1 to 50");
+  return static_cast<int>(count);
+}
+
+/// Width of a tag's black border, which Kalibr prints twice as wide as others do.
+int tag_border(const YamlEntry& root, int otherwise) {
+  const auto entry = find(root, "tagBorder");
+  if (!entry) return otherwise;
+  const std::int64_t border = integer(*entry, "1 or 2 bits");
+  if (border != 1 && border != 2) yaml_fail(*entry, "1 or 2 bits");
+  return static_cast<int>(border);
+}
+
+/// Kalibr's keys.
+Board april_grid(const YamlEntry& root) {
+  Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
+  board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
+  const auto spacing = at(root, "tagSpacing", "a tag's distance from the next over its side");
+  const double ratio = number(spacing);
+  if (ratio <= 0 || ratio > 1) {
+    yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
+  }
+  board.tags = BoardTags{ratio, tag_border(root, 2), {}};
+  const int count = board.columns * board.rows / 4;
+  if (count > april_tag_count()) {
+    yaml_fail(at(root, "tagCols", ""),
+              fmt::format("{} tags", count),
+              fmt::format("at most {}", april_tag_count()));
+  }
+  return board;
+}
+
+Board april_tag(const YamlEntry& root) {
+  Board board{2, 2, length_m(root, "tagSize", "the side of the tag in meters")};
+  int id = BoardTags::kAnyTag;
+  if (const auto entry = find(root, "id")) {
+    const std::string expected = fmt::format("a tag's number, 0 to {}", april_tag_count() - 1);
+    const std::int64_t number = integer(*entry, expected);
+    if (number < 0 || number >= april_tag_count()) yaml_fail(*entry, expected);
+    id = static_cast<int>(number);
+  }
+  board.tags = BoardTags{0, tag_border(root, 1), id};
+  return board;
+}
+
+struct Pattern {
+  const char* name;
+  Board (*read)(const YamlEntry& root);
+};
+constexpr std::array<Pattern, 4> kPatterns = {{{"chessboard", chessboard},
+                                               {"charuco", charuco_board},
+                                               {"aprilgrid", april_grid},
+                                               {"apriltag", april_tag}}};
+constexpr const char* kPatternNames = "chessboard, charuco, aprilgrid or apriltag";
+
 }  // namespace
 
 Board read_board(const std::filesystem::path& file) {
   const auto root = load_yaml(file);
-  const auto pattern = at(root, "pattern", "chessboard or charuco");
-  const std::string name = text(pattern, "chessboard or charuco");
-  if (name == "chessboard") return chessboard(root);
-  if (name != "charuco") yaml_fail(pattern, "chessboard or charuco");
-  return charuco_board(root);
+  const auto kalibr = find(root, "target_type");
+  const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
+  const std::string name = text(pattern, kPatternNames);
+  const auto known = std::ranges::find(kPatterns, name, &Pattern::name);
+  if (known == kPatterns.end()) yaml_fail(pattern, kPatternNames);
+  return known->read(root);
 }
 
 Plane read_plane(const std::filesystem::path& file) {
@@ -89,6 +151,23 @@ Plane read_plane(const std::filesystem::path& file) {
 }
 
 std::string board_yaml(const Board& board) {
+  if (const auto& tags = board.tags) {
+    if (tags->alone) {
+      const bool any = *tags->alone == BoardTags::kAnyTag;
+      return fmt::format("# Meters.\npattern: apriltag\ntagSize: {}\ntagBorder: {}\n{}",
+                         board.square_m,
+                         tags->border,
+                         any ? "" : fmt::format("id: {}\n", *tags->alone));
+    }
+    return fmt::format(
+        "# As Kalibr's, meters.\npattern: aprilgrid\ntagCols: {}\ntagRows: {}\ntagSize: {}\n"
+        "tagSpacing: {}\ntagBorder: {}\n",
+        board.columns / 2,
+        board.rows / 2,
+        board.square_m,
+        tags->spacing,
+        tags->border);
+  }
   if (const auto& markers = board.markers) {
     return fmt::format(
         "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"

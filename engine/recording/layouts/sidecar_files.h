@@ -12,7 +12,9 @@ namespace gpo {
 
 /// board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, columns and rows of inner
 /// corners; or {pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, dictionary:
-/// DICT_5X5_100}, squares in x and y. Throws InputError.
+/// DICT_5X5_100}, squares in x and y; or Kalibr's {pattern: aprilgrid, tagCols: 6, tagRows: 6,
+/// tagSize: 0.088, tagSpacing: 0.3}; or {pattern: apriltag, tagSize: 0.1, id: 0}. Throws
+/// InputError.
 Board read_board(const std::filesystem::path& file);
 
 /// plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.

@@ -19,7 +19,7 @@ constexpr int kMostFrames = 10'000'000;
 
 std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                                           std::optional<int> frame_count) {
-  const CsvTable table = read_csv(file, {"frame", "track", "x", "y"}, CsvColumns::exactly);
+  const CsvTable table = read_csv(file, {"frame", "track", "x", "y"}, CsvColumns::at_least);
   const int end = frame_count.value_or(kMostFrames);
   std::vector<TrackObservation> read;
   read.reserve(table.rows.size());

@@ -11,8 +11,8 @@
 
 namespace gpo {
 
-/// tracks.csv (`frame,track,x,y`, raw pixels), sorted by frame, then track. A frame must be below
-/// `frame_count` where that is known. Throws InputError.
+/// tracks.csv (`frame,track,x,y`, raw pixels, then what you like), sorted by frame, then track. A
+/// frame must be below `frame_count` where that is known. Throws InputError.
 std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                                           std::optional<int> frame_count);
 

@@ -176,7 +176,8 @@ VideoDecoder::VideoDecoder(fs::path file)
   const AVCodecParameters& parameters = *stream.codecpar;
   index_.unit_s = av_q2d(stream.time_base);
   index_.size = {parameters.width, parameters.height};
-  if (quarter_turns(stream) % 2 == 1) std::swap(index_.size.width, index_.size.height);
+  index_.quarter_turns = quarter_turns(stream);
+  if (index_.quarter_turns % 2 == 1) std::swap(index_.size.width, index_.size.height);
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);

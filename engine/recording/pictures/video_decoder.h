@@ -20,6 +20,7 @@ struct VideoIndex {
   cv::Size size;              ///< [px] as shown, that is rotated as the container asks for
   double declared_count = 0;  ///< frames that the container promises; 0: it does not tell
   double rate_hz = 0;         ///< average by the container; 0: it does not tell
+  int quarter_turns = 0;      ///< by which the container has the stored picture turned clockwise
 };
 
 /// Any frame of a video file, in whatever order they are asked for: each is exactly what decoding

@@ -69,7 +69,10 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
   const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
   const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
   const int count = static_cast<int>(index.times.size());
-  return {timestamps_ns(index), std::make_shared<const FrameCache>(count, decode, left)};
+  return {timestamps_ns(index),
+          std::make_shared<const FrameCache>(count, decode, left),
+          static_cast<double>(index.times.front()) * index.unit_s,
+          index.quarter_turns};
 }
 
 bool is_video_name(const std::filesystem::path& file) {

@@ -16,6 +16,8 @@ namespace gpo {
 struct VideoFile {
   std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, the first is 0
   std::shared_ptr<const FrameCache> pictures;
+  double first_frame_s = 0;  ///< when the container has it
+  int quarter_turns = 0;     ///< of the pictures, clockwise, from how they lie in the file
 };
 
 /// Opens a video without decoding it; times are the container's, also of a variable frame rate. The

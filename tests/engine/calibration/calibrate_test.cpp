@@ -5,6 +5,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/layouts/calibration_file.h"
+#include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
@@ -212,6 +213,65 @@ TEST(CalibrationViews, MustBeOfOneSize) {
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
   EXPECT_EQ(test::error_of([&] { find_calibration_views(pictures, kBoard, 10); }),
             "picture 1: found 65x48 pixels, expected 64x48 as in the first");
+}
+
+/// Of an AprilGrid, by OpenCV's warp of a large print: no lens distortion.
+cv::Mat grid_picture(const cv::Mat& print, double texels, const Camera& camera, const Pose& pose) {
+  constexpr int kFine = 3;
+  const Eigen::Matrix3d R = pose.R_wc.transpose();
+  Eigen::Matrix3d plane;  // board [m] -> camera
+  plane << R.col(0), R.col(1), -R * pose.p_wc;
+  Eigen::Matrix3d to_board, to_fine;
+  const double margin = 0.5 * print.cols / texels - 0.1225;  // the board's middle is the print's
+  const double above = 0.5 * print.rows / texels - 0.09;
+  to_board << 1 / texels, 0, 0.5 / texels - margin, 0, 1 / texels, 0.5 / texels - above, 0, 0, 1;
+  to_fine << kFine, 0, 1, 0, kFine, 1, 0, 0, 1;
+  const Eigen::Matrix3d H = to_fine * intrinsic_matrix(camera) * plane * to_board;
+  const cv::Matx33d warp(
+      H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2));
+  cv::Mat fine, picture;
+  cv::warpPerspective(print,
+                      fine,
+                      warp,
+                      {kFine * camera.width, kFine * camera.height},
+                      cv::INTER_AREA,
+                      cv::BORDER_CONSTANT,
+                      cv::Scalar(110));
+  cv::resize(fine, picture, {camera.width, camera.height}, 0, 0, cv::INTER_AREA);
+  cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
+  return picture;
+}
+
+TEST(Calibrate, TakesPicturesOfAnAprilGrid) {
+  const Board grid{8, 6, 0.05, {}, BoardTags{0.3, 2, {}}};
+  constexpr double kTexels = 2400;  // a meter
+  cv::Mat print(static_cast<int>(0.24 * kTexels), static_cast<int>(0.31 * kTexels), CV_8U);
+  const Eigen::Vector3d last = board_points(grid).back();
+  ASSERT_NEAR(last.x() / 2, 0.1225, 1e-12);
+  ASSERT_NEAR(last.y() / 2, 0.09, 1e-12);
+  for (int v = 0; v < print.rows; ++v) {
+    for (int u = 0; u < print.cols; ++u) {
+      print.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(
+          test::tag_gray(grid,
+                         (u + 0.5) / kTexels - 0.5 * print.cols / kTexels + last.x() / 2,
+                         (v + 0.5) / kTexels - 0.5 * print.rows / kTexels + last.y() / 2));
+    }
+  }
+  const Camera camera{640, 480, 600, 604, 317, 243, Distortion::none, {}};
+  std::mt19937 random(5);
+  std::vector<cv::Mat> pictures;
+  for (int i = 0; i < 30; ++i)
+    pictures.push_back(grid_picture(print, kTexels, camera, pose_from(random, 0.45, 35)));
+  const FrameCache frames(
+      30, [&](int frame) { return pictures[frame]; }, FrameCache::kDefaultByteLimit);
+  const auto found = calibrate_camera(find_calibration_views(frames, grid, 30), grid);
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_GE(found.found, 28);
+  EXPECT_LT(found.rms_px, 0.15);
+  EXPECT_NEAR(found.camera.fx, 600, 2);
+  EXPECT_NEAR(found.camera.fy, 604, 2);
+  EXPECT_NEAR(found.camera.cx, 317, 2);
+  EXPECT_NEAR(found.camera.cy, 243, 2);
 }
 
 TEST(CalibrationReport, IsReadAsACalibration) {

@@ -1,0 +1,148 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/board/april_tags.h"
+
+#include "engine/recording/board/opencv_aruco.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;
+constexpr int kCode = 6;  // bits along a tag's side, without its border
+
+/// Four corners, clockwise [px].
+using Quad = std::vector<cv::Point2f>;
+
+double side_of(const Quad& quad) { return cv::arcLength(quad, true) / 4; }
+
+/// With each side moved outward.
+Quad widened(const Quad& quad, double by_px) {
+  Quad wider = quad;
+  for (int k = 0; k < 4; ++k) {
+    const cv::Point2f before = quad[k] - quad[(k + 3) % 4], after = quad[(k + 1) % 4] - quad[k];
+    // Outward of a clockwise way (y is down) is to its left.
+    const cv::Vec2d n(before.y / cv::norm(before), -before.x / cv::norm(before));
+    const cv::Vec2d m(after.y / cv::norm(after), -after.x / cv::norm(after));
+    const double sine = n[0] * m[1] - n[1] * m[0];
+    if (!(std::abs(sine) > 0.1)) continue;
+    wider[k] += cv::Point2f(static_cast<float>(by_px * (m[1] - n[1]) / sine),
+                            static_cast<float>(by_px * (n[0] - m[0]) / sine));
+  }
+  return wider;
+}
+
+/// The tag that a quadrilateral is, if it is one.
+std::optional<MarkerCode> code_of(const cv::Mat& gray, const Quad& quad, int border) {
+  constexpr int kBit = 6;  // px
+  const int bits = kCode + 2 * border;
+  const float first = -0.5F;  // where the first pixel begins
+  const float last = static_cast<float>(bits * kBit) - 0.5F;
+  const Quad square = {{first, first}, {last, first}, {last, last}, {first, last}};
+  cv::Mat flat, means;
+  cv::warpPerspective(gray,
+                      flat,
+                      cv::getPerspectiveTransform(quad, square),
+                      {bits * kBit, bits * kBit},
+                      cv::INTER_LINEAR,
+                      cv::BORDER_REPLICATE);
+  cv::resize(flat, means, {bits, bits}, 0, 0, cv::INTER_AREA);
+  double darkest = 0, lightest = 0;
+  cv::minMaxLoc(means, &darkest, &lightest);
+  constexpr double kLeastContrast = 20;
+  if (lightest - darkest < kLeastContrast) return std::nullopt;
+  const cv::Mat white = means > (darkest + lightest) / 2;
+  const cv::Rect inside(border, border, kCode, kCode);
+  constexpr int kMostWhiteInBorder = 2;  // bits
+  if (cv::countNonZero(white) - cv::countNonZero(white(inside)) > kMostWhiteInBorder)
+    return std::nullopt;
+  return identify_marker(white(inside) / 255, kFamily);
+}
+
+/// Column and row, from the top, of a tag; nothing where the board has none of that number.
+std::optional<cv::Point> place_of(int id, const Board& board) {
+  if (const auto& alone = board.tags->alone) {
+    const bool wanted = *alone == BoardTags::kAnyTag || *alone == id;
+    return wanted ? std::optional(cv::Point()) : std::nullopt;
+  }
+  const int columns = board.columns / 2;
+  const int rows = board.rows / 2;
+  if (id < 0 || id >= columns * rows) return std::nullopt;
+  return cv::Point(id % columns, rows - 1 - id / columns);
+}
+
+/// Where the corners of tags in a grid, which are those of two black squares each, are exactly.
+void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
+  const double bits = kCode + 2 * board.tags->border;
+  const double plain = std::min(board.tags->border / bits, board.tags->spacing);
+  const int half = std::clamp(static_cast<int>(0.7 * plain * side_of(corners)), 2, 7);
+  const Quad starts = corners;
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
+  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    if (cv::norm(corners[k] - starts[k]) > half) corners[k] = starts[k];
+}
+
+bool is_inside(const Quad& quad, const cv::Mat& gray) {
+  constexpr float kMargin = 2;
+  return std::ranges::all_of(quad, [&](const cv::Point2f& corner) {
+    return corner.x >= kMargin && corner.y >= kMargin &&
+           corner.x <= static_cast<float>(gray.cols - 1) - kMargin &&
+           corner.y <= static_cast<float>(gray.rows - 1) - kMargin;
+  });
+}
+
+/// The board's tags by their numbers, each corner clockwise from the tag's own top left.
+using Tags = std::map<int, Quad>;
+
+/// Adds the tags that are found once everything black is made narrower.
+void add_tags(Tags& tags, const cv::Mat& gray, const Board& board, int narrower_px) {
+  const int size = 2 * narrower_px + 1;
+  cv::Mat narrowed;
+  cv::dilate(gray, narrowed, cv::getStructuringElement(cv::MORPH_RECT, {size, size}));
+  for (Quad quad : dark_quads(narrowed)) {
+    constexpr float kAprilTags = 0.5F;  // where AprilTag has the middle of the first pixel
+    for (cv::Point2f& corner : quad) corner -= cv::Point2f(kAprilTags, kAprilTags);
+    quad = widened(quad, narrower_px);
+    if (!is_inside(quad, gray)) continue;
+    if (!board.tags->alone) refine(quad, gray, board);
+    const auto code = code_of(gray, quad, board.tags->border);
+    if (!code || tags.contains(code->id) || !place_of(code->id, board)) continue;
+    // OpenCV has this family upside down.
+    std::rotate(quad.begin(), quad.begin() + (6 - code->quarters) % 4, quad.end());
+    tags[code->id] = quad;
+  }
+}
+
+}  // namespace
+
+int april_tag_count() { return marker_dictionary_size(kFamily); }
+
+std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board) {
+  const auto expected = static_cast<std::size_t>(board.columns * board.rows / 4);
+  Tags tags;
+  // Where squares touch a tag's corners it is no quadrilateral until all black is narrower.
+  for (const int narrower_px : {0, 1, 2, 3})
+    if (tags.size() < expected) add_tags(tags, gray, board, narrower_px);
+  if (tags.empty() || tags.size() > expected) return {};
+  const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::vector<Eigen::Vector2d> corners(board.columns * board.rows, none);
+  for (const auto& [id, quad] : tags) {
+    static const std::array<cv::Point, 4> kOffsets = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    for (int k = 0; k < 4; ++k) {
+      const cv::Point at = 2 * *place_of(id, board) + kOffsets[k];
+      corners[at.y * board.columns + at.x] = {quad[k].x, quad[k].y};
+    }
+  }
+  return corners;
+}
+
+}  // namespace gpo

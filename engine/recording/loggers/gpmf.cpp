@@ -1,0 +1,187 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/loggers/gpmf.h"
+
+#include "engine/recording/loggers/gpmf_items.h"
+#include "engine/recording/loggers/signed_axes.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Bytes = std::string_view;
+
+/// A stream's items by their keys.
+struct Stream {
+  std::map<Bytes, GpmfItem> items;
+
+  const GpmfItem* find(Bytes key) const {
+    const auto found = items.find(key);
+    return found == items.end() ? nullptr : &found->second;
+  }
+};
+
+Stream stream_of(const GpmfItem& nest, const std::string& source) {
+  Stream stream;
+  GpmfItems items(nest.data, source);
+  while (const auto item = items.next()) stream.items[item->key] = *item;
+  return stream;
+}
+
+std::optional<double> number_of(const Stream& stream, Bytes key, const std::string& source) {
+  const GpmfItem* item = stream.find(key);
+  if (item == nullptr) return std::nullopt;
+  const auto numbers = gpmf_numbers(*item, source);
+  return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
+}
+
+/// `key` holds the stream's samples, of which `before` came before where the camera does not count.
+GpmfStamp stamp_of(const Stream& stream,
+                   Bytes key,
+                   std::int64_t& before,
+                   const std::string& source) {
+  constexpr double kMostSamples = 1e12;
+  constexpr double kMost_us = 1e15;
+  GpmfStamp stamp{before, {}};
+  const int count = stream.find(key)->count;
+  if (const GpmfItem* total = stream.find("TSMP")) {
+    const double number = number_of(stream, "TSMP", source).value_or(0);
+    if (number < count || number > kMostSamples)
+      gpmf_fail(source, *total, fmt::format("{:g}", number), "a count of all samples so far");
+    stamp.first_sample = static_cast<std::int64_t>(number) - count;
+  }
+  before = stamp.first_sample + count;
+  stamp.camera_us = number_of(stream, "STMP", source);
+  if (!stamp.camera_us) {
+    if (const auto tick = number_of(stream, "TICK", source)) stamp.camera_us = 1e3 * *tick;
+  }
+  if (stamp.camera_us && !(std::abs(*stamp.camera_us) < kMost_us)) stamp.camera_us.reset();
+  return stamp;
+}
+
+/// Axes as they are stored, by the names that cameras give themselves; older ones do not say it.
+std::string stored_axes(Bytes model) {
+  struct Model {
+    Bytes name;
+    const char* axes;
+  };
+  static constexpr std::array<Model, 3> kModels = {
+      {{"Hero6", "YxZ"}, {"Hero7 Silver", "XZy"}, {"Fusion", "yXZ"}}};
+  for (const Model& known : kModels)
+    if (model.starts_with(known.name)) return known.axes;
+  return "ZXY";
+}
+
+/// From what is stored to GoPro's axes.
+Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& source) {
+  const GpmfItem* matrix = stream.find("MTRX");
+  const GpmfItem* output = stream.find("ORIO");
+  const GpmfItem* input = stream.find("ORIN");
+  const auto named = [&](const GpmfItem& item) {
+    const auto axes = signed_axes(gpmf_text(item));
+    if (!axes) gpmf_fail(source, item, "no axes", "three axes that turn to the right, such as ZXY");
+    return *axes;
+  };
+  if (matrix != nullptr && output != nullptr) {
+    const auto numbers = gpmf_numbers(*matrix, source);
+    if (numbers.size() != 9) gpmf_fail(source, *matrix, "no 3 x 3 matrix", "nine numbers");
+    const Eigen::Matrix3d M =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+    constexpr double kMostOff = 0.1;
+    const bool rotates =
+        (M * M.transpose() - Eigen::Matrix3d::Identity()).norm() < kMostOff && M.determinant() > 0;
+    if (!rotates) gpmf_fail(source, *matrix, "a matrix that is no rotation", "a rotation");
+    return named(*output).transpose() * M;
+  }
+  if (input != nullptr) return named(*input).transpose();
+  return signed_axes(stored_axes(model))->transpose();
+}
+
+/// What one unit of the samples is in rad/s, axis by axis.
+Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  if (const GpmfItem* divisors = stream.find("SCAL")) {
+    const auto numbers = gpmf_numbers(*divisors, source);
+    if (numbers.size() != 1 && numbers.size() != 3)
+      gpmf_fail(source, *divisors, fmt::format("{} numbers", numbers.size()), "1 or 3");
+    for (int i = 0; i < 3; ++i) {
+      const double divisor = numbers[numbers.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+      if (divisor == 0) gpmf_fail(source, *divisors, "0", "a divisor");
+      scale[i] = 1 / divisor;
+    }
+  }
+  const GpmfItem* unit = stream.find("SIUN");
+  if (unit == nullptr) unit = stream.find("UNIT");
+  if (unit != nullptr && unit->data.find("deg") != Bytes::npos) scale *= std::numbers::pi / 180;
+  return scale;
+}
+
+void add_gyroscope(GpmfPayload& payload,
+                   const Stream& stream,
+                   Bytes model,
+                   const std::string& source,
+                   GpmfCount& counted) {
+  const GpmfItem& samples = *stream.find("GYRO");
+  const int size = gpmf_size(samples.type);
+  if (size == 0 || samples.size != 3 * size)
+    gpmf_fail(source, samples, "samples that are not three numbers", "the rates about three axes");
+  const auto numbers = gpmf_numbers(samples, source);
+  const Eigen::Matrix3d axes = axes_of(stream, model, source);
+  const Eigen::Vector3d scale = scale_of(stream, source);
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+    const Eigen::Vector3d stored(numbers[i], numbers[i + 1], numbers[i + 2]);
+    payload.rates_rad_s.emplace_back(axes * scale.cwiseProduct(stored));
+    if (!payload.rates_rad_s.back().allFinite())
+      gpmf_fail(source, samples, "a rate that is not finite", "numbers");
+  }
+  payload.gyroscope = stamp_of(stream, "GYRO", counted.rates, source);
+}
+
+/// Of one device; whether it has a gyroscope.
+bool add_device(GpmfPayload& payload,
+                const GpmfItem& device,
+                const std::string& source,
+                GpmfCount& counted) {
+  bool has_gyroscope = false;
+  std::string model;
+  GpmfItems items(device.data, source);
+  while (const auto item = items.next()) {
+    if (item->key == "DVNM") model = gpmf_text(*item);
+    if (item->key == "SROT" && item->type != 0) {
+      const auto numbers = gpmf_numbers(*item, source);
+      if (!numbers.empty()) payload.readout_s = 1e-3 * numbers[0];
+    }
+    if (item->key != "STRM" || item->type != 0) continue;
+    const Stream stream = stream_of(*item, source);
+    if (stream.find("GYRO") != nullptr && !has_gyroscope) {
+      add_gyroscope(payload, stream, model, source, counted);
+      has_gyroscope = true;
+    }
+    if (stream.find("SHUT") != nullptr)
+      payload.exposures = stamp_of(stream, "SHUT", counted.exposures, source);
+    if (const auto readout_ms = number_of(stream, "SROT", source))
+      payload.readout_s = 1e-3 * *readout_ms;
+  }
+  return has_gyroscope;
+}
+
+}  // namespace
+
+GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counted) {
+  GpmfPayload payload;
+  GpmfItems devices(bytes, source);
+  while (const auto device = devices.next()) {
+    if (device->key != "DEVC" || device->type != 0) continue;
+    if (add_device(payload, *device, source, counted)) break;
+  }
+  return payload;
+}
+
+}  // namespace gpo

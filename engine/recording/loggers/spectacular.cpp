@@ -1,0 +1,241 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
+#include "engine/recording/loggers/logger_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestLine = std::size_t{1} << 16;
+
+/// Where something stands, for messages.
+struct Place {
+  const fs::path& file;
+  int line = 0;  ///< 0: the file as a whole
+
+  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+    const std::string at = line > 0 ? fmt::format(":{}", line) : "";
+    throw InputError(
+        fmt::format("{}{}: found {}, expected {}", file.string(), at, found, expected));
+  }
+};
+
+const Json* find(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+double number(const Json* value, const char* key, const Place& place) {
+  if (value == nullptr || !value->is_number() || !std::isfinite(value->get<double>()))
+    place.fail(fmt::format("no finite number under `{}`", key), "one");
+  return value->get<double>();
+}
+
+std::vector<double> numbers(const Json* list, const char* key, const Place& place) {
+  std::vector<double> values;
+  if (list == nullptr || !list->is_array())
+    place.fail(fmt::format("no list under `{}`", key), "numbers");
+  for (const Json& value : *list) values.push_back(number(&value, key, place));
+  return values;
+}
+
+std::int64_t time_ns(const Json& line, const Place& place) {
+  constexpr double kMost_s = 4e9;
+  const double time_s = number(find(line, "time"), "time", place);
+  if (!(std::abs(time_s) < kMost_s)) place.fail("another `time`", "seconds");
+  return std::llround(1e9 * time_s);
+}
+
+/// A lens by its name, whatever its case: "kannala-brandt4", "KANNALA_BRANDT4".
+void add_lens(Camera& camera, std::string model, std::vector<double> k, const Place& place) {
+  std::ranges::replace(model = lower_case(model), '_', '-');
+  const std::size_t count = k.size();
+  if (model == "kannala-brandt4" && count == 4) {
+    camera.distortion = Distortion::equidistant;
+    camera.coefficients = std::move(k);
+    return;
+  }
+  const bool none = std::ranges::all_of(k, [](double value) { return value == 0; });
+  if (none && (model.empty() || model == "pinhole" || model == "brown-conrady")) return;
+  if (model == "pinhole" && count == 3) k = {k[0], k[1], 0, 0, k[2]};  // k1, k2, k3
+  const bool opencv = k.size() == 4 || k.size() == 5 || k.size() == 8;
+  if ((model != "pinhole" && model != "brown-conrady") || !opencv) {
+    place.fail(fmt::format("another lens, with {} coefficients", count),
+               "pinhole with 3, kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8");
+  }
+  camera.distortion = Distortion::radial_tangential;
+  camera.coefficients = std::move(k);
+}
+
+Camera camera_of(const Json& json, const char* model_key, const Place& place) {
+  const auto at = [&](const char* key) { return number(find(json, key), key, place); };
+  Camera camera{0,
+                0,
+                at("focalLengthX"),
+                at("focalLengthY"),
+                at("principalPointX"),
+                at("principalPointY"),
+                Distortion::none,
+                {}};
+  if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
+  const Json* model = find(json, model_key);
+  const Json* coefficients = find(json, "distortionCoefficients");
+  if (coefficients != nullptr) {
+    add_lens(camera,
+             model != nullptr && model->is_string() ? model->get<std::string>() : "pinhole",
+             numbers(coefficients, "distortionCoefficients", place),
+             place);
+  }
+  return camera;
+}
+
+/// imuToCamera, row by row: p_camera = T p_imu.
+std::optional<Pose> body_of(const Json& json, const Place& place) {
+  const Json* rows = find(json, "imuToCamera");
+  if (rows == nullptr) return std::nullopt;
+  Pose T_camera_imu;
+  for (int i = 0; i < 3; ++i) {
+    const bool has_row = rows->is_array() && rows->size() == 4;
+    const auto row = numbers(has_row ? &(*rows)[i] : nullptr, "imuToCamera", place);
+    if (row.size() != 4) place.fail("another `imuToCamera`", "4 rows of 4 numbers");
+    T_camera_imu.R_wc.row(i) << row[0], row[1], row[2];
+    T_camera_imu.p_wc[i] = row[3];
+  }
+  constexpr double kMostOff = 0.05;  // written with few digits, as documentation does
+  Eigen::Matrix3d& R = T_camera_imu.R_wc;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
+  if (!((nearest - R).norm() < kMostOff) || nearest.determinant() < 0)
+    place.fail("no rotation in `imuToCamera`", "a rigid motion");
+  R = nearest;
+  return inverse(T_camera_imu);
+}
+
+void add_camera(Log& log, const Json& json, const char* model_key, const Place& place) {
+  log.camera = camera_of(json, model_key, place);
+  log.camera_file = place.file;
+  if (const auto body = body_of(json, place)) log.T_body_camera = body;
+}
+
+/// A gyroscope's samples as they stand; they may not be in the order of time.
+struct Samples {
+  std::vector<std::int64_t> times_ns;
+  std::vector<Eigen::Vector3d> rates_rad_s;
+  std::vector<int> lines;
+};
+
+void add_sensor(Samples& samples, const Json& line, const Place& place) {
+  const Json& sensor = line["sensor"];
+  const Json* type = find(sensor, "type");
+  if (type == nullptr || *type != "gyroscope") return;
+  const auto rates = numbers(find(sensor, "values"), "values", place);
+  if (rates.size() != 3) place.fail(fmt::format("{} rates", rates.size()), "3 (rad/s)");
+  samples.times_ns.push_back(time_ns(line, place));
+  samples.rates_rad_s.emplace_back(rates[0], rates[1], rates[2]);
+  samples.lines.push_back(place.line);
+}
+
+void add_frame(Log& log, const Json& line, const Place& place) {
+  const std::int64_t time = time_ns(line, place);
+  if (!log.frame_times_ns.empty() && time <= log.frame_times_ns.back())
+    place.fail("a frame that is not after the one before it", "ascending times");
+  const bool first = log.frame_times_ns.empty();
+  log.frame_times_ns.push_back(time);
+  const Json& cameras = line["frames"];
+  if (!first || !cameras.is_array()) return;
+  for (const Json& camera : cameras) {
+    const Json* number = find(camera, "cameraInd");
+    const Json* parameters = find(camera, "cameraParameters");
+    if (parameters == nullptr || (number != nullptr && *number != 0)) continue;
+    const Camera before = log.camera.value_or(Camera{});
+    add_camera(log, *parameters, "distortionModel", place);
+    log.camera->width = before.width;
+    log.camera->height = before.height;
+    if (const auto body = body_of(camera, place)) log.T_body_camera = body;
+  }
+}
+
+Gyroscope sorted(const Samples& samples, const fs::path& file) {
+  std::vector<std::size_t> order(samples.times_ns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return samples.times_ns[i]; });
+  Gyroscope gyroscope;
+  gyroscope.file = file;
+  for (const std::size_t i : order) {
+    if (!gyroscope.timestamps_ns.empty() && samples.times_ns[i] == gyroscope.timestamps_ns.back())
+      Place{file, samples.lines[i]}.fail("a second sample at the same time", "one");
+    gyroscope.timestamps_ns.push_back(samples.times_ns[i]);
+    gyroscope.rates_rad_s.push_back(samples.rates_rad_s[i]);
+    gyroscope.lines.push_back(samples.lines[i]);
+  }
+  return gyroscope;
+}
+
+/// Of the first camera; the file is optional.
+void add_calibration(Log& log, const fs::path& file) {
+  if (!is_file(file)) return;
+  const Json json = read_json(file);
+  const Place place{file};
+  const Json* cameras = find(json, "cameras");
+  if (cameras == nullptr || !cameras->is_array() || cameras->empty())
+    place.fail("no list `cameras`", "Spectacular AI's calibration");
+  const Json& camera = cameras->front();
+  add_camera(log, camera, "model", place);
+  const auto size = [&](const char* key) {
+    const Json* pixels = find(camera, key);
+    if (pixels == nullptr) return 0;
+    const double count = number(pixels, key, place);
+    if (count < 1 || count > 1e5) place.fail(fmt::format("another `{}`", key), "pixels");
+    return static_cast<int>(count);
+  };
+  log.camera->width = size("imageWidth");
+  log.camera->height = size("imageHeight");
+}
+
+}  // namespace
+
+Log read_spectacular(const fs::path& file) {
+  Log log;
+  log.file = file;
+  log.frames_file = file;
+  add_calibration(log, file.parent_path() / "calibration.json");
+  Samples samples;
+  const std::string bytes = read_file(file);
+  std::string_view text = bytes;
+  for (int line = 1; !text.empty(); ++line) {
+    const std::string_view row = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), row.size() + 1));
+    const Place place{file, line};
+    if (row.size() > kLongestLine)
+      place.fail(fmt::format("a line of {} bytes", row.size()), "one measurement");
+    if (trimmed(row).empty()) continue;
+    const Json json = parse_json(row);
+    if (!json.is_object()) place.fail("a line that is no JSON object", "one measurement");
+    if (json.contains("sensor")) add_sensor(samples, json, place);
+    if (json.contains("frames")) add_frame(log, json, place);
+  }
+  if (!samples.times_ns.empty()) log.gyroscope = sorted(samples, file);
+  return log;
+}
+
+}  // namespace gpo

@@ -1,0 +1,138 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/loggers/telemetry_track.h"
+
+#include "engine/base/error.h"
+#include "engine/recording/pictures/libav.h"
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+
+using Format = std::unique_ptr<AVFormatContext, libav::Closer<avformat_close_input>>;
+
+/// Nothing where it is no such container.
+Format open_container(const fs::path& video) {
+  AVFormatContext* opened = nullptr;
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "format_whitelist", "mov", 0);
+  const std::string address = "file:" + video.string();
+  const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
+  av_dict_free(&options);
+  return Format(error < 0 ? nullptr : opened);
+}
+
+/// The letters of a codec's tag.
+std::string tag_of(const AVStream& stream) {
+  const unsigned tag = stream.codecpar->codec_tag;
+  std::string letters;
+  for (int k = 0; k < 4; ++k) letters += static_cast<char>(tag >> 8 * k & 0xFF);
+  return letters;
+}
+
+/// The first telemetry track; all others are passed over when packets are read.
+AVStream* telemetry_stream(AVFormatContext& format) {
+  AVStream* found = nullptr;
+  for (unsigned i = 0; i < format.nb_streams; ++i) {
+    AVStream* stream = format.streams[i];
+    const std::string tag = tag_of(*stream);
+    if (found == nullptr && (tag == "gpmd" || tag == "camm")) {
+      found = stream;
+    } else {
+      stream->discard = AVDISCARD_ALL;
+    }
+  }
+  return found;
+}
+
+std::uint64_t big_endian(std::string_view bytes) {
+  std::uint64_t value = 0;
+  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
+  return value;
+}
+
+/// Where a box of an MP4 holds what it holds.
+struct Box {
+  std::uint64_t begin = 0, end = 0;
+};
+
+/// The first box of that kind inside of another one.
+std::optional<Box> box_in(std::ifstream& file, Box outer, std::string_view kind) {
+  constexpr int kMostBoxes = 10'000;
+  std::array<char, 16> head{};
+  for (int k = 0; k < kMostBoxes && outer.begin + 8 <= outer.end; ++k) {
+    file.clear();
+    file.seekg(static_cast<std::streamoff>(outer.begin));
+    if (!file.read(head.data(), 8)) return std::nullopt;
+    std::uint64_t length = big_endian({head.data(), 4});
+    std::uint64_t head_length = 8;
+    if (length == 1 && file.read(head.data() + 8, 8)) {
+      length = big_endian({head.data() + 8, 8});
+      head_length = 16;
+    }
+    if (length == 0) length = outer.end - outer.begin;
+    if (length < head_length || length > outer.end - outer.begin) return std::nullopt;
+    if (std::string_view(head.data() + 4, 4) == kind)
+      return Box{outer.begin + head_length, outer.begin + length};
+    outer.begin += length;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
+  const Format format = open_container(video);
+  AVStream* stream = format ? telemetry_stream(*format) : nullptr;
+  if (stream == nullptr) return std::nullopt;
+  TelemetryTrack track{tag_of(*stream), {}};
+  const double unit_s = av_q2d(stream->time_base);
+  const libav::Packet packet(av_packet_alloc());
+  std::size_t bytes = 0;
+  for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
+    if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
+    bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
+    if (bytes > kMostBytes) {
+      throw InputError(fmt::format("{}: found more than {} MiB of telemetry, expected less",
+                                   video.string(),
+                                   kMostBytes >> 20));
+    }
+    const auto begin = static_cast<double>(packet->pts);
+    track.packets.push_back(
+        {unit_s * begin,
+         unit_s * (begin + static_cast<double>(packet->duration)),
+         std::string(reinterpret_cast<const char*>(packet->data), packet->size)});
+  }
+  return track;
+}
+
+std::string gopro_settings(const fs::path& video) {
+  constexpr std::uint64_t kMostSettings = 1 << 20;
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(video, error);
+  std::ifstream file(video, std::ios::binary);
+  if (error || !file) return "";
+  std::optional<Box> box = Box{0, size};
+  for (const char* kind : {"moov", "udta", "GPMF"}) {
+    box = box_in(file, *box, kind);
+    if (!box) return "";
+  }
+  if (box->end - box->begin > kMostSettings) return "";
+  std::string bytes(box->end - box->begin, '\0');
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(box->begin));
+  return file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ? bytes : "";
+}
+
+}  // namespace gpo

@@ -1,0 +1,261 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that loggers write beside a video.
+#include "engine/recording/loggers/logs.h"
+
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/loggers/logger_files.h"
+#include "engine/recording/loggers/signed_axes.h"
+#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/test_folder.h"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using test::TestFolder;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// The example of the format's documentation, cut.
+const std::string kGcsv =
+    "GYROFLOW IMU LOG\nversion,1.3\nid,custom_logger_name\norientation,YxZ\n"
+    "note,development_test\nfwversion,FIRMWARE_0.1.0\ntimestamp,1644159993\nvendor,potatocam\n"
+    "videofilename,videofilename.mp4\nlensprofile,potatocam/potatocam_mark1_prime_7_5mm_4k\n"
+    "lens_info,wide\nframe_readout_time,15.23\nframe_readout_direction,0\ntscale,0.001\n"
+    "gscale,0.00122173047\nascale,0.00048828125\nt,gx,gy,gz,ax,ay,az\n"
+    "0,39,86,183,-1137,-15689,-2986\n1,56,100,202,-1179,-15694,-2887\n"
+    "2,63,108,218,-1247,-15702,-2794\n";
+
+const std::string kOdometry =
+    "timestamp, frame, x, y, z, qx, qy, qz, qw\n"
+    "1000.5, 000000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0\n"
+    "1000.6, 000001, 0.5, -0.25, 0.0, 0.70710678, 0.0, 0.0, 0.70710678\n"
+    "1000.7, 000002, 1.0, 0.0, 0.125, 0.0, 0.0, 0.0, 1.0\n";
+const std::string kMatrix = "61.5, 0.0, 32.25\n0.0, 61.25, 24.5\n0.0, 0.0, 1.0";
+const std::string kImu =
+    "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n"
+    "1000.49, 0.1, 0.2, -0.9, 0.01, 0.02, 0.03\n1000.50, 0.1, 0.2, -0.9, 0.04, 0.05, 0.06\n";
+
+const std::string kFrames =
+    R"({"sensor":{"type":"accelerometer","values":[-0.038,9.12,-2.98]},"time":5.0}
+{"sensor":{"type":"gyroscope","values":[0.3,0.2,0.1]},"time":5.02}
+{"sensor":{"type":"gyroscope","values":[0.003,-0.17,0.016]},"time":5.01}
+{"frames":[{"cameraInd":0}],"number":0,"time":5.0}
+{"frames":[{"cameraInd":0}],"number":1,"time":5.1}
+{"frames":[{"cameraInd":0}],"number":2,"time":5.25}
+)";
+const std::string kSpectacular = R"({"cameras": [{"distortionCoefficients": [0.1, 0.01, 0.001],
+"focalLengthX": 60.5, "focalLengthY": 60.25, "principalPointX": 31.5, "principalPointY": 23.5,
+"imuToCamera": [[0, -1, 0, 0.1], [-1, 0, 0, 0.2], [0, 0, -1, 0.3], [0, 0, 0, 1]],
+"model": "pinhole", "imageWidth": 64, "imageHeight": 48}]}
+)";
+
+class LoggedVideo : public testing::Test {
+ protected:
+  void video(const std::string& name, bool with_calibration) const {
+    if (with_calibration) folder.write("camera.yaml", test::kCameraYaml);
+    test::make_video(folder.path() / name,
+                     std::vector<cv::Mat>(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90))));
+  }
+  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
+  std::string error() const {
+    return error_of([this] { open(); });
+  }
+  std::string file(const char* name) const { return (folder.path() / name).string(); }
+
+  TestFolder folder;
+};
+
+TEST(SignedAxes, AreARotationOrNothing) {
+  const Eigen::Vector3d turned = *signed_axes("YxZ") * Eigen::Vector3d(1, 2, 3);
+  EXPECT_EQ(turned, Eigen::Vector3d(2, -1, 3));
+  for (const char* bad : {"YXZ", "XXZ", "XY", "XYZW", "xyz", "XYQ", ""})
+    EXPECT_FALSE(signed_axes(bad)) << bad;
+}
+
+TEST_F(LoggedVideo, OfGyroflowsLogHasScaledRatesAxesAndReadout) {
+  video("GX01.mp4", true);
+  folder.write("GX01.gcsv", kGcsv);
+  const auto recording = open();
+  ASSERT_TRUE(recording->gyroscope);
+  const Gyroscope& gyroscope = *recording->gyroscope;
+  EXPECT_THAT(gyroscope.timestamps_ns, testing::ElementsAre(0, 1'000'000, 2'000'000));
+  const Eigen::Vector3d rates = 0.00122173047 * Eigen::Vector3d(56, 100, 202);
+  EXPECT_LT((gyroscope.rates_rad_s[1] - rates).norm(), 1e-12);
+  // Gyroflow's axes are y, -x, z of the log: up, left, back, as its documentation has them.
+  const Eigen::Vector3d camera = gyroscope.R_gyro_camera.transpose() * rates;
+  EXPECT_LT((camera - Eigen::Vector3d(rates.x(), -rates.y(), -rates.z())).norm(), 1e-12);
+  EXPECT_NEAR(*recording->readout_s, 0.01523, 1e-12);
+  EXPECT_EQ(gyroscope.lines[0], 18);
+}
+
+struct BadLog {
+  std::string text;
+  std::string message;
+};
+class BadGcsv : public testing::TestWithParam<BadLog> {};
+
+TEST_P(BadGcsv, IsRefusedInOneLine) {
+  const TestFolder folder;
+  const auto file = folder.write("a.gcsv", GetParam().text);
+  EXPECT_EQ(error_of([&] { read_gcsv(file); }), file.string() + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    BadGcsv,
+    testing::Values(
+        BadLog{"time,x,y\n", ":1: found another first line, expected GYROFLOW IMU LOG"},
+        BadLog{"", ":1: found another first line, expected GYROFLOW IMU LOG"},
+        BadLog{"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n",
+               ":4: found no rows, expected t,gx,gy,gz"},
+        BadLog{"GYROFLOW IMU LOG\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
+               ":3: found no tscale above the table, expected tscale,NUMBER, > 0"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,x\nt,gx,gy,gz\n0,1,2,3\n",
+               ":3: found no number, expected gscale,NUMBER"},
+        BadLog{"GYROFLOW IMU LOG\norientation,XYz\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
+               ":2: found other axes, expected orientation,AXES with three axes that turn to the "
+               "right, such as YxZ"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2\n",
+               ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n0,1,2,3\n",
+               ":6: found a time that is not after the one before it, expected ascending times"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
+               ":5: found a rate that is not finite, expected numbers"},
+        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,nan,3\n",
+               ":5: found \"nan\", expected a finite number"}));
+
+TEST_F(LoggedVideo, OfSensorLoggerHasRatesByTheirNames) {
+  video("a.mp4", true);
+  folder.write("Gyroscope.csv",
+               "time,seconds_elapsed,z,y,x\n1698501144401773000,0.25,0.3,0.2,0.1\n"
+               "1698501144411773000,0.26,0.6,0.5,0.4\n");
+  const auto recording = open();
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_THAT(recording->gyroscope->timestamps_ns, testing::ElementsAre(250'000'000, 260'000'000));
+  EXPECT_EQ(recording->gyroscope->rates_rad_s[0], Eigen::Vector3d(0.1, 0.2, 0.3));
+  // Held upright, x is right in the phone and, in the sensor, up.
+  EXPECT_LT(
+      (recording->gyroscope->R_gyro_camera * Eigen::Vector3d(0, -1, 0) - Eigen::Vector3d(1, 0, 0))
+          .norm(),
+      1e-12);
+  EXPECT_THAT(recording->notes, Contains(HasSubstr("what has elapsed there")));
+}
+
+TEST_F(LoggedVideo, OfSensorLoggerWithOtherColumnsIsRefused) {
+  video("a.mp4", true);
+  folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y\n1,0.25,0.3,0.2\n");
+  EXPECT_EQ(error(), file("Gyroscope.csv") + ": found no column \"x\", expected one");
+  folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y,x\n1,0.25,0.3,0.2,1\n2,0.25,1,1,1\n");
+  EXPECT_EQ(error(),
+            file("Gyroscope.csv") +
+                ":3: found a time that is not after the one before it, expected ascending times");
+}
+
+TEST_F(LoggedVideo, OfStrayScannerNeedsNoOtherCalibrationAndHasTruth) {
+  video("rgb.mp4", false);
+  folder.write("odometry.csv", kOdometry);
+  folder.write("camera_matrix.csv", kMatrix);
+  folder.write("imu.csv", kImu);
+  const auto recording = open();
+  EXPECT_EQ(recording->camera.fx, 61.5);
+  EXPECT_EQ(recording->camera.cy, 24.5);
+  EXPECT_EQ(recording->camera.width, 64);
+  EXPECT_EQ(recording->timestamps_ns[1], 1'000'600'000'000);
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_EQ(recording->gyroscope->timestamps_ns[0], 1'000'490'000'000);
+  EXPECT_EQ(recording->gyroscope->rates_rad_s[1], Eigen::Vector3d(0.04, 0.05, 0.06));
+  ASSERT_TRUE(recording->truth);
+  EXPECT_EQ(recording->truth->source, "odometry.csv");
+  ASSERT_EQ(recording->truth->poses.size(), 3U);
+  EXPECT_EQ(recording->truth->poses[1]->p_wc, Eigen::Vector3d(0.5, -0.25, 0));
+  EXPECT_NEAR(recording->truth->poses[1]->R_wc(2, 1), 1, 1e-6) << "a quarter about x";
+}
+
+TEST_F(LoggedVideo, OfStrayScannerThatIsBrokenIsRefused) {
+  video("rgb.mp4", false);
+  folder.write("odometry.csv", kOdometry);
+  folder.write("camera_matrix.csv", "61.5, 0.0, 32.25\n0.0, 61.25, 24.5\n");
+  EXPECT_EQ(error(),
+            file("camera_matrix.csv") +
+                ":2: found another matrix, expected 3 rows: fx 0 cx, 0 fy cy, 0 0 1");
+  folder.write("camera_matrix.csv", kMatrix);
+  folder.write("odometry.csv", kOdometry.substr(0, kOdometry.find("1000.7")));
+  EXPECT_EQ(error(), file("odometry.csv") + ": found 2 frames, expected 3, one a picture");
+}
+
+TEST_F(LoggedVideo, OfSpectacularAiHasItsCalibrationClockAndAxes) {
+  video("data.mp4", false);
+  video("data2.mp4", false);  // a second camera
+  folder.write("data.jsonl", kFrames);
+  folder.write("calibration.json", kSpectacular);
+  const auto recording = open();
+  EXPECT_EQ(recording->camera.fx, 60.5);
+  EXPECT_EQ(recording->camera.distortion, Distortion::radial_tangential);
+  EXPECT_THAT(recording->camera.coefficients, testing::ElementsAre(0.1, 0.01, 0, 0, 0.001));
+  EXPECT_THAT(recording->timestamps_ns,
+              testing::ElementsAre(5'000'000'000, 5'100'000'000, 5'250'000'000));
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_THAT(recording->gyroscope->timestamps_ns,
+              testing::ElementsAre(5'010'000'000, 5'020'000'000));
+  EXPECT_EQ(recording->gyroscope->rates_rad_s[1], Eigen::Vector3d(0.3, 0.2, 0.1));
+  EXPECT_EQ(recording->gyroscope->lines[1], 2);
+  // imuToCamera takes the gyroscope's x to the camera's -y.
+  EXPECT_LT(
+      (recording->gyroscope->R_gyro_camera * Eigen::Vector3d(0, -1, 0) - Eigen::Vector3d(1, 0, 0))
+          .norm(),
+      1e-12);
+}
+
+TEST_F(LoggedVideo, BesideOtherDataIsNotSpectacularAis) {
+  video("clip.mp4", true);
+  folder.write("data.jsonl", "[]\n");
+  EXPECT_FALSE(open()->gyroscope);
+}
+
+class BadSpectacular : public testing::TestWithParam<BadLog> {};
+
+TEST_P(BadSpectacular, IsRefusedInOneLine) {
+  const TestFolder folder;
+  const auto file = folder.write("data.jsonl", GetParam().text);
+  EXPECT_EQ(error_of([&] { read_spectacular(file); }), file.string() + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    BadSpectacular,
+    testing::Values(
+        BadLog{"{}\n[1]\n", ":2: found a line that is no JSON object, expected one measurement"},
+        BadLog{"{\"sensor\"", ":1: found a line that is no JSON object, expected one measurement"},
+        BadLog{std::string(3000, '[') + "\n",
+               ":1: found a line that is no JSON object, expected one measurement"},
+        BadLog{std::string(70'000, ' '),
+               ":1: found a line of 70000 bytes, expected one measurement"},
+        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2]},"time":1})",
+               ":1: found 2 rates, expected 3 (rad/s)"},
+        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,null]},"time":1})",
+               ":1: found no finite number under `values`, expected one"},
+        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,3]},"time":1e30})",
+               ":1: found another `time`, expected seconds"},
+        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,3]}})",
+               ":1: found no finite number under `time`, expected one"},
+        BadLog{"{\"frames\":[],\"time\":1}\n{\"frames\":[],\"time\":1}\n",
+               ":2: found a frame that is not after the one before it, expected ascending times"},
+        BadLog{R"({"frames":[{"cameraParameters":{"focalLengthX":0,"focalLengthY":1,)"
+               R"("principalPointX":1,"principalPointY":1}}],"time":1})",
+               ":1: found another focal length, expected pixels, > 0"},
+        BadLog{R"({"frames":[{"cameraParameters":{"focalLengthX":1,"focalLengthY":1,)"
+               R"("principalPointX":1,"principalPointY":1,"distortionModel":"MEI",)"
+               R"("distortionCoefficients":[1]}}],"time":1})",
+               ":1: found another lens, with 1 coefficients, expected pinhole with 3, "
+               "kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8"}));
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,298 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// GoPro's GPMF and Camera Motion Metadata, alone and inside of videos.
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/loggers/camm.h"
+#include "engine/recording/loggers/gpmf.h"
+#include "engine/recording/loggers/logs.h"
+#include "engine/window/timestamps.h"
+#include "tests/engine/recording/loggers/telemetry_video.h"
+#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/test_folder.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::big_endian;
+using test::camm_exposure;
+using test::camm_rates;
+using test::error_of;
+using test::gpmf_item;
+using test::TestFolder;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string letters(const std::string& key, const std::string& text) {
+  return gpmf_item(key, 'c', 1, text);
+}
+
+/// A device's stream of rates, which are stored in units of 1/100 rad/s.
+std::string gyro_stream(const std::string& before, const std::vector<std::int64_t>& samples) {
+  return gpmf_item("STRM",
+                   '\0',
+                   1,
+                   before + gpmf_item("SCAL", 's', 2, big_endian({100}, 2)) +
+                       gpmf_item("GYRO", 's', 6, big_endian(samples, 2)));
+}
+
+std::string device(const std::string& name, const std::string& streams) {
+  return gpmf_item("DEVC", '\0', 1, letters("DVNM", name) + streams);
+}
+
+GpmfPayload parsed(const std::string& bytes) {
+  GpmfCount counted;
+  return parse_gpmf(bytes, "GX010001.MP4", counted);
+}
+
+/// x left, y back and z up at 1, 2 and 3 rad/s.
+const Eigen::Vector3d kRates(1, 2, 3);
+
+TEST(Gpmf, AxesAreThoseThatTheCameraSays) {
+  // What is stored is y, -x, z.
+  const auto named =
+      parsed(device("HERO8 Black", gyro_stream(letters("ORIN", "YxZ"), {200, -100, 300})));
+  ASSERT_EQ(named.rates_rad_s.size(), 1U);
+  EXPECT_LT((named.rates_rad_s[0] - kRates).norm(), 1e-12);
+  // Of a GoPro Max: x, -z, y and the matrix that makes z, x, y of it.
+  const std::string one = big_endian({0x3F800000}, 4), minus = big_endian({0xBF800000}, 4);
+  const std::string zero(4, '\0');
+  const std::string matrix =
+      gpmf_item("MTRX", 'f', 36, zero + minus + zero + one + zero + zero + zero + zero + one);
+  const auto turned = parsed(device(
+      "GoPro Max",
+      gyro_stream(matrix + letters("ORIN", "XzY") + letters("ORIO", "ZXY"), {100, -300, 200})));
+  EXPECT_LT((turned.rates_rad_s.at(0) - kRates).norm(), 1e-12);
+}
+
+TEST(Gpmf, OlderCamerasAreKnownByTheirNames) {
+  EXPECT_LT((parsed(device("Camera", gyro_stream("", {300, 100, 200}))).rates_rad_s.at(0) - kRates)
+                .norm(),
+            1e-12);
+  EXPECT_LT(
+      (parsed(device("Hero6 Black", gyro_stream("", {200, -100, 300}))).rates_rad_s.at(0) - kRates)
+          .norm(),
+      1e-12);
+  EXPECT_LT((parsed(device("Fusion", gyro_stream("", {-200, 100, 300}))).rates_rad_s.at(0) - kRates)
+                .norm(),
+            1e-12);
+}
+
+TEST(Gpmf, ADeviceWithoutAGyroscopeIsPassedOver) {
+  const std::string other =
+      device("SENSORB6", gpmf_item("STRM", '\0', 1, letters("STNM", "heart")));
+  EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.size(), 1U);
+  EXPECT_THAT(parsed(other).rates_rad_s, IsEmpty());
+}
+
+TEST(Gpmf, TimesAreOnTheLineOfTheCamerasStampsFromTheFirstExposureOn) {
+  std::vector<GpmfPayload> payloads;
+  GpmfCount counted;
+  for (int i = 0; i < 5; ++i) {
+    const int count = i == 1 ? 199 : 200;  // as many as were there when it was written
+    const int total = 200 * i + count - (i > 1 ? 1 : 0);
+    const std::int64_t stamp_us = 80'000 + 5'000 * (total - count);
+    const std::string stamps = gpmf_item("STMP", 'J', 8, big_endian({stamp_us}, 8)) +
+                               gpmf_item("TSMP", 'L', 4, big_endian({total}, 4));
+    const std::string frames = gpmf_item("STMP", 'J', 8, big_endian({90'000 + 1'000'000 * i}, 8)) +
+                               gpmf_item("TSMP", 'L', 4, big_endian({30 * i + 30}, 4)) +
+                               gpmf_item("SHUT", 'f', 4, std::string(std::size_t{4} * 30, '\0'));
+    payloads.push_back(parse_gpmf(
+        device("HERO9 Black",
+               gyro_stream(stamps, std::vector<std::int64_t>(std::size_t{3} * count, 1)) +
+                   gpmf_item("STRM", '\0', 4, frames)),
+        "GX010001.MP4",
+        counted));
+  }
+  const auto times = gpmf_times_ns(payloads, {0, 1, 2, 3, 4, 5});
+  ASSERT_EQ(times.size(), 999U);
+  for (std::size_t k = 0; k < times.size(); ++k)
+    ASSERT_NEAR(static_cast<double>(times[k]), -10e6 + 5e6 * static_cast<double>(k), 1e3) << k;
+}
+
+TEST(Gpmf, WithoutStampsTimesAreThoseOfTheTrack) {
+  std::vector<GpmfPayload> payloads;
+  GpmfCount counted;
+  const std::string bytes = device("Camera", gyro_stream("", std::vector<std::int64_t>(300, 1)));
+  payloads.push_back(parse_gpmf(bytes, "", counted));
+  const auto alone = gpmf_times_ns(payloads, {0.5, 1.5});
+  ASSERT_EQ(alone.size(), 100U);
+  EXPECT_EQ(alone[0], 500'000'000);
+  EXPECT_EQ(alone[99], 1'490'000'000);
+  payloads.push_back(parse_gpmf(bytes, "", counted));
+  EXPECT_EQ(gpmf_times_ns(payloads, {0, 1, 2}).at(150), 1'500'000'000);
+}
+
+struct BadGpmf {
+  std::string bytes;
+  std::string message;
+};
+class BadGpmfBytes : public testing::TestWithParam<BadGpmf> {};
+
+TEST_P(BadGpmfBytes, AreRefusedInOneLine) {
+  EXPECT_EQ(error_of([] { parsed(GetParam().bytes); }), "GX010001.MP4: " + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    BadGpmfBytes,
+    testing::Values(
+        BadGpmf{device("Camera", gyro_stream("", {1, 2, 3})).substr(0, 40),
+                "DEVC: found 32 bytes (cut), expected 52"},
+        BadGpmf{device("C", gpmf_item("STRM", '\0', 1, std::string("GYRO\x73\x06\x7f\xff", 8))),
+                "GYRO: found 0 bytes (cut), expected 196602"},
+        BadGpmf{device("C", gyro_stream(letters("ORIN", "YXZ"), {1, 2, 3})),
+                "ORIN: found no axes, expected three axes that turn to the right, such as ZXY"},
+        BadGpmf{device("C",
+                       gyro_stream(gpmf_item("MTRX", 'f', 36, std::string(36, '\0')) +
+                                       letters("ORIO", "ZXY"),
+                                   {1, 2, 3})),
+                "MTRX: found a matrix that is no rotation, expected a rotation"},
+        BadGpmf{device("C",
+                       gpmf_item("STRM",
+                                 '\0',
+                                 1,
+                                 gpmf_item("SCAL", 's', 2, big_endian({0}, 2)) +
+                                     gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2)))),
+                "SCAL: found 0, expected a divisor"},
+        BadGpmf{
+            device("C",
+                   gpmf_item("STRM", '\0', 1, gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2)))),
+            "GYRO: found samples that are not three numbers, expected the rates about three "
+            "axes"},
+        BadGpmf{
+            device("C",
+                   gpmf_item("STRM", '\0', 1, gpmf_item("GYRO", 'U', 16, std::string(16, '1')))),
+            "GYRO: found samples that are not three numbers, expected the rates about three "
+            "axes"},
+        BadGpmf{device("C",
+                       gpmf_item("STRM",
+                                 '\0',
+                                 1,
+                                 gpmf_item("GYRO", 'f', 12, big_endian({0x7F800000, 0, 0}, 4)))),
+                "GYRO: found a number that is not finite, expected numbers"},
+        BadGpmf{device("C", gyro_stream(gpmf_item("TSMP", 'L', 4, big_endian({0}, 4)), {1, 2, 3})),
+                "TSMP: found 0, expected a count of all samples so far"}));
+
+TEST(Camm, SamplesAreRatesOrExposures) {
+  EXPECT_EQ(*parse_camm(camm_rates(1, -2, 3), "").rates_rad_s, Eigen::Vector3d(1, -2, 3));
+  EXPECT_NEAR(*parse_camm(camm_exposure(1'000'000, 20'000'000), "").readout_s, 0.02, 1e-12);
+  EXPECT_FALSE(parse_camm(std::string("\0\0\x07\0", 4), "").rates_rad_s);
+}
+
+TEST(Camm, BadSamplesAreRefused) {
+  EXPECT_EQ(error_of([] { parse_camm(camm_rates(1, 2, 3).substr(0, 12), "a.mp4"); }),
+            "a.mp4: found a sample of 12 bytes (cut), expected 16");
+  EXPECT_EQ(error_of([] { parse_camm("", "a.mp4"); }),
+            "a.mp4: found a sample of 0 bytes (cut), expected 4");
+  EXPECT_EQ(error_of([] {
+              parse_camm(camm_rates(1, std::numeric_limits<float>::infinity(), 3), "a.mp4");
+            }),
+            "a.mp4: found a rate that is not finite, expected three numbers");
+}
+
+/// A recording that is a video with telemetry.
+class VideoWithTelemetry : public testing::Test {
+ protected:
+  static constexpr int kFrames = 50;  // two seconds
+
+  std::shared_ptr<const Recording> open(const std::string& format,
+                                        const std::vector<test::TelemetryPiece>& pieces,
+                                        int clockwise_degrees = 0) const {
+    folder.write("camera.yaml", test::kCameraYaml);
+    const std::vector<cv::Mat> pictures(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
+    test::make_video(file, pictures, {.clockwise_degrees = clockwise_degrees});
+    test::add_telemetry(file, format, pieces);
+    return open_recording(folder.path());
+  }
+  /// Two payloads of a second each.
+  static std::vector<test::TelemetryPiece> gopro() {
+    std::vector<std::int64_t> samples;
+    for (int k = 0; k < 100; ++k) samples.insert(samples.end(), {300, 100, 200});
+    const std::string bytes = device("Camera", gyro_stream("", samples));
+    return {{0, 1000, bytes}, {1000, 1000, bytes}};
+  }
+
+  TestFolder folder;
+  std::filesystem::path file = folder.path() / "GX010001.mp4";
+};
+
+TEST_F(VideoWithTelemetry, OfAGoProHasItsGyroscopeAndItsAxes) {
+  const auto recording = open("gpmd", gopro());
+  ASSERT_TRUE(recording->gyroscope);
+  const Gyroscope& gyroscope = *recording->gyroscope;
+  ASSERT_EQ(gyroscope.timestamps_ns.size(), 200U);
+  EXPECT_NEAR(static_cast<double>(gyroscope.timestamps_ns[150]), 1.5e9, 1e6);
+  // Left, back, up at 1, 2, 3 rad/s.
+  EXPECT_LT(
+      (gyroscope.R_gyro_camera.transpose() * gyroscope.rates_rad_s[0] - Eigen::Vector3d(-1, -3, -2))
+          .norm(),
+      1e-12);
+  EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("T_BS"))));
+}
+
+TEST_F(VideoWithTelemetry, ThatIsTurnedTurnsTheAxes) {
+  const auto recording = open("gpmd", gopro(), 180);
+  // What was right and down in the stored picture is left and up.
+  EXPECT_LT(
+      (recording->gyroscope->R_gyro_camera.transpose() * recording->gyroscope->rates_rad_s[0] -
+       Eigen::Vector3d(1, 3, -2))
+          .norm(),
+      1e-12);
+}
+
+TEST_F(VideoWithTelemetry, OfCameraMotionMetadataHasRatesAndReadout) {
+  std::vector<test::TelemetryPiece> pieces = {{0, 1, camm_exposure(1'000'000, 15'000'000)}};
+  for (int k = 1; k < 200; ++k) {
+    const auto x = static_cast<float>(k);
+    pieces.push_back({10 * k, 10, camm_rates(0.01F * x, 2, -3)});
+  }
+  const auto recording = open("camm", pieces);
+  ASSERT_TRUE(recording->gyroscope);
+  ASSERT_EQ(recording->gyroscope->timestamps_ns.size(), 199U);
+  EXPECT_EQ(recording->gyroscope->timestamps_ns[99], 1'000'000'000);
+  EXPECT_NEAR(recording->gyroscope->rates_rad_s[99].x(), 1, 1e-6);
+  EXPECT_NEAR(*recording->readout_s, 0.015, 1e-12);
+  EXPECT_THAT(recording->notes,
+              testing::Contains("no T_BS in camera.yaml: the gyroscope's axes are taken as the "
+                                "camera's"));
+}
+
+TEST_F(VideoWithTelemetry, ThatIsBrokenIsRefused) {
+  const std::string name = file.string();
+  auto pieces = gopro();
+  pieces[1].bytes.resize(60);
+  EXPECT_THAT(error_of([&] { open("gpmd", pieces); }),
+              testing::StartsWith(name + ": telemetry: DEVC: found 52 bytes (cut), expected "));
+  EXPECT_EQ(error_of([&] {
+              open("camm", {{0, 10, "abc"}, {10, 10, camm_rates(1, 2, 3)}});
+            }),
+            name + ": telemetry: found a sample of 3 bytes (cut), expected 4");
+}
+
+TEST(RealTelemetry, OfAGoProOnADrone) {
+  const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data/gopro/karma.mp4";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  const auto log = log_inside(file, 0);
+  ASSERT_TRUE(log && log->gyroscope);
+  const Gyroscope& gyroscope = *log->gyroscope;
+  EXPECT_EQ(gyroscope.rates_rad_s.size(), 4795U);
+  EXPECT_NEAR(rate_hz(gyroscope.timestamps_ns), 397.3, 0.5);
+  EXPECT_NEAR(
+      1e-9 * static_cast<double>(gyroscope.timestamps_ns.back() - gyroscope.timestamps_ns.front()),
+      12.07,
+      0.05);
+  EXPECT_NEAR(1e-9 * static_cast<double>(gyroscope.timestamps_ns.front()), -0.018, 0.005);
+  ASSERT_TRUE(log->T_body_camera);
+  // The first sample is stored as 172, 70, 125 of 3755 a rad/s, in the order z, x, y.
+  EXPECT_LT((3755 * gyroscope.rates_rad_s[0] - Eigen::Vector3d(70, 125, 172)).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace gpo
