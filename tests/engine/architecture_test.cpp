@@ -48,6 +48,7 @@ const std::vector<Room> kRooms = {
     {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
     {"engine/recording/board", {"engine/base", "engine/files", "engine/geometry", "engine/recording", "engine/recording/pictures"}},
     {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
+    {"engine/calibration/plane", {"engine/base", "engine/geometry"}},
     {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/inspection/window", {"engine/initializers/common", "engine/evaluation", "engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/frontend/", "engine/recording/"}},
