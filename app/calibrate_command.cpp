@@ -1,19 +1,24 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
+#include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/camera_guess.h"
 #include "engine/recording/board/charuco.h"
 #include "engine/recording/layouts/pictures_reader.h"
 #include "engine/recording/layouts/sidecar_files.h"
 
 #include <array>
 #include <cstdio>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -130,16 +135,62 @@ CalibrationOptions options_of(const CalibrateArguments& arguments) {
   return options;
 }
 
+/// What describes a board says nothing of a plane.
+void refuse_board_options(const CalibrateArguments& arguments) {
+  const std::array<std::pair<bool, const char*>, 6> given{
+      {{arguments.board.has_value(), "--board"},
+       {arguments.square.has_value(), "--square"},
+       {arguments.pattern.has_value(), "--pattern"},
+       {arguments.marker.has_value(), "--marker"},
+       {arguments.dictionary.has_value(), "--dictionary"},
+       {arguments.model != "radial-tangential" || arguments.coefficients != 4,
+        "--model, --coefficients"}}};
+  for (const auto& [is_given, name] : given)
+    if (is_given) throw InputError(fmt::format("{}: not used with --from plane", name));
+}
+
+int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
+  refuse_board_options(arguments);
+  const Interrupt interrupt;
+  const auto pictures = open_pictures(recording, kCacheBytes);
+  const cv::Size size = pictures->bgr(0).size();
+  std::optional<ProgressBar> bar;
+  std::string shown;
+  const auto progress = [&](const char* what, int done, int of) {
+    interrupt.check("nothing was written");
+    if (shown != what) bar.emplace(what);
+    shown = what;
+    bar->show(done, of);
+  };
+  const SelfCalibration calibration = calibrate_from_plane(*pictures,
+                                                           camera_of_view(size.width, size.height),
+                                                           nullptr,
+                                                           {},
+                                                           {},
+                                                           progress,
+                                                           interrupt.token());
+  bar.reset();
+  interrupt.check("nothing was written");
+  if (!calibration.lens.ok) {
+    fmt::print("calibration failed: {}\n", calibration.lens.reason);
+    return kFailed;
+  }
+  fmt::print("{}", to_text(calibration));
+  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+  return kDone;
+}
+
 }  // namespace
 
 int calibrate_command(const CalibrateArguments& arguments) {
   check_outputs(std::array{NamedFile{"--output", arguments.output}},
                 std::array{NamedFile{"recording", arguments.recording}});
-  const CalibrationOptions options = options_of(arguments);
   const fs::path recording = resolve_recordings({arguments.recording}).front();
   if (!fs::exists(recording)) {
     throw InputError(fmt::format("{}: no such file or folder", recording.string()));
   }
+  if (arguments.from == "plane") return calibrate_by_plane(arguments, recording);
+  const CalibrationOptions options = options_of(arguments);
   const Board board = board_of(arguments, recording);
   question_square(board.square_m);
   const auto pictures = open_pictures(recording, kCacheBytes);

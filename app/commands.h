@@ -93,6 +93,7 @@ struct ViewArguments {
 
 struct CalibrateArguments {
   std::filesystem::path recording;   ///< needs no calibration
+  std::string from = "board";        ///< or "plane": of any plane in view
   std::optional<std::string> board;  ///< "CxR" inner corners, of a ChArUco board squares; default:
                                      ///< the recording's board.yaml
   std::optional<std::string> pattern;     ///< "chessboard" (the default) or "charuco"

@@ -169,13 +169,20 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
 
 void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Writes the camera.yaml of a video or of pictures that show a printed board");
+      "calibrate",
+      "Writes the camera.yaml of a video or of pictures that show a printed board, or any plane");
   command
       ->add_option(
           "recording",
           arguments.recording,
           "Video, folder of pictures, or any recording with pictures; needs no calibration")
       ->required();
+  command
+      ->add_option("--from",
+                   arguments.from,
+                   "What tells the camera: a printed board, or a plane of unknown structure")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"board", "plane"}));
   command->add_option("--board",
                       arguments.board,
                       "COLUMNSxROWS inner corners, of a ChArUco board squares, e.g. 9x6; default: "
