@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "app/interrupt.h"
+#include "app/found_camera.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
@@ -10,8 +10,8 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/camera_guess.h"
 #include "engine/recording/board/charuco.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/layouts/pictures_reader.h"
 #include "engine/recording/layouts/sidecar_files.h"
 
@@ -151,26 +151,10 @@ void refuse_board_options(const CalibrateArguments& arguments) {
 
 int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
   refuse_board_options(arguments);
-  const Interrupt interrupt;
-  const auto pictures = open_pictures(recording, kCacheBytes);
-  const cv::Size size = pictures->bgr(0).size();
-  std::optional<ProgressBar> bar;
-  std::string shown;
-  const auto progress = [&](const char* what, int done, int of) {
-    interrupt.check("nothing was written");
-    if (shown != what) bar.emplace(what);
-    shown = what;
-    bar->show(done, of);
-  };
-  const SelfCalibration calibration = calibrate_from_plane(*pictures,
-                                                           camera_of_view(size.width, size.height),
-                                                           nullptr,
-                                                           {},
-                                                           {},
-                                                           progress,
-                                                           interrupt.token());
-  bar.reset();
-  interrupt.check("nothing was written");
+  const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
+  if (!opened->pictures)
+    throw InputError(recording.string() + ": found no pictures, expected a video or pictures");
+  const SelfCalibration calibration = self_calibrate(*opened);
   if (!calibration.lens.ok) {
     fmt::print("calibration failed: {}\n", calibration.lens.reason);
     return kFailed;

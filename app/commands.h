@@ -30,6 +30,7 @@ struct InspectArguments {
   std::filesystem::path recording;
   std::optional<std::filesystem::path> tracks;
   std::size_t cache_mib = kDefaultCacheMib;
+  std::string calibrate = "off";  ///< auto: what nobody calibrated, from a plane in view
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
@@ -85,6 +86,7 @@ struct EvaluateArguments {
 struct ViewArguments {
   std::optional<std::filesystem::path> recording;
   std::size_t cache_mib = kDefaultCacheMib;
+  std::string calibrate = "off";  ///< auto: what nobody calibrated, from a plane in view
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
   std::optional<std::filesystem::path> session;

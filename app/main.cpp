@@ -41,6 +41,15 @@ void add_cache(CLI::App& command, std::size_t& mib) {
       ->check(CLI::Range(16, 1'000'000));
 }
 
+void add_calibrating(CLI::App& command, std::string& calibrate) {
+  command
+      .add_option("--calibrate",
+                  calibrate,
+                  "auto: what has no calibration is calibrated from a plane in view, once")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"off", "auto"}));
+}
+
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command
       .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
@@ -48,6 +57,7 @@ void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command.add_option(
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_cache(command, arguments.cache_mib);
+  add_calibrating(command, arguments.calibrate);
   add_settings(command, arguments.settings, arguments.given);
 }
 
@@ -224,6 +234,7 @@ void declare(CLI::App& app, AllArguments& arguments) {
   view->add_option(
       "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
   add_cache(*view, arguments.view.cache_mib);
+  add_calibrating(*view, arguments.view.calibrate);
   add_settings(*view, arguments.view.settings, arguments.view.given);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");

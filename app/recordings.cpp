@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings.h"
 
+#include "app/found_camera.h"
 #include "app/interrupt.h"
 #include "app/known_files.h"
 #include "app/progress_bar.h"
+#include "engine/recording/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
 #include "ui/workbench/session/user_folders.h"
@@ -70,17 +72,22 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
   return resolved;
 }
 
-std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOptions& options) {
+std::shared_ptr<const Recording> open_given(const fs::path& path,
+                                            const OpenOptions& options,
+                                            bool calibrates) {
   OpenOptions with_cache = options;
   with_cache.cache_folder = user_cache_folder();
   Recording recording = *open_recording(resolve_recordings({path}).front(), with_cache);
   recording.path = path;
+  if (camera_source(recording) == CameraSource::guess) use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-std::function<Worker::Opened(const fs::path&)> opener_for_window(std::size_t cache_mib) {
-  return [cache_mib](const fs::path& path) {
-    return Worker::with_inspector(open_given(path, {.tracks = {}, .cache_bytes = cache_mib << 20}));
+std::function<Worker::Opened(const fs::path&)> opener_for_window(std::size_t cache_mib,
+                                                                 bool calibrates) {
+  return [cache_mib, calibrates](const fs::path& path) {
+    const OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
+    return Worker::with_inspector(open_given(path, options, calibrates));
   };
 }
 

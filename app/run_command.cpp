@@ -19,8 +19,10 @@
 namespace gpo {
 
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
-  auto recording = open_given(
-      arguments.recording, {.tracks = arguments.tracks, .cache_bytes = arguments.cache_mib << 20});
+  auto recording =
+      open_given(arguments.recording,
+                 {.tracks = arguments.tracks, .cache_bytes = arguments.cache_mib << 20},
+                 arguments.calibrate == "auto");
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }

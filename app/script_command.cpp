@@ -39,7 +39,9 @@ int script_command(const std::filesystem::path& script,
   const std::vector<ScriptLine> lines = read_script(script);
   OffscreenContext context(size.width, size.height);
   Gui gui;
-  WorkbenchHost host(gui, opener_for_window(arguments.cache_mib), example_recording());
+  WorkbenchHost host(gui,
+                     opener_for_window(arguments.cache_mib, arguments.calibrate == "auto"),
+                     example_recording());
   host.timings = false;
   host.size = size;
   host.state.settings = arguments.settings;

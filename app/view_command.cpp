@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
 #include "engine/inspection/inspector.h"
+#include "engine/recording/camera_source.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
 #include "ui/window_input.h"
@@ -36,17 +37,19 @@ constexpr const char* kTitle = "GPO Inspector";
 /// Everything between opening the window and closing it.
 struct Session {
   std::size_t cache_mib;
+  bool calibrates;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
   Gui gui{window};
-  WorkbenchHost host{
-      gui, opener_for_window(cache_mib), example_recording(), [] { glfwPostEmptyEvent(); }};
+  WorkbenchHost host{gui, opener_for_window(cache_mib, calibrates), example_recording(), [] {
+                       glfwPostEmptyEvent();
+                     }};
   std::deque<ScriptLine> script;
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
 
-  explicit Session(std::size_t cache) : cache_mib(cache) {}
+  Session(std::size_t cache, bool calibrate) : cache_mib(cache), calibrates(calibrate) {}
 
   void draw() {
     host.size = window.size();
@@ -61,6 +64,8 @@ struct Session {
   void update_title() {
     const WorkbenchState& state = host.state;
     std::string now = state.recording ? state.recording->name + " \u2013 " : "";
+    if (state.recording && camera_source(*state.recording) == CameraSource::guess)
+      now += "the camera is a guess \u2013 ";
     if (host.link.worker.busy) now += "computing \u2013 ";
     now += kTitle;
     if (now == title) return;
@@ -120,7 +125,7 @@ std::filesystem::path example_recording() {
 }
 
 int view_command(const ViewArguments& arguments) {
-  const auto& [recording, cache_mib, settings, given, session_file, script] = arguments;
+  const auto& [recording, cache_mib, calibrate, settings, given, session_file, script] = arguments;
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }
@@ -128,7 +133,7 @@ int view_command(const ViewArguments& arguments) {
   if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
   if (session_file) read_session(*session_file);  // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session(cache_mib);
+  Session session(cache_mib, calibrate == "auto");
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.state.recent = recent_files();

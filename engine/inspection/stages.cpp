@@ -10,6 +10,7 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_truth.h"
+#include "engine/recording/camera_source.h"
 
 #include <algorithm>
 #include <chrono>
@@ -63,6 +64,13 @@ std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
   verdicts.reserve(steps.size());
   for (const GrowthStep& step : steps) verdicts.push_back(step.verdict);
   return verdicts;
+}
+
+/// What rests on a guess of the lens may be wrong however well it fits.
+void demote(Verdict& verdict) {
+  if (verdict.readiness != Readiness::ready) return;
+  verdict.readiness = Readiness::weak;
+  verdict.reason = "the camera is a guess: calibrate it";
 }
 
 /// Tells people of an optimization, not more often than they can read it.
@@ -187,6 +195,10 @@ void Stages::initialize(const Settings& settings,
     verdict.reason = initialization.reason;
     verdict.scene = SceneKind::no_plane;
     initialization.verdict = std::move(verdict);
+  }
+  if (camera_source(*recording) == CameraSource::guess) {
+    std::ranges::for_each(inspection.growth, demote);
+    if (initialization.verdict) demote(*initialization.verdict);
   }
   inspection.tracks = tracks.value;
   inspection.truth = truth.value;

@@ -139,10 +139,13 @@ class Table {
   std::string text_;
 };
 
-void add_camera(Table& table, const Camera& camera) {
+void add_camera(Table& table, const Camera& camera, CameraSource source) {
   table.row("resolution", fmt::format("{}x{} px", camera.width, camera.height));
   table.row("camera",
-            fmt::format("pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+            fmt::format("{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+                        source == CameraSource::file              ? ""
+                        : source == CameraSource::self_calibrated ? "self-calibrated, "
+                                                                  : "a guess: ",
                         camera.fx,
                         camera.fy,
                         camera.cx,
@@ -217,6 +220,7 @@ RecordingInfo describe(const Recording& recording) {
   info.rate_hz = gpo::rate_hz(times);
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
   info.camera = recording.camera;
+  info.camera_source = camera_source(recording);
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
   info.truth = describe_truth(recording);
   info.plane = recording.plane;
@@ -237,6 +241,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"gaps", to_json(info.gaps, "after_frame")},
                          {"camera", to_json(info.camera)},
                          {"notes", info.notes}};
+  json["camera"]["source"] = to_string(info.camera_source);
   if (const auto& gyroscope = info.gyroscope) {
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
@@ -275,7 +280,7 @@ std::string to_text(const RecordingInfo& info) {
   table.row("frames",
             fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
-  add_camera(table, info.camera);
+  add_camera(table, info.camera, info.camera_source);
   add_gyroscope(table, info.gyroscope);
   add_truth(table, info);
   if (info.plane) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/camera_source.h"
 #include "engine/recording/recording.h"
 
 #include <cstdint>
@@ -54,6 +55,7 @@ struct RecordingInfo {
   double rate_hz = 0;         ///< 1 / median period; 0 for a single frame
   std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
   Camera camera;
+  CameraSource camera_source = CameraSource::file;
   std::optional<GyroscopeInfo> gyroscope;
   std::optional<TruthInfo> truth;
   std::optional<Plane> plane;

@@ -6,6 +6,7 @@
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/recording/board/board_truth.h"
+#include "engine/recording/camera_source.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
@@ -258,6 +259,10 @@ ordered_json to_json(const Inspection& inspection) {
   const Timing& t = inspection.timing;
   ordered_json json;
   json["recording"] = inspection.recording->path.string();
+  const Camera& camera = inspection.recording->camera;
+  json["camera"] = {{"source", to_string(camera_source(*inspection.recording))},
+                    {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
+                    {"distortion_coefficients", camera.coefficients}};
   json["method"] = inspection.settings.method;
   json["status"] = result.ok ? "ok" : "failed";
   json["reason"] = result.reason;

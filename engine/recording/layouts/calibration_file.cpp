@@ -278,6 +278,8 @@ Calibration read_calibration(const std::filesystem::path& file) {
     if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
     result.time_offset_ns = std::llround(seconds * 1e9);
   }
+  if (const auto source = find(root, "source"))
+    result.self_calibrated = text(*source, "a name") == "self-calibrated";
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
@@ -290,7 +292,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
   return result;
 }
 
-std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
   for (const std::string& name : calibration_names()) {
     if (is_file(folder / name)) return folder / name;
   }
@@ -298,7 +300,11 @@ std::filesystem::path calibration_in(const std::filesystem::path& folder) {
   for (const auto& file : files_in(folder)) {
     if (is_camchain(file)) chains.insert(file);
   }
-  if (!chains.empty()) return *chains.begin();
+  return chains.empty() ? std::nullopt : std::optional(*chains.begin());
+}
+
+std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+  if (auto found = find_calibration(folder)) return *std::move(found);
   throw InputError(folder.string() +
                    ": found no calibration, expected camera.yaml (the names and formats of EuRoC, "
                    "OpenCV and Kalibr are known, too; `gpo-inspector calibrate` makes one)");

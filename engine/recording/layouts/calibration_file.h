@@ -19,6 +19,7 @@ struct Calibration {
       T_body_camera;                ///< x_body = R_wc x_camera + p_wc; Kalibr: the body is the IMU
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   std::optional<double> rate_hz;    ///< of the pictures
+  bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
 /// Reads a camera's calibration: EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also
@@ -35,6 +36,8 @@ const char* distortion_name(Distortion distortion);
 /// The calibration in a folder, by the names that people and tools give it: camera.yaml,
 /// sensor.yaml, camchain-imucam.yaml, calibration.xml, ... Throws InputError where there is none.
 std::filesystem::path calibration_in(const std::filesystem::path& folder);
+/// The same, nothing where there is none.
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
 
 /// EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError
 /// where it is no rigid motion.

@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
+#include "engine/geometry/camera_guess.h"
+#include "engine/recording/camera_source.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/gyroscope_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
@@ -14,6 +16,8 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace gpo {
 
@@ -150,9 +154,11 @@ Recording read_pictures(const fs::path& path,
                         std::size_t cache_bytes) {
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   Recording recording;
-  const fs::path calibration_file = calibration_in(folder);
+  // Of pictures the size is known, and so, roughly, what camera it may be.
+  const auto found = tracks ? std::optional(calibration_in(folder)) : find_calibration(folder);
+  const fs::path calibration_file = found.value_or(folder / "camera.yaml");
   const std::string name = calibration_file.filename().string();
-  const auto calibration = read_calibration(calibration_file);
+  const auto calibration = found ? read_calibration(*found) : Calibration{};
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
   std::vector<std::int64_t> video_times;
@@ -163,6 +169,15 @@ Recording read_pictures(const fs::path& path,
     video_times = std::move(opened.timestamps_ns);
   } else if (auto files = pictures_in(folder); !files.empty()) {
     add_picture_files(recording, std::move(files), cache_bytes);
+  }
+  if (!found) {
+    set_camera(recording,
+               guessed_camera(recording.camera.width, recording.camera.height),
+               CameraSource::guess,
+               fmt::format("{:.0f} degrees along the picture's diagonal; `calibrate` finds it",
+                           kUsualView_deg));
+  } else if (calibration.self_calibrated) {
+    set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
   check_size_is_known(recording.camera, calibration_file);
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;

@@ -10,8 +10,8 @@ namespace gpo {
 
 /// Reads a video, or a folder with a video or with numbered pictures (in it, or in its folder
 /// images, frames, rgb or data), and beside them a calibration, gyro.csv or gyro_accel.csv,
-/// frame_timestamps.txt and groundtruth.txt. With `tracks` there need be no pictures. Throws
-/// InputError.
+/// frame_timestamps.txt and groundtruth.txt. With `tracks` there need be no pictures; without, no
+/// calibration: the camera is a guess then (camera_source.h). Throws InputError.
 Recording read_pictures(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& tracks,
                         std::size_t cache_bytes);

@@ -1,0 +1,52 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/camera_source.h"
+
+#include "engine/geometry/camera_guess.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace gpo {
+namespace {
+
+// Phones see 60 to 80 degrees; their axis is within a few percent of the middle.
+constexpr double kFocalSigma = 0.2;
+constexpr double kMiddleSigma = 0.02;
+
+constexpr std::string_view kGuess = "no calibration: the camera is a guess";
+constexpr std::string_view kSelfCalibrated = "the camera is self-calibrated";
+
+bool has_note(const Recording& recording, std::string_view beginning) {
+  return std::ranges::any_of(recording.notes,
+                             [&](const std::string& note) { return note.starts_with(beginning); });
+}
+
+}  // namespace
+
+CameraSource camera_source(const Recording& recording) {
+  if (has_note(recording, kGuess)) return CameraSource::guess;
+  return has_note(recording, kSelfCalibrated) ? CameraSource::self_calibrated : CameraSource::file;
+}
+
+void set_camera(Recording& recording,
+                const Camera& camera,
+                CameraSource source,
+                const std::string& detail) {
+  recording.camera = camera;
+  std::erase_if(recording.notes, [](const std::string& note) {
+    return note.starts_with(kGuess) || note.starts_with(kSelfCalibrated);
+  });
+  if (source == CameraSource::file) return;
+  const std::string_view what = source == CameraSource::guess ? kGuess : kSelfCalibrated;
+  recording.notes.insert(recording.notes.begin(), std::string(what) + " (" + detail + ")");
+}
+
+Camera guessed_camera(int width, int height) {
+  Camera camera = camera_of_view(width, height);
+  camera.sigmas = {
+      kFocalSigma * camera.fx, kFocalSigma * camera.fy, kMiddleSigma * width, kMiddleSigma * width};
+  return camera;
+}
+
+}  // namespace gpo
