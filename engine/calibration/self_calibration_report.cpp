@@ -81,8 +81,8 @@ std::string to_text(const SelfCalibration& calibration) {
   constexpr std::array kNames{"fx", "fy", "cx", "cy"};
   for (std::size_t k = 0; k < 4; ++k)
     text += row(kNames[k], fmt::format("{:10.2f} +- {:.2f} px", values[k], camera.sigmas[k]));
-  for (std::size_t k = 0; k < 2; ++k)
-    text += row(k == 0 ? "k1" : "k2",
+  for (std::size_t k = 0; k < camera.coefficients.size(); ++k)
+    text += row(kLensNames[4 + k],
                 fmt::format("{:10.5f} +- {:.5f}", camera.coefficients[k], camera.sigmas[4 + k]));
   for (const std::string& warning : warnings(calibration)) text += row("warning", warning);
   return text;

@@ -18,7 +18,7 @@ Camera camera_of(const LensVector& lens, int width, int height) {
   camera.cx = 0.5 * (width - 1) + width * lens[2];
   camera.cy = 0.5 * (height - 1) + width * lens[3];
   camera.distortion = Distortion::radial_tangential;
-  camera.coefficients = {lens[4], lens[5], 0, 0};
+  camera.coefficients = {lens[4], lens[5], lens[6], lens[7]};
   return camera;
 }
 
@@ -30,7 +30,8 @@ LensVector lens_of(const Camera& camera) {
   LensVector lens;
   lens << 0.5 * std::log(camera.fx * camera.fy / camera.width / camera.width),
       std::log(camera.fy / camera.fx), (camera.cx - 0.5 * (camera.width - 1)) / camera.width,
-      (camera.cy - 0.5 * (camera.height - 1)) / camera.width, coefficient(0), coefficient(1);
+      (camera.cy - 0.5 * (camera.height - 1)) / camera.width, coefficient(0), coefficient(1),
+      coefficient(2), coefficient(3);
   return lens;
 }
 

@@ -14,16 +14,16 @@
 namespace gpo {
 
 /// The unknowns of a lens, each of the order of 1: log(f / width), log(fy / fx), the principal
-/// point from the picture's middle [widths], k1, k2. f is the geometric mean of fx and fy.
-inline constexpr int kLensUnknowns = 6;
+/// point from the picture's middle [widths], k1, k2, p1, p2. f is the geometric mean of fx and fy.
+inline constexpr int kLensUnknowns = 8;
 using LensVector = Eigen::Matrix<double, kLensUnknowns, 1>;
 inline constexpr std::array<const char*, kLensUnknowns> kLensNames = {
-    "f", "fy/fx", "cx", "cy", "k1", "k2"};
+    "f", "fy/fx", "cx", "cy", "k1", "k2", "p1", "p2"};
 
 /// What is known of a lens before anything was seen, Gaussian.
 struct LensPrior {
-  LensVector mean = {-0.1, 0, 0, 0, 0, 0};
-  LensVector sigma = {1.0, 0.01, 0.04, 0.04, 0.3, 0.5};
+  LensVector mean = {-0.1, 0, 0, 0, 0, 0, 0, 0};
+  LensVector sigma = {1.0, 0.01, 0.04, 0.04, 0.3, 0.5, 0.003, 0.003};
 };
 
 Camera camera_of(const LensVector& lens, int width, int height);
@@ -48,7 +48,7 @@ struct AdjustmentOptions {
   double knee_px = 1;   ///< of Huber's loss, on the length of an error [px]
   double prior_px = 1;  ///< so many pixels of an error weigh as one sigma of a prior
   int most_iterations = 40;
-  bool holds_distortion = false;  ///< k1 and k2 stay as they are
+  bool holds_distortion = false;  ///< its coefficients stay as they are
   std::stop_token stop = {};
 };
 

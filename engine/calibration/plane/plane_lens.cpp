@@ -235,8 +235,8 @@ void take_lens(const Work& work,
                    work.width * certainty.sigma[3],
                    certainty.sigma[4],
                    certainty.sigma[5],
-                   0,
-                   0};
+                   certainty.sigma[6],
+                   certainty.sigma[7]};
   const std::vector<double> errors = finite(errors_of(work, now));
   result.rms_px = root_mean_square(errors);
   result.points = point_count(work.planes);

@@ -85,7 +85,8 @@ PlaneProblem::PlaneProblem(const std::vector<SightedPlane>& planes,
   problem_.AddParameterBlock(unknowns_.lens.data(), kLensUnknowns);
   free_blocks_.push_back(unknowns_.lens.data());
   if (options.holds_distortion)
-    problem_.SetManifold(unknowns_.lens.data(), new ceres::SubsetManifold(kLensUnknowns, {4, 5}));
+    problem_.SetManifold(unknowns_.lens.data(),
+                         new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7}));
   const LensVector weights = options.prior_px * prior.sigma.cwiseInverse();
   problem_.AddResidualBlock(
       new ceres::AutoDiffCostFunction<PriorError<kLensUnknowns>, kLensUnknowns, kLensUnknowns>(

@@ -32,8 +32,11 @@ class SightError {
     const T bend = T(1) + r2 * (lens[4] + r2 * lens[5]);
     const T fx = width_ * exp(lens[0] - 0.5 * lens[1]);
     const T fy = width_ * exp(lens[0] + 0.5 * lens[1]);
-    error[0] = fx * bend * x + 0.5 * (width_ - 1) + width_ * lens[2] - raw_px_.x();
-    error[1] = fy * bend * y + 0.5 * (height_ - 1) + width_ * lens[3] - raw_px_.y();
+    const T across = 2.0 * x * y;
+    const T x_bent = bend * x + lens[6] * across + lens[7] * (r2 + 2.0 * x * x);
+    const T y_bent = bend * y + lens[6] * (r2 + 2.0 * y * y) + lens[7] * across;
+    error[0] = fx * x_bent + 0.5 * (width_ - 1) + width_ * lens[2] - raw_px_.x();
+    error[1] = fy * y_bent + 0.5 * (height_ - 1) + width_ * lens[3] - raw_px_.y();
     return true;
   }
 

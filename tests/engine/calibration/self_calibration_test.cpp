@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 #include "tests/engine/test_folder.h"
 
 #include <atomic>
-#include <thread>
 #include <cmath>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
