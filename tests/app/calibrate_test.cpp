@@ -7,9 +7,11 @@
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -121,6 +123,47 @@ TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
   EXPECT_EQ(found.coefficients.back(), 0);
   for (const double k : found.coefficients) EXPECT_LT(std::abs(k), 10);
   EXPECT_NEAR(found.fx, 500, 20);
+}
+
+TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
+  const fs::path folder = test::fresh_folder();
+  fs::create_directories(folder / "in");
+  for (int i = 0; i < 3; ++i) {
+    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  }
+  const std::string calibrate =
+      fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
+  const Outcome outcome = program(calibrate);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("calibration failed: a plane is seen in 0 pictures; at least 6 are needed"));
+  const Outcome refused = program(calibrate + " --board 9x6");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--board: not used with --from plane"));
+  EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
+}
+
+TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
+  const fs::path folder = test::fresh_folder();
+  int number = 0;
+  std::set<fs::path> pictures;
+  for (const auto& file : fs::directory_iterator(test::desk() / "mav0/cam0/data"))
+    pictures.insert(file.path());
+  for (const fs::path& file : pictures)
+    if (number < 30) fs::copy_file(file, folder / fmt::format("{}.jpg", number++));
+  const Outcome run = program(fmt::format("run {} --json -", folder.string()));
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["camera"]["source"], "guess");
+  EXPECT_NE(json["verdict"]["readiness"], "ready");
+  EXPECT_THAT(run.err, HasSubstr("no calibration: the camera is a guess (70 degrees"));
+  EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
+  const Outcome info = program(fmt::format("info {} --json", folder.string()));
+  EXPECT_EQ(nlohmann::json::parse(info.out)["camera"]["source"], "guess");
+  EXPECT_EQ(nlohmann::json::parse(
+                program("info " + test::desk().string() + " --json").out)["camera"]["source"],
+            "file");
 }
 
 TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
