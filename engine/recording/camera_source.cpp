@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/camera_source.h"
 
-#include "engine/geometry/camera_guess.h"
-
 #include <algorithm>
 #include <string_view>
 
 namespace gpo {
 namespace {
-
-// Phones see 60 to 80 degrees; their axis is within a few percent of the middle.
-constexpr double kFocalSigma = 0.2;
-constexpr double kMiddleSigma = 0.02;
 
 constexpr std::string_view kGuess = "no calibration: the camera is a guess";
 constexpr std::string_view kSelfCalibrated = "the camera is self-calibrated";
@@ -40,13 +34,6 @@ void set_camera(Recording& recording,
   if (source == CameraSource::file) return;
   const std::string_view what = source == CameraSource::guess ? kGuess : kSelfCalibrated;
   recording.notes.insert(recording.notes.begin(), std::string(what) + " (" + detail + ")");
-}
-
-Camera guessed_camera(int width, int height) {
-  Camera camera = camera_of_view(width, height);
-  camera.sigmas = {
-      kFocalSigma * camera.fx, kFocalSigma * camera.fy, kMiddleSigma * width, kMiddleSigma * width};
-  return camera;
 }
 
 }  // namespace gpo

@@ -28,8 +28,4 @@ void set_camera(Recording& recording,
                 CameraSource source,
                 const std::string& detail);
 
-/// What is assumed where nobody says anything: a field of view of 70 degrees along the diagonal,
-/// with what that may be wrong by as standard deviations.
-Camera guessed_camera(int width, int height);
-
 }  // namespace gpo

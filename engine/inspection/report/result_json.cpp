@@ -286,7 +286,11 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
-  if (result.uncertainty) json["uncertainty"] = uncertainty_json(result);
+  if (result.uncertainty) {
+    json["uncertainty"] = uncertainty_json(result);
+    if (camera_source(*inspection.recording) == CameraSource::guess)
+      json["uncertainty"]["lens"] = "a guess, taken as exact";
+  }
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);

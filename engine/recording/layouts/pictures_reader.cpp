@@ -172,7 +172,7 @@ Recording read_pictures(const fs::path& path,
   }
   if (!found) {
     set_camera(recording,
-               guessed_camera(recording.camera.width, recording.camera.height),
+               camera_of_view(recording.camera.width, recording.camera.height),
                CameraSource::guess,
                fmt::format("{:.0f} degrees along the picture's diagonal; `calibrate` finds it",
                            kUsualView_deg));

@@ -210,8 +210,6 @@ TEST_F(PicturesReader, GuessesTheCameraWhereNobodyTellsItAndSaysSo) {
       recording->notes,
       testing::Contains(testing::StartsWith(
           "no calibration: the camera is a guess (70 degrees along the picture's diagonal")));
-  ASSERT_EQ(camera.sigmas.size(), 4);
-  EXPECT_GT(camera.sigmas[0], 0.1 * camera.fx);
 }
 
 TEST_F(PicturesReader, TellsASelfCalibratedCameraFromOneOfABoard) {
