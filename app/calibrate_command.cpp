@@ -1,19 +1,24 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/found_camera.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
+#include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/charuco.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/layouts/pictures_reader.h"
 #include "engine/recording/layouts/sidecar_files.h"
 
 #include <array>
 #include <cstdio>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -130,16 +135,46 @@ CalibrationOptions options_of(const CalibrateArguments& arguments) {
   return options;
 }
 
+/// What describes a board says nothing of a plane.
+void refuse_board_options(const CalibrateArguments& arguments) {
+  const std::array<std::pair<bool, const char*>, 6> given{
+      {{arguments.board.has_value(), "--board"},
+       {arguments.square.has_value(), "--square"},
+       {arguments.pattern.has_value(), "--pattern"},
+       {arguments.marker.has_value(), "--marker"},
+       {arguments.dictionary.has_value(), "--dictionary"},
+       {arguments.model != "radial-tangential" || arguments.coefficients != 4,
+        "--model, --coefficients"}}};
+  for (const auto& [is_given, name] : given)
+    if (is_given) throw InputError(fmt::format("{}: not used with --from plane", name));
+}
+
+int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
+  refuse_board_options(arguments);
+  const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
+  if (!opened->pictures)
+    throw InputError(recording.string() + ": found no pictures, expected a video or pictures");
+  const SelfCalibration calibration = self_calibrate(*opened);
+  if (!calibration.lens.ok) {
+    fmt::print("calibration failed: {}\n", calibration.lens.reason);
+    return kFailed;
+  }
+  fmt::print("{}", to_text(calibration));
+  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+  return kDone;
+}
+
 }  // namespace
 
 int calibrate_command(const CalibrateArguments& arguments) {
   check_outputs(std::array{NamedFile{"--output", arguments.output}},
                 std::array{NamedFile{"recording", arguments.recording}});
-  const CalibrationOptions options = options_of(arguments);
   const fs::path recording = resolve_recordings({arguments.recording}).front();
   if (!fs::exists(recording)) {
     throw InputError(fmt::format("{}: no such file or folder", recording.string()));
   }
+  if (arguments.from == "plane") return calibrate_by_plane(arguments, recording);
+  const CalibrationOptions options = options_of(arguments);
   const Board board = board_of(arguments, recording);
   question_square(board.square_m);
   const auto pictures = open_pictures(recording, kCacheBytes, arguments.topics);

@@ -33,6 +33,7 @@ struct InspectArguments {
   std::optional<std::filesystem::path> tracks;
   TopicChoices topics;  ///< of a bag
   std::size_t cache_mib = kDefaultCacheMib;
+  std::string calibrate = "off";  ///< auto: what nobody calibrated, from a plane in view
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
@@ -92,6 +93,7 @@ struct ViewArguments {
   std::optional<std::filesystem::path> recording;
   TopicChoices topics;  ///< of the recording, if it is a bag
   std::size_t cache_mib = kDefaultCacheMib;
+  std::string calibrate = "off";  ///< auto: what nobody calibrated, from a plane in view
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
   std::optional<std::filesystem::path> session;
@@ -101,6 +103,7 @@ struct ViewArguments {
 struct CalibrateArguments {
   std::filesystem::path recording;   ///< needs no calibration
   TopicChoices topics;               ///< of a bag
+  std::string from = "board";        ///< or "plane": of any plane in view
   std::optional<std::string> board;  ///< "CxR" inner corners, of a ChArUco board squares; default:
                                      ///< the recording's board.yaml
   std::optional<std::string> pattern;     ///< "chessboard" (the default) or "charuco"

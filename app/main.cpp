@@ -51,6 +51,15 @@ void add_topics(CLI::App& command, TopicChoices& topics) {
       ->allow_extra_args(false);
 }
 
+void add_calibrating(CLI::App& command, std::string& calibrate) {
+  command
+      .add_option("--calibrate",
+                  calibrate,
+                  "auto: what has no calibration is calibrated from a plane in view, once")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"off", "auto"}));
+}
+
 void add_inspection(CLI::App& command, InspectArguments& arguments) {
   command
       .add_option("recording", arguments.recording, "Folder or file of a recording, or a recipe")
@@ -59,6 +68,7 @@ void add_inspection(CLI::App& command, InspectArguments& arguments) {
       "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
   add_topics(command, arguments.topics);
   add_cache(command, arguments.cache_mib);
+  add_calibrating(command, arguments.calibrate);
   add_settings(command, arguments.settings, arguments.given);
 }
 
@@ -186,13 +196,20 @@ void add_evaluate(CLI::App& app, EvaluateArguments& arguments) {
 
 void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Writes the camera.yaml of a video or of pictures that show a printed board");
+      "calibrate",
+      "Writes the camera.yaml of a video or of pictures that show a printed board, or any plane");
   command
       ->add_option(
           "recording",
           arguments.recording,
           "Video, folder of pictures, or any recording with pictures; needs no calibration")
       ->required();
+  command
+      ->add_option("--from",
+                   arguments.from,
+                   "What tells the camera: a printed board, or a plane of unknown structure")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"board", "plane"}));
   command->add_option("--board",
                       arguments.board,
                       "COLUMNSxROWS inner corners, of a ChArUco board squares, e.g. 9x6; default: "
@@ -216,6 +233,9 @@ void add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
       "--gyroscope",
       arguments.gyroscope,
       "Instead of the lens: rotation, clock and bias of the gyroscope, from rotations by pictures");
+  for (const char* of_lens :
+       {"--from", "--board", "--square", "--pattern", "--marker", "--dictionary", "--model"})
+    gyroscope->excludes(command->get_option(of_lens));
   command->add_option("--figure", arguments.figure, "Picture of the rates, before and after (.png)")
       ->needs(gyroscope);
   add_topics(*command, arguments.topics);
@@ -255,6 +275,7 @@ void declare(CLI::App& app, AllArguments& arguments) {
       "recording", arguments.view.recording, "Folder or file of a recording, or a recipe");
   add_topics(*view, arguments.view.topics);
   add_cache(*view, arguments.view.cache_mib);
+  add_calibrating(*view, arguments.view.calibrate);
   add_settings(*view, arguments.view.settings, arguments.view.given);
   view->add_option("--session", arguments.view.session, "Session to go on with, a JSON file");
   view->add_option("--script", arguments.view.script, "Commands to begin with, one a line");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings.h"
 
+#include "app/found_camera.h"
 #include "app/interrupt.h"
 #include "app/known_files.h"
 #include "app/progress_bar.h"
@@ -70,20 +71,26 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
   return resolved;
 }
 
-std::shared_ptr<const Recording> open_given(const fs::path& path, const OpenOptions& options) {
+std::shared_ptr<const Recording> open_given(const fs::path& path,
+                                            const OpenOptions& options,
+                                            bool calibrates) {
   OpenOptions with_cache = options;
   with_cache.cache_folder = user_cache_folder();
   Recording recording = *open_recording(resolve_recordings({path}).front(), with_cache);
   recording.path = path;
+  if (recording.camera_source == CameraSource::guess) use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
 }
 
 std::function<Worker::Opened(const fs::path&)> opener_for_window(
-    std::size_t cache_mib, const std::optional<fs::path>& recording, const TopicChoices& topics) {
+    std::size_t cache_mib,
+    bool calibrates,
+    const std::optional<fs::path>& recording,
+    const TopicChoices& topics) {
   return [=](const fs::path& path) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
-    return Worker::with_inspector(open_given(path, options));
+    return Worker::with_inspector(open_given(path, options, calibrates));
   };
 }
 

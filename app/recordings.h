@@ -21,14 +21,18 @@ namespace gpo {
 std::vector<std::filesystem::path> resolve_recordings(
     const std::vector<std::filesystem::path>& paths);
 
-/// Opens a recording, or that of a recipe; its path stays what the user gave.
+/// Opens a recording, or that of a recipe; its path stays what the user gave. One without a
+/// calibration has the camera that was found from a plane in it before and is kept in the user's
+/// cache; where there is none, it is calibrated now if `calibrates`.
 std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
-                                            const OpenOptions& options = {});
+                                            const OpenOptions& options = {},
+                                            bool calibrates = false);
 
 /// The same for the window's worker. The topics are those of one recording, of others they are
 /// found.
 std::function<Worker::Opened(const std::filesystem::path&)> opener_for_window(
     std::size_t cache_mib,
+    bool calibrates = false,
     const std::optional<std::filesystem::path>& recording = {},
     const TopicChoices& topics = {});
 

@@ -23,7 +23,8 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
   auto recording = open_given(arguments.recording,
                               {.tracks = arguments.tracks,
                                .cache_bytes = arguments.cache_mib << 20,
-                               .topics = arguments.topics});
+                               .topics = arguments.topics},
+                              arguments.calibrate == "auto");
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }

@@ -40,7 +40,10 @@ int script_command(const std::filesystem::path& script,
   OffscreenContext context(size.width, size.height);
   Gui gui;
   WorkbenchHost host(gui,
-                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
+                     opener_for_window(arguments.cache_mib,
+                                       arguments.calibrate == "auto",
+                                       arguments.recording,
+                                       arguments.topics),
                      example_recording());
   host.timings = false;
   host.size = size;

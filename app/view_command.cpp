@@ -41,7 +41,10 @@ struct Session {
   WindowInput input{window.glfw()};
   Gui gui{window};
   WorkbenchHost host{gui,
-                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
+                     opener_for_window(arguments.cache_mib,
+                                       arguments.calibrate == "auto",
+                                       arguments.recording,
+                                       arguments.topics),
                      example_recording(),
                      [] { glfwPostEmptyEvent(); }};
   std::deque<ScriptLine> script;
@@ -63,6 +66,8 @@ struct Session {
   void update_title() {
     const WorkbenchState& state = host.state;
     std::string now = state.recording ? state.recording->name + " \u2013 " : "";
+    if (state.recording && state.recording->camera_source == CameraSource::guess)
+      now += "the camera is a guess \u2013 ";
     if (host.link.worker.busy) now += "computing \u2013 ";
     now += kTitle;
     if (now == title) return;
@@ -122,7 +127,8 @@ std::filesystem::path example_recording() {
 }
 
 int view_command(const ViewArguments& arguments) {
-  const auto& [recording, topics, cache_mib, settings, given, session_file, script] = arguments;
+  const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =
+      arguments;
   if (recording && !std::filesystem::exists(*recording)) {
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
   }

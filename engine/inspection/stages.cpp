@@ -65,6 +65,13 @@ std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
   return verdicts;
 }
 
+/// What rests on a guess of the lens may be wrong however well it fits.
+void demote(Verdict& verdict) {
+  if (verdict.readiness != Readiness::ready) return;
+  verdict.readiness = Readiness::weak;
+  verdict.reason = "the camera is a guess: calibrate it";
+}
+
 /// Tells people of an optimization, not more often than they can read it.
 Watch told_by(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
@@ -187,6 +194,10 @@ void Stages::initialize(const Settings& settings,
     verdict.reason = initialization.reason;
     verdict.scene = SceneKind::no_plane;
     initialization.verdict = std::move(verdict);
+  }
+  if (recording->camera_source == CameraSource::guess) {
+    std::ranges::for_each(inspection.growth, demote);
+    if (initialization.verdict) demote(*initialization.verdict);
   }
   inspection.tracks = tracks.value;
   inspection.truth = truth.value;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/recording/frame_cache.h"
@@ -19,6 +20,15 @@
 #include <Eigen/Core>
 
 namespace gpo {
+
+/// Who says what a recording's camera is like.
+enum class CameraSource { file, self_calibrated, guess };
+
+template <>
+struct ChoiceKeys<CameraSource> {
+  static constexpr const char* name = "camera source";
+  static constexpr std::array keys{"file", "self-calibrated", "guess"};
+};
 
 /// ArUco markers in the light squares of a board.
 struct BoardMarkers {
@@ -50,6 +60,7 @@ struct Recording {
   std::string name;    ///< last component of the path
   std::string layout;  ///< for people: "EuRoC"; the titles in the table of layouts
   Camera camera;
+  CameraSource camera_source = CameraSource::file;
   std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
   std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
   std::shared_ptr<const FrameCache> pictures;  ///< null where there are none

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 
+#include "engine/geometry/pose.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -121,6 +124,77 @@ TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
   EXPECT_EQ(found.coefficients.back(), 0);
   for (const double k : found.coefficients) EXPECT_LT(std::abs(k), 10);
   EXPECT_NEAR(found.fx, 500, 20);
+}
+
+TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
+  const fs::path folder = test::fresh_folder();
+  const std::string calibrate = fmt::format(
+      "calibrate {} --gyroscope --output {}/camera.yaml ", test::desk().string(), folder.string());
+  const Outcome outcome = program(calibrate + "--figure " + (folder / "rates.png").string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("the camera's x along -y, y along -x, z along -z of the gyroscope"));
+  EXPECT_FALSE(cv::imread((folder / "rates.png").string()).empty());
+  const Calibration found = read_calibration(folder / "camera.yaml");
+  const Calibration known = read_calibration(test::desk() / "mav0/cam0/sensor.yaml");
+  const Eigen::Matrix3d off = found.T_body_camera->R_wc.transpose() * known.T_body_camera->R_wc;
+  EXPECT_LT(degrees(so3_log(off).norm()), 0.3);
+  EXPECT_LT(std::abs(found.time_offset_ns), 1'000'000);
+  EXPECT_NEAR(found.camera.fx, known.camera.fx, 1e-6);
+  const Outcome refused = program(calibrate + "--board 9x6");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--gyroscope excludes --board"));
+}
+
+TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {
+  const fs::path folder = test::fresh_folder();
+  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  cv::imwrite((folder / "1.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  const Outcome outcome =
+      program(fmt::format("calibrate {0} --gyroscope --output {0}/camera.yaml", folder.string()));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("has no gyroscope"));
+}
+
+TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
+  const fs::path folder = test::fresh_folder();
+  fs::create_directories(folder / "in");
+  for (int i = 0; i < 3; ++i) {
+    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  }
+  const std::string calibrate =
+      fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
+  const Outcome outcome = program(calibrate);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("calibration failed: a plane is seen in 0 pictures; at least 6 are needed"));
+  const Outcome refused = program(calibrate + " --board 9x6");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--board: not used with --from plane"));
+  EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
+}
+
+TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
+  const fs::path folder = test::fresh_folder();
+  int number = 0;
+  std::set<fs::path> pictures;
+  for (const auto& file : fs::directory_iterator(test::desk() / "mav0/cam0/data"))
+    pictures.insert(file.path());
+  for (const fs::path& file : pictures)
+    if (number < 30) fs::copy_file(file, folder / fmt::format("{}.jpg", number++));
+  const Outcome run = program(fmt::format("run {} --json -", folder.string()));
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["camera"]["source"], "guess");
+  EXPECT_NE(json["verdict"]["readiness"], "ready");
+  EXPECT_THAT(run.err, HasSubstr("no calibration: the camera is a guess (70 degrees"));
+  EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
+  const Outcome info = program(fmt::format("info {} --json", folder.string()));
+  EXPECT_EQ(nlohmann::json::parse(info.out)["camera"]["source"], "guess");
+  EXPECT_EQ(nlohmann::json::parse(
+                program("info " + test::desk().string() + " --json").out)["camera"]["source"],
+            "file");
 }
 
 TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {

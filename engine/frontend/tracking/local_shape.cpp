@@ -162,6 +162,28 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
   return all;
 }
 
+Nodes look_nodes(const Camera& camera, const Vector2d& middle_px, int half) {
+  Nodes nodes;
+  for (int k = 0; k < 9; ++k) nodes.col(k) = undistort(camera, middle_px + node(k, half));
+  return nodes;
+}
+
+std::optional<Warp> warp_by(const Camera& camera,
+                            const Matrix3d& H,
+                            const Nodes& nodes_px,
+                            int half) {
+  Nodes there;
+  const double sign = H.row(2).dot(nodes_px.col(4).homogeneous());
+  for (int k = 0; k < 9; ++k) {
+    const Vector3d p = H * nodes_px.col(k).homogeneous();
+    if (!(p.z() * sign > 0)) return std::nullopt;
+    there.col(k) = distort(camera, p.hnormalized());
+  }
+  if (!there.allFinite()) return std::nullopt;
+  const Warp warp = through(there, there.col(4), half);
+  return warp.linear.determinant() > 0 ? std::optional(warp) : std::nullopt;
+}
+
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Matrix2Xd& undistorted_px,

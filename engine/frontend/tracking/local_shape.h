@@ -5,6 +5,7 @@
 #include "engine/frontend/tracking/look.h"
 #include "engine/geometry/camera.h"
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,6 +36,16 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              const Eigen::Matrix2Xd& raw_px,
                                              int half,
                                              const ShapeOptions& options = {});
+
+/// The nodes of a look of `half` pixels around a whole raw pixel, undistorted [px].
+Nodes look_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
+
+/// Where a homography of undistorted pixels puts a look that has these nodes, in raw pixels.
+/// Nothing where the lens has no such place, or the look would be turned over.
+std::optional<Warp> warp_by(const Camera& camera,
+                            const Eigen::Matrix3d& H,
+                            const Nodes& nodes_px,
+                            int half);
 
 /// The warp's center, around it the shape that a homography and the lens give a look: the one
 /// through the look's corners as the warp has them and through those neighbors that agree with it,

@@ -139,10 +139,13 @@ class Table {
   std::string text_;
 };
 
-void add_camera(Table& table, const Camera& camera) {
+void add_camera(Table& table, const Camera& camera, CameraSource source) {
   table.row("resolution", fmt::format("{}x{} px", camera.width, camera.height));
   table.row("camera",
-            fmt::format("pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+            fmt::format("{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+                        source == CameraSource::file              ? ""
+                        : source == CameraSource::self_calibrated ? "self-calibrated, "
+                                                                  : "a guess: ",
                         camera.fx,
                         camera.fy,
                         camera.cx,
@@ -249,6 +252,7 @@ RecordingInfo describe(const Recording& recording) {
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
   info.camera = recording.camera;
   info.readout_s = recording.readout_s;
+  info.camera_source = recording.camera_source;
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
   info.truth = describe_truth(recording);
   info.plane = recording.plane;
@@ -270,6 +274,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"camera", to_json(info.camera)},
                          {"notes", info.notes}};
   if (info.readout_s) json["readout_ms"] = 1e3 * *info.readout_s;
+  json["camera"]["source"] = to_string(info.camera_source);
   if (const auto& gyroscope = info.gyroscope) {
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
@@ -308,7 +313,7 @@ std::string to_text(const RecordingInfo& info) {
   table.row("frames",
             fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
-  add_camera(table, info.camera);
+  add_camera(table, info.camera, info.camera_source);
   if (info.readout_s) {
     table.row("readout",
               fmt::format("{:.2f} ms, {} row first",

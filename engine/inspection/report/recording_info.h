@@ -55,6 +55,7 @@ struct RecordingInfo {
   std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
   Camera camera;
   std::optional<double> readout_s;  ///< as `Recording::readout_s`
+  CameraSource camera_source = CameraSource::file;
   std::optional<GyroscopeInfo> gyroscope;
   std::optional<TruthInfo> truth;
   std::optional<Plane> plane;

@@ -260,6 +260,10 @@ ordered_json to_json(const Inspection& inspection) {
   const Timing& t = inspection.timing;
   ordered_json json;
   json["recording"] = inspection.recording->path.string();
+  const Camera& camera = inspection.recording->camera;
+  json["camera"] = {{"source", to_string(inspection.recording->camera_source)},
+                    {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
+                    {"distortion_coefficients", camera.coefficients}};
   json["method"] = inspection.settings.method;
   json["status"] = result.ok ? "ok" : "failed";
   json["reason"] = result.reason;
@@ -283,7 +287,11 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
-  if (result.uncertainty) json["uncertainty"] = uncertainty_json(result);
+  if (result.uncertainty) {
+    json["uncertainty"] = uncertainty_json(result);
+    if (inspection.recording->camera_source == CameraSource::guess)
+      json["uncertainty"]["lens"] = "a guess, taken as exact";
+  }
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);

@@ -97,6 +97,16 @@ std::string truth_text(const WindowTruth& truth) {
                  : truth.source);
 }
 
+/// Nothing where a file tells the camera, as it should.
+std::string camera_row(const Recording& recording) {
+  const CameraSource source = recording.camera_source;
+  if (source == CameraSource::file) return "";
+  return row("camera",
+             fmt::format("{}, f {:.0f} px",
+                         source == CameraSource::guess ? "a guess" : "self-calibrated",
+                         recording.camera.fx));
+}
+
 }  // namespace
 
 std::string to_text(const Inspection& inspection) {
@@ -109,6 +119,7 @@ std::string to_text(const Inspection& inspection) {
                                      window.start,
                                      window.start + window.frame_count() - 1,
                                      window.frame_count())) +
+                     camera_row(*inspection.recording) +
                      row("method", find_method(inspection.settings.method).title) +
                      row("rotations", rotations_text(inspection)) +
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +

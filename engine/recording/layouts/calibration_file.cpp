@@ -278,6 +278,8 @@ Calibration read_calibration(const std::filesystem::path& file) {
     if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
     result.time_offset_ns = std::llround(seconds * 1e9);
   }
+  if (const auto source = find(root, "source"))
+    result.self_calibrated = text(*source, "a name") == "self-calibrated";
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");

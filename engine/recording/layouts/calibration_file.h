@@ -19,6 +19,7 @@ struct Calibration {
       T_body_camera;                ///< x_body = R_wc x_camera + p_wc; Kalibr: the body is the IMU
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   std::optional<double> rate_hz;    ///< of the pictures
+  bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
 /// Reads a camera's calibration: EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also

@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
+#include "engine/geometry/camera_guess.h"
+#include "engine/recording/camera_source.h"
 #include "engine/recording/layouts/bag_reader.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/gyroscope_file.h"
@@ -18,6 +20,8 @@
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace gpo {
 
@@ -148,16 +152,22 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
 struct FoundCalibration {
   Calibration calibration;
   fs::path file;
+  bool found = true;
 };
 
-/// A calibration that somebody made goes before what a log says of the camera.
-FoundCalibration calibration_of(const fs::path& folder, const std::optional<Log>& log) {
+/// A calibration that somebody made goes before what a log says of the camera. Throws InputError
+/// where there is neither and one is required.
+FoundCalibration calibration_of(const fs::path& folder,
+                                const std::optional<Log>& log,
+                                bool required) {
   const auto file = find_calibration(folder);
-  const bool logged = log && log->camera && (!file || *file == log->camera_file);
-  if (!logged) return {read_calibration(calibration_in(folder)), calibration_in(folder)};
-  Calibration calibration;
-  calibration.camera = *log->camera;
-  return {calibration, log->camera_file};
+  if (log && log->camera && (!file || *file == log->camera_file)) {
+    Calibration calibration;
+    calibration.camera = *log->camera;
+    return {calibration, log->camera_file};
+  }
+  if (!file && !required) return {{}, folder / "camera.yaml", false};
+  return {read_calibration(calibration_in(folder)), calibration_in(folder)};
 }
 
 /// The calibration may leave the size to the pictures; without pictures it may not.
@@ -204,7 +214,9 @@ Recording read_pictures(const fs::path& path,
   const auto video = video_at(path);
   std::optional<Log> log = log_beside(folder, video);
   Recording recording;
-  const auto [calibration, calibration_file] = calibration_of(folder, log);
+  // Of pictures the size is known, and so, roughly, what camera it may be.
+  const auto [calibration, calibration_file, found] =
+      calibration_of(folder, log, tracks.has_value());
   const std::string name = calibration_file.filename().string();
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
@@ -215,6 +227,15 @@ Recording read_pictures(const fs::path& path,
     recording.picture_files = {*video};
   } else if (auto files = pictures_in(folder); !files.empty()) {
     add_picture_files(recording, std::move(files), cache_bytes);
+  }
+  if (!found) {
+    set_camera(recording,
+               camera_of_view(recording.camera.width, recording.camera.height),
+               CameraSource::guess,
+               fmt::format("{:.0f} degrees along the picture's diagonal; `calibrate` finds it",
+                           kUsualView_deg));
+  } else if (calibration.self_calibrated) {
+    set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
   check_size_is_known(recording.camera, calibration_file);
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;

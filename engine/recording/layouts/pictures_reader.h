@@ -11,14 +11,15 @@ namespace gpo {
 
 /// Reads a video, or a folder with a video or with numbered pictures (in it, or in its folder
 /// images, frames, rgb or data), and beside them a calibration, gyro.csv or gyro_accel.csv,
-/// frame_timestamps.txt and groundtruth.txt. With `tracks` there need be no pictures. Throws
-/// InputError.
+/// frame_timestamps.txt and groundtruth.txt. With `tracks` there need be no pictures; without, no
+/// calibration: the camera is a guess then (camera_source.h). Throws InputError.
 Recording read_pictures(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& tracks,
                         std::size_t cache_bytes);
 
 /// Only the pictures of a video, of a folder with one or with numbered pictures, or of any layout's
-/// folder, or of a bag; of whatever size, without a calibration. Throws InputError where there are none.
+/// folder, or of a bag; of whatever size, without a calibration. Throws InputError where there are
+/// none.
 std::shared_ptr<const FrameCache> open_pictures(const std::filesystem::path& path,
                                                 std::size_t cache_bytes,
                                                 const TopicChoices& topics = {});

@@ -1,14 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -188,13 +191,37 @@ TEST_F(PicturesReader, NamesWhatAFolderLacks) {
   EXPECT_THAT(
       error(),
       HasSubstr(": found no recording, expected cam0/data.csv (EuRoC), rgb.txt (TUM RGB-D), a "));
-  write_images(1);
-  std::filesystem::remove(folder.path() / "camera.yaml");
-  EXPECT_THAT(
-      error(),
-      testing::StartsWith(folder.path().string() + ": found no calibration, expected camera.yaml"));
   EXPECT_THAT(error_of([&] { open_recording(folder.write("notes.txt", "")); }),
               HasSubstr("notes.txt: found a file that is no video, expected a folder, "));
+}
+
+TEST_F(PicturesReader, GuessesTheCameraWhereNobodyTellsItAndSaysSo) {
+  write_images(1);
+  EXPECT_EQ(open_recording(folder.path())->camera_source, CameraSource::file);
+  std::filesystem::remove(folder.path() / "camera.yaml");
+  const auto recording = open_recording(folder.path());
+  const Camera& camera = recording->camera;
+  EXPECT_EQ(recording->camera_source, CameraSource::guess);
+  EXPECT_EQ(cv::Size(camera.width, camera.height), recording->pictures->bgr(0).size());
+  const double seen_rad = 2 * std::atan(std::hypot(camera.width, camera.height) / 2 / camera.fx);
+  EXPECT_NEAR(degrees(seen_rad), 70, 1e-9);
+  EXPECT_THAT(
+      recording->notes,
+      testing::Contains(testing::StartsWith(
+          "no calibration: the camera is a guess (70 degrees along the picture's diagonal")));
+}
+
+TEST_F(PicturesReader, TellsASelfCalibratedCameraFromOneOfABoard) {
+  write_images(1);
+  const cv::Size size = open_recording(folder.path())->pictures->bgr(0).size();
+  folder.write("camera.yaml",
+               fmt::format("resolution: [{}, {}]\nsource: self-calibrated\n"
+                           "intrinsics: [60, 60, 32, 24]\ndistortion_model: none\n",
+                           size.width,
+                           size.height));
+  const auto recording = open_recording(folder.path());
+  EXPECT_EQ(recording->camera_source, CameraSource::self_calibrated);
+  EXPECT_EQ(recording->camera.fx, 60);
 }
 
 TEST_F(PicturesReader, AsksWhichOfTwoVideos) {

@@ -1,0 +1,232 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/plane/plane_start.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLeastCommon = 8;    // points that place a sight
+constexpr double kBadHalf = 0.01;  // badness that counts half of the most, of one sight
+constexpr int kRings = 14;         // of normals that are tried, from the axis to 84 degrees
+constexpr double kRing_rad = 6 * std::numbers::pi / 180;
+constexpr double kLeastSlope = 0.02;  // of a ray to the plane; below it the point is a wrong one
+constexpr double kMostBehind = 0.03;  // of the points
+constexpr double kApart_rad = 0.25;   // two guesses of a normal are at least
+
+Matrix2Xd undistorted_from_middle(const PlaneSight& sight, const Camera& camera) {
+  Matrix2Xd points(2, sight.raw_px.cols());
+  const Vector2d middle(camera.cx, camera.cy);
+  for (Eigen::Index k = 0; k < points.cols(); ++k)
+    points.col(k) = undistort(camera, sight.raw_px.col(k)) - middle;
+  return points;
+}
+
+/// Those of a sight's observations whose points are placed.
+std::vector<int> placed(const PlaneSight& sight, const Matrix2Xd& seen, const Matrix2Xd& points) {
+  std::vector<int> columns;
+  for (int k = 0; k < static_cast<int>(sight.points.size()); ++k)
+    if (points.col(sight.points[k]).allFinite() && seen.col(k).allFinite()) columns.push_back(k);
+  return columns;
+}
+
+/// From the points to a sight, by those that agree with most of the others.
+std::optional<Matrix3d> homography_to(const PlaneSight& sight,
+                                      const Matrix2Xd& seen,
+                                      const Matrix2Xd& points) {
+  constexpr int kRounds = 3;
+  constexpr double kMostMedians = 3;
+  std::vector<int> columns = placed(sight, seen, points);
+  std::optional<Matrix3d> H;
+  for (int round = 0; round < kRounds && std::ssize(columns) >= kLeastCommon; ++round) {
+    std::vector<int> numbers;
+    for (const int k : columns) numbers.push_back(sight.points[k]);
+    const Matrix2Xd from = points(Eigen::all, numbers);
+    const Matrix2Xd to = seen(Eigen::all, columns);
+    H = fit_homography(from, to);
+    if (!H) return std::nullopt;
+    std::vector<double> errors;
+    for (Eigen::Index k = 0; k < from.cols(); ++k)
+      errors.push_back((transfer(*H, from.col(k)) - to.col(k)).norm());
+    const double most = kMostMedians * median(errors);
+    std::vector<int> near;
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      if (errors[k] <= most) near.push_back(columns[k]);
+    columns = std::move(near);
+  }
+  return H;
+}
+
+/// Points of a sight that have no place yet get theirs; not those that the mosaic's picture would
+/// see behind itself or far outside.
+void place_points(const PlaneSight& sight,
+                  const Matrix2Xd& seen,
+                  const Matrix3d& H,
+                  double farthest_px,
+                  Matrix2Xd& points) {
+  const Matrix3d back = H.inverse();
+  // Signs: in front as most of those that are placed already.
+  double sign = 0;
+  for (const int k : placed(sight, seen, points))
+    sign += back.row(2).dot(seen.col(k).homogeneous()) > 0 ? 1 : -1;
+  for (std::size_t k = 0; k < sight.points.size(); ++k) {
+    auto point = points.col(sight.points[k]);
+    if (point.allFinite() || !seen.col(static_cast<Eigen::Index>(k)).allFinite()) continue;
+    const Vector3d there = back * seen.col(static_cast<Eigen::Index>(k)).homogeneous();
+    if (there.z() * sign <= 0) continue;
+    const Vector2d place = there.hnormalized();
+    if (place.norm() <= farthest_px) point = place;
+  }
+}
+
+/// How far the first two columns of a homography from a plane are from orthogonal and equally long.
+double badness(const Vector3d& a, const Vector3d& b) {
+  const double dot = a.dot(b);
+  const double aa = a.squaredNorm();
+  const double bb = b.squaredNorm();
+  return (4 * dot * dot + (aa - bb) * (aa - bb)) / ((aa + bb) * (aa + bb));
+}
+
+/// Columns: two directions in the plane, and the way to it; a right-handed frame, z away from the
+/// camera that the normal points to.
+Matrix3d plane_frame(const Vector3d& normal) {
+  Matrix3d R;
+  const Vector3d z = -normal;
+  R.col(0) = Vector3d::UnitY().cross(z).normalized();
+  R.col(1) = z.cross(R.col(0));
+  R.col(2) = z;
+  return R;
+}
+
+Matrix3d scaled_by(const Matrix3d& H, double focal_px) {
+  const Vector3d K(focal_px, focal_px, 1);
+  return K.cwiseInverse().asDiagonal() * H * K.asDiagonal();
+}
+
+/// The pose from the homography of a plane's coordinates to normalized ones.
+Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
+  if (H.row(2).dot(seen_point.homogeneous()) < 0) H = -H;
+  const double scale = 0.5 * (H.col(0).norm() + H.col(1).norm());
+  H /= scale;
+  Matrix3d M;
+  M << H.col(0), H.col(1), H.col(0).cross(H.col(1));
+  const Eigen::JacobiSVD<Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+  Eigen::Matrix<double, 6, 1> pose;
+  pose << so3_log(R), H.col(2);
+  return pose;
+}
+
+}  // namespace
+
+PlaneMosaic plane_mosaic(const SightedPlane& plane, const Camera& camera) {
+  const auto count = std::ssize(plane.sights);
+  PlaneMosaic mosaic{Matrix2Xd::Constant(2, plane.points, kNaN),
+                     std::vector<Matrix3d>(count, Matrix3d::Constant(kNaN)),
+                     0};
+  std::vector<Matrix2Xd> seen;
+  std::vector<int> left;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    seen.push_back(undistorted_from_middle(plane.sights[i], camera));
+    left.push_back(static_cast<int>(i));
+  }
+  if (left.empty()) return mosaic;
+  const auto size = [&](int i) { return plane.sights[i].points.size(); };
+  int next = *std::ranges::max_element(left, {}, size);
+  mosaic.points(Eigen::all, plane.sights[next].points) = seen[next];
+  mosaic.H_i_m[next].setIdentity();
+  mosaic.root = next;
+  const double farthest_px = 6.0 * camera.width;
+  const auto common = [&](int i) { return placed(plane.sights[i], seen[i], mosaic.points).size(); };
+  std::erase(left, next);
+  while (!left.empty()) {
+    next = *std::ranges::max_element(left, {}, common);
+    std::erase(left, next);
+    const auto H = homography_to(plane.sights[next], seen[next], mosaic.points);
+    if (!H) continue;
+    mosaic.H_i_m[next] = *H;
+    place_points(plane.sights[next], seen[next], *H, farthest_px, mosaic.points);
+  }
+  return mosaic;
+}
+
+std::vector<NormalGuess> normal_guesses(const PlaneMosaic& mosaic, double focal_px, int most) {
+  std::vector<Matrix3d> homographies;
+  for (const Matrix3d& H : mosaic.H_i_m)
+    if (H.allFinite()) homographies.push_back(scaled_by(H, focal_px));
+  std::vector<NormalGuess> all;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const double slant = ring * kRing_rad;
+    const int around =
+        std::max(1, static_cast<int>(2 * std::numbers::pi * std::sin(slant) / kRing_rad));
+    for (int k = 0; k < around; ++k) {
+      const double turn = 2 * std::numbers::pi * k / around;
+      const Vector3d normal(
+          std::sin(slant) * std::cos(turn), std::sin(slant) * std::sin(turn), -std::cos(slant));
+      const Matrix3d frame = plane_frame(normal);
+      NormalGuess guess{normal, 0};
+      for (const Matrix3d& H : homographies) {
+        const double bad = badness(H * frame.col(0), H * frame.col(1));
+        guess.badness += bad / (bad + kBadHalf) / static_cast<double>(homographies.size());
+      }
+      all.push_back(guess);
+    }
+  }
+  std::ranges::sort(all, {}, &NormalGuess::badness);
+  std::vector<NormalGuess> best;
+  for (const NormalGuess& guess : all) {
+    if (std::ssize(best) == most) break;
+    const bool apart = std::ranges::all_of(best, [&](const NormalGuess& other) {
+      return radians(angle_deg(guess.normal, other.normal)) >= kApart_rad;
+    });
+    if (apart) best.push_back(guess);
+  }
+  return best;
+}
+
+std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
+                                      double focal_px,
+                                      const Vector3d& normal) {
+  const Matrix3d frame = plane_frame(normal);
+  AdjustedPlane plane{Matrix2Xd::Zero(2, mosaic.points.cols()), {}};
+  Vector2d one = Vector2d::Constant(kNaN);
+  int behind = 0;
+  for (Eigen::Index j = 0; j < mosaic.points.cols(); ++j) {
+    if (!mosaic.points.col(j).allFinite()) continue;
+    const Vector3d ray =
+        mosaic.points.col(j).homogeneous().cwiseProduct(Vector3d(1 / focal_px, 1 / focal_px, 1));
+    const double slope = -normal.dot(ray);
+    behind += slope < kLeastSlope ? 1 : 0;
+    const double depth = std::max(slope, kLeastSlope);
+    const Vector3d place = frame.transpose() * ray / depth;
+    plane.points.col(j) = place.head<2>();
+    if (!one.allFinite() || place.head<2>().norm() < one.norm()) one = place.head<2>();
+  }
+  if (behind > kMostBehind * static_cast<double>(mosaic.points.cols())) return std::nullopt;
+  for (const Matrix3d& H : mosaic.H_i_m) {
+    // A point of the plane is u x + v y + z in the mosaic's camera.
+    plane.poses.push_back(H.allFinite() ? pose_of(scaled_by(H, focal_px) * frame, one)
+                                        : Eigen::Matrix<double, 6, 1>::Zero());
+  }
+  return plane;
+}
+
+}  // namespace gpo

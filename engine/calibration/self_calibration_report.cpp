@@ -1,0 +1,91 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/self_calibration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+/// "cx, cy: prior only", or nothing.
+std::string known_by_prior(const PlaneLens& lens) {
+  std::vector<const char*> names;
+  for (int k = 0; k < kLensUnknowns; ++k)
+    if (lens.prior_only[k]) names.push_back(kLensNames[k]);
+  return names.empty() ? "" : fmt::format("{}: prior only", fmt::join(names, ", "));
+}
+
+std::string seen(const SelfCalibration& calibration) {
+  const PlaneLens& lens = calibration.lens;
+  return fmt::format(
+      "{} points in {} pictures{}, normals up to {:.0f} deg apart, moved by {:.2f} distances",
+      lens.points,
+      lens.sights,
+      calibration.gyroscope ? " and the gyroscope" : "",
+      lens.tilt_deg,
+      lens.moved);
+}
+
+std::vector<std::string> warnings(const SelfCalibration& calibration) {
+  const PlaneLens& lens = calibration.lens;
+  std::vector<std::string> all = lens.warnings;
+  if (const std::string prior = known_by_prior(lens); !prior.empty()) all.push_back(prior);
+  if (!lens.left_out.empty())
+    all.push_back(fmt::format("left out, as they disagree with the others: frames {}",
+                              fmt::join(lens.left_out, ", ")));
+  return all;
+}
+
+std::string row(const std::string& name, const std::string& value) {
+  return fmt::format("{:<12}{}\n", name, value);
+}
+
+}  // namespace
+
+std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
+  const Camera& camera = calibration.lens.camera;
+  std::string text = fmt::format("# calibrated from {} and a plane in view, RMS {:.2f} px\n# {}\n",
+                                 source,
+                                 calibration.lens.rms_px,
+                                 seen(calibration));
+  for (const std::string& warning : warnings(calibration))
+    text += fmt::format("# warning: {}\n", warning);
+  const auto list = [](const std::vector<double>& values, std::size_t from, int digits) {
+    std::string joined;
+    for (std::size_t k = from; k < from + 4; ++k)
+      joined += fmt::format("{}{:.{}g}", k == from ? "" : ", ", values[k], digits);
+    return fmt::format("[{}]", joined);
+  };
+  std::vector<double> values{camera.fx, camera.fy, camera.cx, camera.cy};
+  values.insert(values.end(), camera.coefficients.begin(), camera.coefficients.end());
+  return text + fmt::format(
+                    "resolution: [{}, {}]\ncamera_model: pinhole\nsource: self-calibrated\n"
+                    "intrinsics: {}  # fx, fy, cx, cy\n"
+                    "distortion_model: radial-tangential\ndistortion_coefficients: {}\n"
+                    "intrinsics_sigma: {}\ndistortion_coefficients_sigma: {}\n",
+                    camera.width,
+                    camera.height,
+                    list(values, 0, 8),
+                    list(values, 4, 6),
+                    list(camera.sigmas, 0, 3),
+                    list(camera.sigmas, 4, 3));
+}
+
+std::string to_text(const SelfCalibration& calibration) {
+  const PlaneLens& lens = calibration.lens;
+  const Camera& camera = lens.camera;
+  std::string text =
+      row("seen", seen(calibration)) + row("RMS", fmt::format("{:.3f} px", lens.rms_px));
+  const std::array values{camera.fx, camera.fy, camera.cx, camera.cy};
+  constexpr std::array kNames{"fx", "fy", "cx", "cy"};
+  for (std::size_t k = 0; k < 4; ++k)
+    text += row(kNames[k], fmt::format("{:10.2f} +- {:.2f} px", values[k], camera.sigmas[k]));
+  for (std::size_t k = 0; k < camera.coefficients.size(); ++k)
+    text += row(kLensNames[4 + k],
+                fmt::format("{:10.5f} +- {:.5f}", camera.coefficients[k], camera.sigmas[4 + k]));
+  for (const std::string& warning : warnings(calibration)) text += row("warning", warning);
+  return text;
+}
+
+}  // namespace gpo

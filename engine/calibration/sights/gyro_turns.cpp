@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/sights/gyro_turns.h"
+
+#include "engine/base/error.h"
+#include "engine/frontend/rotations.h"
+#include "engine/geometry/pose.h"
+
+#include <array>
+#include <cmath>
+
+namespace gpo {
+namespace {
+
+// Of a phone's: what its noise leaves of a turn, and by how much its rates are too high or too low.
+constexpr double kNoise_rad = 3e-4;
+constexpr double kScale = 3e-3;
+
+}  // namespace
+
+GyroTurns gyro_turns(const Gyroscope& gyroscope,
+                     std::span<const std::int64_t> frame_times_ns,
+                     const std::vector<SightedPlane>& planes) {
+  GyroTurns gyro;
+  gyro.bias_sigma_rad_s = gyroscope.bias_sigma_rad_s;
+  for (const SightedPlane& plane : planes) {
+    for (std::size_t i = 1; i < plane.sights.size(); ++i) {
+      const int from = plane.sights[i - 1].frame;
+      const int to = plane.sights[i].frame;
+      const std::array times{frame_times_ns[from], frame_times_ns[to]};
+      try {
+        const Rotations turn = sensitive_gyro_rotations(gyroscope, times);
+        if (turn.R_wc.size() != 2 || !turn.gyro) continue;
+        const double sigma_rad = std::hypot(kNoise_rad, kScale * so3_log(turn.R_wc[1]).norm());
+        gyro.turns.push_back({from, to, turn.R_wc[1], turn.gyro->d_bias[1], sigma_rad});
+      } catch (const InputError&) {
+        continue;  // no samples there
+      }
+    }
+  }
+  return gyro;
+}
+
+}  // namespace gpo

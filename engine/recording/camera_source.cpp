@@ -1,0 +1,30 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/camera_source.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace gpo {
+namespace {
+
+constexpr std::string_view kGuess = "no calibration: the camera is a guess";
+constexpr std::string_view kSelfCalibrated = "the camera is self-calibrated";
+
+}  // namespace
+
+void set_camera(Recording& recording,
+                const Camera& camera,
+                CameraSource source,
+                const std::string& detail) {
+  recording.camera = camera;
+  recording.camera_source = source;
+  std::erase_if(recording.notes, [](const std::string& note) {
+    return note.starts_with(kGuess) || note.starts_with(kSelfCalibrated);
+  });
+  if (source == CameraSource::file) return;
+  const std::string_view what = source == CameraSource::guess ? kGuess : kSelfCalibrated;
+  recording.notes.insert(recording.notes.begin(), std::string(what) + " (" + detail + ")");
+}
+
+}  // namespace gpo

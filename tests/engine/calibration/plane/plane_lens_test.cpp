@@ -1,0 +1,175 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/plane/plane_lens.h"
+
+#include "tests/engine/calibration/plane/simulated_sights.h"
+
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::HasSubstr;
+
+/// As a recording without any calibration gets it.
+Camera guess_of(const Camera& camera, double k1 = 0) {
+  return {camera.width,
+          camera.height,
+          0.9 * camera.width,
+          0.9 * camera.width,
+          0.5 * (camera.width - 1),
+          0.5 * (camera.height - 1),
+          Distortion::radial_tangential,
+          {k1, 0, 0, 0}};
+}
+
+/// Errors in standard deviations.
+LensVector normalized_errors(const PlaneLens& found, const Camera& truth) {
+  return (found.lens - lens_of(truth)).cwiseQuotient(found.sigma);
+}
+
+/// How a gyroscope with a bias that nobody knows saw the pictures' cameras turn.
+GyroTurns turns_of(const SimulatedScene& scene, const Eigen::Vector3d& bias_rad_s) {
+  GyroTurns gyro;
+  constexpr double kStep_s = 4.0 / 30;
+  for (std::size_t i = 1; i < scene.poses.size(); ++i) {
+    const Eigen::Matrix3d R = scene.poses[i - 1].R_wc.transpose() * scene.poses[i].R_wc;
+    gyro.turns.push_back({scene.plane.sights[i - 1].frame,
+                          scene.plane.sights[i].frame,
+                          R * so3_exp(kStep_s * -bias_rad_s),
+                          kStep_s * Eigen::Matrix3d::Identity(),
+                          2e-4});
+  }
+  return gyro;
+}
+
+TEST(PlaneLens, FindsUnlikeLensesWithinStandardDeviationsThatTellTheErrors) {
+  struct Case {
+    Camera camera;
+    double k1_of_guess;
+  };
+  const std::vector<Case> cases = {
+      {{640, 480, 560, 565, 325, 232, Distortion::radial_tangential, {0.05, -0.1, 1e-3, -7e-4}}, 0},
+      {{640, 480, 384, 385, 335, 228, Distortion::radial_tangential, {-0.3, 0.08}}, -0.6},
+      {{640, 480, 896, 891, 300, 250, Distortion::radial_tangential, {0.1, -0.2}}, 0}};
+  LensVector squares = LensVector::Zero();
+  int count = 0;
+  for (const Case& lens : cases) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const auto scene = simulate_sights(
+          {.camera = lens.camera, .points = 200, .pictures = 30, .outliers = 0.03}, seed);
+      const auto found =
+          lens_from_planes({scene.plane}, {}, guess_of(lens.camera, lens.k1_of_guess));
+      ASSERT_TRUE(found.ok) << found.reason;
+      const LensVector errors = normalized_errors(found, lens.camera);
+      EXPECT_LT(errors.cwiseAbs().maxCoeff(), 4) << errors.transpose();
+      EXPECT_LT(std::abs(found.lens[0] - lens_of(lens.camera)[0]), 0.02);
+      squares += errors.cwiseAbs2();
+      ++count;
+    }
+  }
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_THAT(std::sqrt(squares[k] / count), testing::AllOf(testing::Gt(0.3), testing::Lt(1.8)))
+        << kLensNames[k];
+  }
+}
+
+TEST(PlaneLens, CountsWhatIsWrongWithAPointOnce) {
+  // Half a pixel that is the same in all pictures of a point leaves hardly a trace in the errors.
+  double squares = 0;
+  double own_squares = 0;
+  constexpr int kSeeds = 6;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const SimulatedSights options{
+        .points = 150, .pictures = 30, .noise_px = 0.1, .track_noise_px = 0.6};
+    const auto scene = simulate_sights(options, seed);
+    const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
+    ASSERT_TRUE(found.ok) << found.reason;
+    squares += std::pow(normalized_errors(found, options.camera)[0], 2) / kSeeds;
+    own_squares += found.sigma[0] / kSeeds;
+  }
+  EXPECT_LT(std::sqrt(squares), 1.8);
+  EXPECT_LT(own_squares, 0.01);
+}
+
+TEST(PlaneLens, RefusesACameraThatKeepsItsTiltAndSaysWhy) {
+  const auto scene = simulate_sights({.points = 150, .pictures = 30, .slant_deg = 2}, 1);
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+  EXPECT_FALSE(found.ok);
+  EXPECT_THAT(found.reason, HasSubstr("keeps its tilt to the plane"));
+  EXPECT_LT(found.tilt_deg, 8);
+}
+
+TEST(PlaneLens, RefusesPicturesThatAreTooFew) {
+  const auto scene = simulate_sights({.pictures = 4}, 1);
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+  EXPECT_FALSE(found.ok);
+  EXPECT_EQ(found.reason, "a plane is seen in 4 pictures; at least 6 are needed");
+}
+
+TEST(PlaneLens, SaysWhatOnlyThePriorTells) {
+  const auto upright = simulate_sights({.points = 150, .pictures = 30, .slant_deg = 1}, 2);
+  const auto slanted = simulate_sights({.points = 150, .pictures = 30}, 2);
+  const Camera guess = guess_of(SimulatedSights{}.camera);
+  const auto vague = lens_from_planes({upright.plane}, {}, guess);
+  const auto sure = lens_from_planes({slanted.plane}, {}, guess);
+  EXPECT_TRUE(vague.prior_only[0]) << vague.sigma.transpose();
+  EXPECT_FALSE(sure.prior_only[0]) << sure.sigma.transpose();
+  EXPECT_FALSE(sure.prior_only[4]) << sure.sigma.transpose();
+}
+
+TEST(PlaneLens, AGyroscopeOfUnknownBiasMakesTheFocalLengthSurer) {
+  const SimulatedSights options{.points = 150, .pictures = 30, .slant_deg = 3, .kept_tilt_deg = 30};
+  double sigma_without = 0;
+  double sigma_with = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto scene = simulate_sights(options, seed);
+    const Camera guess = guess_of(options.camera);
+    const auto without = lens_from_planes({scene.plane}, {}, guess);
+    const auto with = lens_from_planes({scene.plane}, turns_of(scene, {0.05, -0.03, 0.02}), guess);
+    ASSERT_TRUE(with.ok) << with.reason;
+    sigma_without += without.sigma[0];
+    sigma_with += with.sigma[0];
+    EXPECT_LT(std::abs(normalized_errors(with, options.camera)[0]), 3.5) << seed;
+  }
+  EXPECT_LT(sigma_with, 0.9 * sigma_without);
+}
+
+TEST(PlaneLens, SeveralPlanesShareTheLens) {
+  const SimulatedSights options{.points = 150, .pictures = 12};
+  std::vector<SightedPlane> planes;
+  for (const std::uint64_t seed : {1, 2, 3}) planes.push_back(simulate_sights(options, seed).plane);
+  const auto found = lens_from_planes(planes, {}, guess_of(options.camera));
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_EQ(found.sights, 36);
+  EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
+}
+
+TEST(PlaneLens, LeavesOutPicturesThatDisagreeAndNamesThem) {
+  auto scene = simulate_sights({.points = 150, .pictures = 30}, 1);
+  PlaneSight& bad = scene.plane.sights[11];
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0, 4);
+  for (auto column : bad.raw_px.colwise()) column += Eigen::Vector2d(noise(random), noise(random));
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+  ASSERT_TRUE(found.ok) << found.reason;
+  EXPECT_THAT(found.left_out, testing::ElementsAre(bad.frame));
+}
+
+TEST(PlaneLens, EndsWhereItIsStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto scene = simulate_sights({}, 1);
+  const auto found = lens_from_planes(
+      {scene.plane}, {}, guess_of(SimulatedSights{}.camera), {}, {}, stop.get_token());
+  EXPECT_TRUE(found.stopped);
+  EXPECT_FALSE(found.ok);
+}
+
+}  // namespace
+}  // namespace gpo

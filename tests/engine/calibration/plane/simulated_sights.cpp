@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/engine/calibration/plane/simulated_sights.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace gpo {
+namespace {
+
+/// A smooth way of a hand: harmonics of seeded amplitudes and phases, within -1 to 1.
+class Wander {
+ public:
+  explicit Wander(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int k = 0; k < 3; ++k) {
+      amplitude_[k] = (0.4 + 0.6 * uniform(random)) / (k + 1.0);
+      phase_[k] = 2 * std::numbers::pi * uniform(random);
+      frequency_[k] = (k + 0.5 + uniform(random));
+    }
+  }
+  double operator()(double t) const {
+    double sum = 0;
+    double all = 0;
+    for (int k = 0; k < 3; ++k) {
+      sum += amplitude_[k] * std::sin(2 * std::numbers::pi * frequency_[k] * t + phase_[k]);
+      all += amplitude_[k];
+    }
+    return sum / all;
+  }
+
+ private:
+  double amplitude_[3];
+  double phase_[3];
+  double frequency_[3];
+};
+
+}  // namespace
+
+SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::normal_distribution<double> normal(0, 1);
+  const Camera& camera = options.camera;
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, options.points);
+  Eigen::Matrix2Xd offsets(2, options.points);
+  for (int j = 0; j < options.points; ++j) {
+    points.col(j).head<2>() << 1.5 * uniform(random), 1.5 * uniform(random);
+    offsets.col(j) << options.track_noise_px * normal(random),
+        options.track_noise_px * normal(random);
+  }
+  const Wander slant_x(random), slant_y(random), roll(random), x(random), y(random), z(random);
+  SimulatedScene scene;
+  scene.plane.points = options.points;
+  for (int i = 0; i < options.pictures; ++i) {
+    const double t = static_cast<double>(i) / options.pictures;
+    const double slant = radians(options.slant_deg);
+    // Looks along +z from z < 0; the shared tilt leans the camera, its own slants come on top.
+    const Eigen::Matrix3d R_wc =
+        so3_exp({radians(options.kept_tilt_deg) + slant * slant_x(t), slant * slant_y(t), 0}) *
+        so3_exp({0, 0, 0.4 * roll(t)});
+    const Eigen::Vector3d looked_at(options.moves_m * x(t), options.moves_m * y(t), 0);
+    const Pose pose{R_wc, looked_at - (1 + 0.3 * options.moves_m * z(t)) * R_wc.col(2)};
+    PlaneSight sight{4 * i, {}, {}};
+    std::vector<Eigen::Vector2d> seen;
+    for (int j = 0; j < options.points; ++j) {
+      const Eigen::Vector3d p = to_camera(pose, points.col(j));
+      if (p.z() < 0.05) continue;
+      Eigen::Vector2d px = project(camera, p);
+      if (!px.allFinite()) continue;
+      px += offsets.col(j) + options.noise_px * Eigen::Vector2d(normal(random), normal(random));
+      if (uniform(random) > 1 - 2 * options.outliers)
+        px += 20 * Eigen::Vector2d(uniform(random), uniform(random));
+      if (px.minCoeff() < 0 || px.x() > camera.width - 1 || px.y() > camera.height - 1) continue;
+      sight.points.push_back(j);
+      seen.push_back(px);
+    }
+    sight.raw_px.resize(2, std::ssize(seen));
+    for (std::size_t k = 0; k < seen.size(); ++k) sight.raw_px.col(k) = seen[k];
+    scene.plane.sights.push_back(std::move(sight));
+    scene.poses.push_back(pose);
+  }
+  return scene;
+}
+
+}  // namespace gpo

@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/calibration/plane/plane_sights.h"
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace gpo {
+
+/// Pictures of points on z = 0 within 1.5 m, from about 1 m.
+struct SimulatedSights {
+  Camera camera = {640, 480, 560, 565, 325, 232, Distortion::radial_tangential, {0.05, -0.1}};
+  int points = 300;
+  int pictures = 40;
+  double slant_deg = 35;     ///< of the plane's normal to the optical axis, at most
+  double kept_tilt_deg = 0;  ///< a slant that all pictures share
+  double moves_m = 0.5;      ///< sideways, at most
+  double noise_px = 0.3;
+  double track_noise_px = 0;  ///< the same in all pictures of a point
+  double outliers = 0;        ///< share of the observations, up to 20 px off
+};
+
+struct SimulatedScene {
+  SightedPlane plane;
+  std::vector<Pose> poses;  ///< of the sights' cameras
+};
+
+SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t seed);
+
+}  // namespace gpo
