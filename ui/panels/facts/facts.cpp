@@ -5,6 +5,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/initializers/methods.h"
 #include "engine/recording/board/board_truth.h"
+#include "engine/recording/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/uncertainty_facts.h"
@@ -178,6 +179,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   facts.push_back(recording.truth   ? "truth"
                   : recording.board ? "truth from the board"
                                     : "no truth");
+  if (camera_source(recording) == CameraSource::guess) facts.emplace_back("camera: a guess");
   return facts;
 }
 
