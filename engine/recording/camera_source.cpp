@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/camera_source.h"
 
+#include "engine/geometry/camera_guess.h"
+
 #include <algorithm>
 #include <string_view>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -25,6 +29,14 @@ void set_camera(Recording& recording,
   if (source == CameraSource::file) return;
   const std::string_view what = source == CameraSource::guess ? kGuess : kSelfCalibrated;
   recording.notes.insert(recording.notes.begin(), std::string(what) + " (" + detail + ")");
+}
+
+void guess_camera(Recording& recording) {
+  set_camera(recording,
+             camera_of_view(recording.camera.width, recording.camera.height),
+             CameraSource::guess,
+             fmt::format("{:.0f} degrees along the picture's diagonal; `calibrate` finds it",
+                         kUsualView_deg));
 }
 
 }  // namespace gpo

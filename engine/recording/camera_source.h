@@ -15,4 +15,7 @@ void set_camera(Recording& recording,
                 CameraSource source,
                 const std::string& detail);
 
+/// A guess from the size of its pictures, which is known.
+void guess_camera(Recording& recording);
+
 }  // namespace gpo

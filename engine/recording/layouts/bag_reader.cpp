@@ -8,6 +8,7 @@
 #include "engine/recording/bags/bag_picture.h"
 #include "engine/recording/bags/frame_tree.h"
 #include "engine/recording/bags/open_bag.h"
+#include "engine/recording/camera_source.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/camera_info.h"
 #include "engine/recording/layouts/imu_file.h"
@@ -79,10 +80,10 @@ std::shared_ptr<const FrameCache> pictures_of(const OpenedBag& opened,
 }
 
 /// A camera.yaml beside the bag was put there to be used; else what the bag says; else whatever
-/// calibration lies beside it.
-Calibration calibration_of(const OpenedBag& opened,
-                           const fs::path& folder,
-                           std::vector<std::string>& notes) {
+/// calibration lies beside it; nothing where none does.
+std::optional<Calibration> calibration_of(const OpenedBag& opened,
+                                          const fs::path& folder,
+                                          std::vector<std::string>& notes) {
   const auto& info = opened.contents.camera_info;
   const bool calibrated = info && is_calibrated(*info);
   if (const auto file = if_file(folder / "camera.yaml")) {
@@ -92,7 +93,10 @@ Calibration calibration_of(const OpenedBag& opened,
     }
     return read_calibration(*file);
   }
-  if (!calibrated) return read_calibration(calibration_in(folder));
+  if (!calibrated) {
+    const auto beside = find_calibration(folder);
+    return beside ? std::optional(read_calibration(*beside)) : std::nullopt;
+  }
   Calibration calibration;
   calibration.camera = camera_of(*info, opened.name(TopicRole::camera_info));
   return calibration;
@@ -211,10 +215,12 @@ Recording read_bag(const fs::path& path,
   Recording recording;
   for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
     recording.notes.insert(recording.notes.end(), notes->begin(), notes->end());
-  const Calibration calibration = calibration_of(opened, folder, recording.notes);
+  const auto found = calibration_of(opened, folder, recording.notes);
+  const Calibration calibration = found.value_or(Calibration{});
   recording.camera = calibration.camera;
   recording.timestamps_ns = opened.contents.picture_times_ns;
   recording.pictures = pictures_of(opened, recording.camera, cache_bytes);
+  if (!found) guess_camera(recording);
   recording.picture_files = {opened.bag->file};
   if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
   add_gyroscope(recording, opened, calibration, folder);

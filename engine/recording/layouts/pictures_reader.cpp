@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/geometry/camera_guess.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/layouts/bag_reader.h"
 #include "engine/recording/layouts/calibration_file.h"
@@ -229,11 +228,7 @@ Recording read_pictures(const fs::path& path,
     add_picture_files(recording, std::move(files), cache_bytes);
   }
   if (!found) {
-    set_camera(recording,
-               camera_of_view(recording.camera.width, recording.camera.height),
-               CameraSource::guess,
-               fmt::format("{:.0f} degrees along the picture's diagonal; `calibrate` finds it",
-                           kUsualView_deg));
+    guess_camera(recording);
   } else if (calibration.self_calibrated) {
     set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }

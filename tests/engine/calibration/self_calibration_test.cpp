@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-const Camera kCamera{
+const Camera kFilmingCamera{
     320, 240, 290, 291, 164, 117, Distortion::radial_tangential, {0.05, -0.1, 0, 0}};
 
 /// A hand-held camera around 1 m above z = 0, which leans by up to `lean_deg` in all directions.
@@ -38,41 +38,43 @@ Pose pose_at(double t, double lean_deg) {
 /// Pictures of a texture on z = 0, in closed form.
 FrameCache pictures_of(int count, double lean_deg) {
   const auto rays = std::make_shared<std::vector<Vector3d>>();
-  for (int v = 0; v < kCamera.height; ++v)
-    for (int u = 0; u < kCamera.width; ++u)
-      rays->push_back(intrinsic_matrix(kCamera).inverse() *
-                      undistort(kCamera, Vector2d(u, v)).homogeneous());
-  return {count, [=](int i) {
-            const Pose pose = pose_at(i / 30.0, lean_deg);
-            const auto place = [&](const Vector2d& px) -> Vector2d {
-              const Vector3d ray =
-                  pose.R_wc *
-                  (*rays)[static_cast<int>(px.y()) * kCamera.width + static_cast<int>(px.x())];
-              // A texel is a pixel where the camera looks straight at the plane.
-              return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
-            };
-            cv::Mat bgr;
-            cv::cvtColor(
-                test::picture_of({kCamera.width, kCamera.height}, place), bgr, cv::COLOR_GRAY2BGR);
-            return bgr;
-          }};
+  for (int v = 0; v < kFilmingCamera.height; ++v)
+    for (int u = 0; u < kFilmingCamera.width; ++u)
+      rays->push_back(intrinsic_matrix(kFilmingCamera).inverse() *
+                      undistort(kFilmingCamera, Vector2d(u, v)).homogeneous());
+  return {
+      count, [=](int i) {
+        const Pose pose = pose_at(i / 30.0, lean_deg);
+        const auto place = [&](const Vector2d& px) -> Vector2d {
+          const Vector3d ray =
+              pose.R_wc *
+              (*rays)[static_cast<int>(px.y()) * kFilmingCamera.width + static_cast<int>(px.x())];
+          // A texel is a pixel where the camera looks straight at the plane.
+          return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
+        };
+        cv::Mat bgr;
+        cv::cvtColor(test::picture_of({kFilmingCamera.width, kFilmingCamera.height}, place),
+                     bgr,
+                     cv::COLOR_GRAY2BGR);
+        return bgr;
+      }};
 }
 
 TEST(SelfCalibration, FindsTheCameraOfPicturesOfAPlane) {
   const FrameCache pictures = pictures_of(60, 25);
   std::vector<std::string> told;
-  const auto found = calibrate_from_plane(pictures,
-                                          camera_of_view(kCamera.width, kCamera.height),
-                                          nullptr,
-                                          {},
-                                          {},
-                                          [&](const char* what, int, int) {
-                                            if (told.empty() || told.back() != what)
-                                              told.emplace_back(what);
-                                          });
+  const auto found =
+      calibrate_from_plane(pictures,
+                           camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
+                           nullptr,
+                           {},
+                           {},
+                           [&](const char* what, int, int) {
+                             if (told.empty() || told.back() != what) told.emplace_back(what);
+                           });
   ASSERT_TRUE(found.lens.ok) << found.lens.reason;
-  EXPECT_NEAR(found.lens.camera.fx, kCamera.fx, 0.01 * kCamera.fx) << to_text(found);
-  EXPECT_LT(std::abs(found.lens.camera.fx - kCamera.fx), 3 * found.lens.camera.sigmas[0])
+  EXPECT_NEAR(found.lens.camera.fx, kFilmingCamera.fx, 0.01 * kFilmingCamera.fx) << to_text(found);
+  EXPECT_LT(std::abs(found.lens.camera.fx - kFilmingCamera.fx), 3 * found.lens.camera.sigmas[0])
       << to_text(found);
   EXPECT_THAT(told,
               testing::ElementsAre("following a plane", "finding its points again", "the lens"));
@@ -87,7 +89,8 @@ TEST(SelfCalibration, FindsTheCameraOfPicturesOfAPlane) {
 
 TEST(SelfCalibration, RefusesWhereTheCameraKeepsItsTilt) {
   const FrameCache pictures = pictures_of(40, 1);
-  const auto found = calibrate_from_plane(pictures, camera_of_view(kCamera.width, kCamera.height));
+  const auto found =
+      calibrate_from_plane(pictures, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
   EXPECT_FALSE(found.lens.ok);
   EXPECT_THAT(found.lens.reason, testing::HasSubstr("keeps its tilt to the plane"));
 }

@@ -179,7 +179,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   facts.push_back(recording.truth   ? "truth"
                   : recording.board ? "truth from the board"
                                     : "no truth");
-  if (camera_source(recording) == CameraSource::guess) facts.emplace_back("camera: a guess");
+  if (recording.camera_source == CameraSource::guess) facts.emplace_back("camera: a guess");
   return facts;
 }
 
