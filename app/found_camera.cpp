@@ -92,8 +92,11 @@ void use_found_camera(Recording& recording, bool calibrates) {
     return;
   }
   write_output(file, to_yaml(found, recording.name));
-  set_camera(
-      recording, found.lens.camera, CameraSource::self_calibrated, "kept in " + file.string());
+  // As it will be read the next time.
+  set_camera(recording,
+             kept_camera(file).value_or(found.lens.camera),
+             CameraSource::self_calibrated,
+             "kept in " + file.string());
 }
 
 }  // namespace gpo

@@ -143,7 +143,7 @@ TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
   EXPECT_NEAR(found.camera.fx, known.camera.fx, 1e-6);
   const Outcome refused = program(calibrate + "--board 9x6");
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--gyroscope excludes --board"));
+  EXPECT_THAT(refused.err, HasSubstr("--board excludes --gyroscope"));
 }
 
 TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {

@@ -176,7 +176,9 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
         Replaced{"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: found no column"},
         Replaced{"Gyroscope.csv", kZeros, "Gyroscope.csv"},
-        Replaced{"camera_matrix.csv", "1e999,0,1\n", "camera_matrix.csv:1: found \"1e999\""},
+        Replaced{"camera_matrix.csv",
+                 "1,0,1\n0,1e999,1\n0,0,1\n",
+                 "camera_matrix.csv:2: found \"1e999\""},
         Replaced{"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
         Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: found something"}));
 

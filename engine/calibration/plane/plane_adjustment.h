@@ -3,54 +3,17 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_unknowns.h"
 #include "engine/geometry/camera.h"
 
-#include <array>
-#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
-/// The unknowns of a lens, each of the order of 1: log(f / width), log(fy / fx), the principal
-/// point from the picture's middle [widths], k1, k2, p1, p2. f is the geometric mean of fx and fy.
-inline constexpr int kLensUnknowns = 8;
-using LensVector = Eigen::Matrix<double, kLensUnknowns, 1>;
-inline constexpr std::array<const char*, kLensUnknowns> kLensNames = {
-    "f", "fy/fx", "cx", "cy", "k1", "k2", "p1", "p2"};
-
-/// What is known of a lens before anything was seen, Gaussian.
-struct LensPrior {
-  LensVector mean = {-0.1, 0, 0, 0, 0, 0, 0, 0};
-  LensVector sigma = {1.0, 0.01, 0.04, 0.04, 0.3, 0.5, 0.003, 0.003};
-};
-
 Camera camera_of(const LensVector& lens, int width, int height);
 LensVector lens_of(const Camera& camera);
-
-/// A plane as it is adjusted: its points (x, y, 0), and a pose for each of its sights,
-/// x_c = exp(w) X + t, as (w, t).
-struct AdjustedPlane {
-  Eigen::Matrix2Xd points;
-  std::vector<Eigen::Matrix<double, 6, 1>> poses;
-};
-
-struct Adjustment {
-  LensVector lens = LensVector::Zero();
-  std::vector<AdjustedPlane> planes;
-  Eigen::Vector3d bias_change_rad_s = Eigen::Vector3d::Zero();  ///< of the gyroscope
-  double cost = 0;  ///< 1/2 sum of squares, by the loss [px^2]
-  bool usable = false;
-};
-
-struct AdjustmentOptions {
-  double knee_px = 1;   ///< of Huber's loss, on the length of an error [px]
-  double prior_px = 1;  ///< so many pixels of an error weigh as one sigma of a prior
-  int most_iterations = 40;
-  bool holds_distortion = false;  ///< its coefficients stay as they are
-  std::stop_token stop = {};
-};
 
 /// Least squares over the lens, all points and all poses (engine/method.md, 19). Of each plane two
 /// points are held, which is the gauge.

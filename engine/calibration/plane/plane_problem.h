@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/plane/plane_adjustment.h"
+#include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_unknowns.h"
 
 #include <memory>
 #include <vector>

@@ -40,7 +40,7 @@ std::string rotations_text(const Inspection& inspection) {
                          : "estimated from the window");
 }
 
-std::string uncertainty_text(const Initialization& result) {
+std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
   if (result.uncertainty) {
     text +=
@@ -52,7 +52,8 @@ std::string uncertainty_text(const Initialization& result) {
                             : to_string(result.uncertainty->rotations),
                         result.uncertainty->lens_sigma_deg
                             ? fmt::format("{:.3f} deg of it", *result.uncertainty->lens_sigma_deg)
-                            : "taken as exact"));
+                        : source == CameraSource::guess ? "a guess, taken as exact"
+                                                        : "taken as exact"));
   }
   if (result.bias_rad_s) {
     const Eigen::Vector3d& b = *result.bias_rad_s;
@@ -139,8 +140,8 @@ std::string to_text(const Inspection& inspection) {
         row("normal",
             fmt::format(
                 "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
-        uncertainty_text(result) + row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) +
-        solver_text(result.solver);
+        uncertainty_text(result, inspection.recording->camera_source) +
+        row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) + solver_text(result.solver);
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
