@@ -180,6 +180,8 @@ std::vector<std::string> recording_facts(const Recording& recording) {
                   : recording.board ? "truth from the board"
                                     : "no truth");
   if (recording.camera_source == CameraSource::guess) facts.emplace_back("camera: a guess");
+  if (recording.camera_source == CameraSource::self_calibrated)
+    facts.emplace_back("camera: self-calibrated");
   return facts;
 }
 
