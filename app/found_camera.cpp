@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,34 @@ std::optional<Camera> kept_camera(const fs::path& file) {
   }
 }
 
+SelfCalibration calibrate(const Recording& recording,
+                          const CalibrationProgress& progress,
+                          const std::stop_token& stop) {
+  // Without its axes a gyroscope tells nothing of the camera.
+  const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
+  return calibrate_from_plane(*recording.pictures,
+                              camera_of_view(recording.camera.width, recording.camera.height),
+                              with_gyroscope ? &*recording.gyroscope : nullptr,
+                              recording.timestamps_ns,
+                              {},
+                              progress,
+                              stop);
+}
+
+/// Keeps what was found, and gives it to the recording as it will be read the next time.
+void keep(const SelfCalibration& found, Recording& recording) {
+  const fs::path file = kept_file(recording);
+  write_output(file, to_yaml(found, recording.name));
+  set_camera(recording,
+             kept_camera(file).value_or(found.lens.camera),
+             CameraSource::self_calibrated,
+             "kept in " + file.string());
+}
+
+std::string why_not(const SelfCalibration& found) {
+  return "calibration from the plane failed: " + found.lens.reason;
+}
+
 }  // namespace
 
 SelfCalibration self_calibrate(const Recording& recording) {
@@ -63,19 +92,21 @@ SelfCalibration self_calibrate(const Recording& recording) {
     shown = what;
     bar->show(done, of);
   };
-  // Without its axes a gyroscope tells nothing of the camera.
-  const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
-  SelfCalibration found =
-      calibrate_from_plane(*recording.pictures,
-                           camera_of_view(recording.camera.width, recording.camera.height),
-                           with_gyroscope ? &*recording.gyroscope : nullptr,
-                           recording.timestamps_ns,
-                           {},
-                           progress,
-                           interrupt.token());
+  SelfCalibration found = calibrate(recording, progress, interrupt.token());
   bar.reset();
   interrupt.check("nothing was written");
   return found;
+}
+
+std::shared_ptr<const Recording> self_calibrated(const Recording& recording,
+                                                 const std::stop_token& stop,
+                                                 const CalibrationProgress& progress) {
+  const SelfCalibration found = calibrate(recording, progress, stop);
+  if (stop.stop_requested()) return nullptr;
+  if (!found.lens.ok) throw InputError(why_not(found));
+  Recording calibrated = recording;
+  keep(found, calibrated);
+  return std::make_shared<const Recording>(std::move(calibrated));
 }
 
 void use_found_camera(Recording& recording, bool calibrates) {
@@ -87,16 +118,10 @@ void use_found_camera(Recording& recording, bool calibrates) {
   }
   if (!calibrates) return;
   const SelfCalibration found = self_calibrate(recording);
-  if (!found.lens.ok) {
-    recording.notes.push_back("calibration from the plane failed: " + found.lens.reason);
-    return;
-  }
-  write_output(file, to_yaml(found, recording.name));
-  // As it will be read the next time.
-  set_camera(recording,
-             kept_camera(file).value_or(found.lens.camera),
-             CameraSource::self_calibrated,
-             "kept in " + file.string());
+  if (found.lens.ok)
+    keep(found, recording);
+  else
+    recording.notes.push_back(why_not(found));
 }
 
 }  // namespace gpo

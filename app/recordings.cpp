@@ -54,6 +54,15 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   return made;
 }
 
+Worker::Opened opened_for_window(std::shared_ptr<const Recording> recording) {
+  Worker::Opened opened = Worker::with_inspector(recording);
+  opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
+    auto calibrated = self_calibrated(*recording, stop, progress);
+    return calibrated ? opened_for_window(std::move(calibrated)) : Worker::Opened{};
+  };
+  return opened;
+}
+
 }  // namespace
 
 std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
@@ -83,14 +92,11 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
 }
 
 std::function<Worker::Opened(const fs::path&)> opener_for_window(
-    std::size_t cache_mib,
-    bool calibrates,
-    const std::optional<fs::path>& recording,
-    const TopicChoices& topics) {
+    std::size_t cache_mib, const std::optional<fs::path>& recording, const TopicChoices& topics) {
   return [=](const fs::path& path) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
-    return Worker::with_inspector(open_given(path, options, calibrates));
+    return opened_for_window(open_given(path, options));
   };
 }
 

@@ -40,14 +40,12 @@ int script_command(const std::filesystem::path& script,
   OffscreenContext context(size.width, size.height);
   Gui gui;
   WorkbenchHost host(gui,
-                     opener_for_window(arguments.cache_mib,
-                                       arguments.calibrate == "auto",
-                                       arguments.recording,
-                                       arguments.topics),
+                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
                      example_recording());
   host.timings = false;
   host.size = size;
   host.state.settings = arguments.settings;
+  host.link.calibrates = arguments.calibrate == "auto";
   if (!arguments.recording.empty()) host.state.wishes.open = arguments.recording;
   run(host, context, "");
   for (const ScriptLine& line : lines) {

@@ -41,10 +41,7 @@ struct Session {
   WindowInput input{window.glfw()};
   Gui gui{window};
   WorkbenchHost host{gui,
-                     opener_for_window(arguments.cache_mib,
-                                       arguments.calibrate == "auto",
-                                       arguments.recording,
-                                       arguments.topics),
+                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
                      example_recording(),
                      [] { glfwPostEmptyEvent(); }};
   std::deque<ScriptLine> script;
@@ -139,6 +136,7 @@ int view_command(const ViewArguments& arguments) {
   Session session(arguments);
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
+  session.host.link.calibrates = calibrate == "auto";
   session.host.state.recent = recent_files();
   session.host.state.has_last_session = std::filesystem::exists(last_session_file());
   session.host.state.settings = settings;

@@ -54,6 +54,18 @@ void Worker::open(const std::filesystem::path& path) {
   const std::lock_guard lock(mutex_);
   running_.request_stop();
   next_path_ = path;
+  next_calibration_ = false;
+  next_settings_.reset();
+  opening_ = true;
+  status_ = {};
+  wake_.notify_one();
+}
+
+void Worker::calibrate() {
+  const std::lock_guard lock(mutex_);
+  if (!published_.recording || next_path_) return;
+  running_.request_stop();
+  next_calibration_ = true;
   next_settings_.reset();
   opening_ = true;
   status_ = {};
@@ -73,6 +85,7 @@ void Worker::cancel() {
   const std::lock_guard lock(mutex_);
   running_.request_stop();
   next_path_.reset();
+  next_calibration_ = false;
   next_settings_.reset();
   opening_ = false;
   status_ = {false, "", 0, 0, status_.error};
@@ -81,7 +94,7 @@ void Worker::cancel() {
 WorkerStatus Worker::status() const {
   const std::lock_guard lock(mutex_);
   WorkerStatus status = status_;
-  status.busy = active_ || next_path_ || next_settings_;
+  status.busy = active_ || next_path_ || next_calibration_ || next_settings_;
   return status;
 }
 
@@ -93,19 +106,23 @@ Published Worker::latest() const {
 void Worker::run(const std::stop_token& stop) {
   while (true) {
     std::optional<std::filesystem::path> path;
+    bool calibration = false;
     std::optional<Settings> settings;
     std::stop_token request_stop;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return next_path_ || next_settings_; })) return;
+      const auto asked = [this] { return next_path_ || next_calibration_ || next_settings_; };
+      if (!wake_.wait(lock, stop, asked)) return;
       path = std::exchange(next_path_, {});
-      if (!path) settings = std::exchange(next_settings_, {});
+      if (!path) calibration = std::exchange(next_calibration_, false);
+      if (!path && !calibration) settings = std::exchange(next_settings_, {});
       running_ = std::stop_source();
       request_stop = running_.get_token();
       active_ = true;
     }
     const std::string error = error_of([&] {
       if (path) return do_open(*path, request_stop);
+      if (calibration) return do_calibrate(request_stop);
       do_inspect(*settings, request_stop);
     });
     finish(error, request_stop);
@@ -114,10 +131,23 @@ void Worker::run(const std::stop_token& stop) {
 
 void Worker::do_open(const std::filesystem::path& path, const std::stop_token& stop) {
   report("opening", 0, 0, stop);
-  Opened opened = open_(path);
+  publish(open_(path), stop);
+}
+
+void Worker::do_calibrate(const std::stop_token& stop) {
+  if (!calibrate_) return;
+  const Progress progress = [&](const std::string& stage, int done, int of) {
+    report("calibrating: " + stage, done, of, stop);
+  };
+  progress("opening the pictures", 0, 0);
+  publish(calibrate_(stop, progress), stop);
+}
+
+void Worker::publish(Opened opened, const std::stop_token& stop) {
   const std::lock_guard lock(mutex_);
   if (stop.stop_requested()) return;
   inspect_ = std::move(opened.inspect);
+  calibrate_ = std::move(opened.calibrate);
   published_ = {std::move(opened.recording), nullptr, published_.generation + 1};
   next_settings_.reset();
 }

@@ -41,9 +41,14 @@ class Worker {
  public:
   using Inspect = std::function<std::shared_ptr<const Inspection>(
       const Settings&, std::stop_token, const Progress&)>;
+  struct Opened;
+  /// The same recording with a camera that was found in its pictures; without a recording where it
+  /// was stopped. Throws InputError with the reason where there is none to be found.
+  using Calibrate = std::function<Opened(const std::stop_token&, const Progress&)>;
   struct Opened {
     std::shared_ptr<const Recording> recording;
     Inspect inspect;
+    Calibrate calibrate = {};  ///< null: nobody can
   };
   /// Runs on the worker; may throw.
   using Open = std::function<Opened(const std::filesystem::path&)>;
@@ -56,6 +61,9 @@ class Worker {
 
   /// Opens a recording and publishes it; the last one stays where it cannot be opened.
   void open(const std::filesystem::path& path);
+  /// Publishes the open recording with a camera that is found in its pictures. Ignored where nobody
+  /// can find one.
+  void calibrate();
   /// Inspects the open recording. Ignored while there is none, and forgotten where a recording that
   /// is being opened takes its place.
   void request(const Settings& settings);
@@ -72,7 +80,9 @@ class Worker {
  private:
   void run(const std::stop_token& stop);
   void do_open(const std::filesystem::path& path, const std::stop_token& stop);
+  void do_calibrate(const std::stop_token& stop);
   void do_inspect(const Settings& settings, const std::stop_token& stop);
+  void publish(Opened opened, const std::stop_token& stop);
   void report(const std::string& stage, int done, int of, const std::stop_token& stop);
   void finish(const std::string& error, const std::stop_token& stop);
 
@@ -81,13 +91,15 @@ class Worker {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::optional<std::filesystem::path> next_path_;
+  bool next_calibration_ = false;
   std::optional<Settings> next_settings_;
   std::stop_source running_;
   bool active_ = false;   ///< the thread is at work on a request
-  bool opening_ = false;  ///< ... or will be, and that request opens a recording
+  bool opening_ = false;  ///< ... or will be, and that request publishes another recording
   WorkerStatus status_;   ///< `busy` aside
   Published published_;
   Inspect inspect_;      ///< of the open recording; touched by the worker's thread alone
+  Calibrate calibrate_;  ///< likewise
   std::jthread thread_;  ///< last: it starts when all the others exist
 };
 

@@ -69,6 +69,7 @@ struct Wishes {
   bool cancel = false;   ///< what the worker does
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
+  bool calibrate = false;                     ///< the camera, from a plane in the pictures
   std::optional<std::filesystem::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieWish> movie;

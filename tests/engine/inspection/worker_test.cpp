@@ -28,10 +28,20 @@ class WorkerTest : public testing::Test {
     if (path == "bug") throw std::runtime_error("a bug");
     auto recording = std::make_shared<Recording>();
     recording->name = path.string();
-    return {recording,
-            [this](const Settings& settings, const std::stop_token& stop, const Progress& say) {
-              return compute(settings, stop, say);
-            }};
+    return {
+        recording,
+        [this](const Settings& settings, const std::stop_token& stop, const Progress& say) {
+          return compute(settings, stop, say);
+        },
+        [this](const std::stop_token& stop, const Progress& say) { return calibrate(stop, say); }};
+  }
+
+  Worker::Opened calibrate(const std::stop_token& stop, const Progress& progress) {
+    progress("following a plane", 1, 8);
+    begun_.release();
+    while (hold_ && !let_go_ && !stop.stop_requested()) std::this_thread::yield();
+    if (calibration_fails_) throw InputError("the motion cannot tell");
+    return stop.stop_requested() ? Worker::Opened{} : open("calibrated");
   }
 
   std::shared_ptr<const Inspection> compute(const Settings& settings,
@@ -62,6 +72,7 @@ class WorkerTest : public testing::Test {
 
   std::atomic<bool> hold_ = false;
   std::atomic<bool> let_go_ = false;
+  std::atomic<bool> calibration_fails_ = false;
   std::counting_semaphore<> begun_{0};
   std::vector<int> started_;  ///< touched by the worker's thread; read when it is idle
 };
@@ -204,6 +215,57 @@ TEST_F(WorkerTest, CanBeDestroyedWhileItWorks) {
     begun_.acquire();
   }
   EXPECT_THAT(started_, ElementsAre(1));
+}
+
+TEST_F(WorkerTest, PublishesTheRecordingWithTheCameraThatItFinds) {
+  Worker worker(opener());
+  worker.calibrate();
+  EXPECT_FALSE(worker.status().busy) << "nothing is open";
+  open_and_wait(worker);
+  worker.calibrate();
+  wait_until_idle(worker);
+  EXPECT_EQ(worker.latest().recording->name, "calibrated");
+  worker.request(start_at(2));
+  wait_until_idle(worker);
+  EXPECT_EQ(worker.latest().inspection->settings.start, 2);
+}
+
+TEST_F(WorkerTest, ACalibrationTellsHowFarItIsAndCanBeCanceled) {
+  Worker worker(opener());
+  open_and_wait(worker);
+  hold_ = true;
+  worker.calibrate();
+  begun_.acquire();
+  EXPECT_EQ(worker.status().stage, "calibrating: following a plane");
+  EXPECT_EQ(worker.status().of, 8);
+  worker.cancel();
+  wait_until_idle(worker);
+  EXPECT_EQ(worker.latest().recording->name, "desk");
+  EXPECT_EQ(worker.status().error, "");
+}
+
+TEST_F(WorkerTest, WhereNoCameraIsFoundTheOldOneComputesWhatWasAskedForMeanwhile) {
+  Worker worker(opener());
+  open_and_wait(worker);
+  hold_ = true;
+  calibration_fails_ = true;
+  worker.calibrate();
+  begun_.acquire();
+  worker.request(start_at(3));
+  hold_ = false;
+  wait_until_idle(worker);
+  EXPECT_EQ(worker.latest().recording->name, "desk");
+  ASSERT_NE(worker.latest().inspection, nullptr);
+  EXPECT_EQ(worker.latest().inspection->settings.start, 3);
+}
+
+TEST_F(WorkerTest, TellsWhyThereIsNoCamera) {
+  Worker worker(opener());
+  open_and_wait(worker);
+  calibration_fails_ = true;
+  worker.calibrate();
+  wait_until_idle(worker);
+  EXPECT_EQ(worker.status().error, "the motion cannot tell");
 }
 
 }  // namespace

@@ -41,6 +41,18 @@ void draw_facts(const Recording& recording, float scale) {
   tooltip(all);
 }
 
+/// Where the camera is a guess, to the left of the facts: what to do about it.
+void calibrate_button(const PanelInput& input, Commands& commands) {
+  const Recording& recording = *input.state.recording;
+  const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
+  if (recording.camera_source != CameraSource::guess || !recording.pictures || calibrating) return;
+  const Action& action = action_named("calibrate");
+  ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
+  if (ImGui::SmallButton(action.title.c_str())) push(commands, RunAction{action.name});
+  ImGui::PopStyleColor();
+  tooltip("The camera is a guess. " + action.tooltip);
+}
+
 }  // namespace
 
 void menu_bar(const PanelInput& input, Commands& commands) {
@@ -56,6 +68,7 @@ void menu_bar(const PanelInput& input, Commands& commands) {
     }
     ImGui::EndMenu();
   }
+  if (input.state.recording) calibrate_button(input, commands);
   if (input.state.recording) draw_facts(*input.state.recording, input.scale);
   ImGui::EndMainMenuBar();
 }

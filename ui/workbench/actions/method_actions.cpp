@@ -107,6 +107,14 @@ void add_settings(std::vector<Action>& table) {
   for (Action& action : settings_by_name()) table.push_back(std::move(action));
 }
 
+/// A camera that a file tells is not to be replaced by one that is found in the pictures.
+void wish_calibration(State& s) {
+  if (!s.recording->pictures) throw InputError("calibrate: the recording has no pictures");
+  if (s.recording->camera_source == CameraSource::file)
+    throw InputError("calibrate: the camera comes from a file and stays");
+  s.wishes.calibrate = true;
+}
+
 }  // namespace
 
 void add_method_actions(std::vector<Action>& table) {
@@ -118,6 +126,13 @@ void add_method_actions(std::vector<Action>& table) {
                         {key(GLFW_KEY_F5, "F5")},
                         "Computes with the same settings, say after Esc",
                         [](State& s) { s.wishes.compute = true; }));
+  table.push_back(plain("calibrate",
+                        "Calibrate from the plane",
+                        "Method",
+                        {},
+                        "Finds the camera in the pictures of a recording that has no calibration "
+                        "(some 30 s) and keeps it for the next time",
+                        wish_calibration));
 }
 
 }  // namespace gpo

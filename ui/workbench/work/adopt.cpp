@@ -11,6 +11,10 @@
 namespace gpo {
 
 void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
+  // The same pictures with another camera: what was found in them is still there.
+  const bool same =
+      state.recording && recording->pictures && state.recording->pictures == recording->pictures;
+  const int frame = state.frame;
   state.recording = std::move(recording);
   state.inspection.reset();
   state.surveyed = std::make_shared<const SurveyResults>();
@@ -18,7 +22,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.selection = {};
   state.hover = {};
   state.cube_ray.reset();
-  state.bookmarks.clear();
+  if (!same) state.bookmarks.clear();
   state.settings.exclude.clear();
   state.undo.clear();
   state.redo.clear();
@@ -42,6 +46,7 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   state.settings = fitting;
   state.time_span = first_time_span(fitting, state.frame_count());
   state.frame = std::max(0, fitting.start + std::min(fitting.frames, state.frame_count()) - 1);
+  if (same) state.frame = frame;
   if (const auto session = std::exchange(state.waiting_session, {}))
     continue_session(state, *session);
 }

@@ -8,7 +8,8 @@
 
 namespace gpo {
 
-/// Takes a recording that was opened: fits the window into it and shows the window's last frame.
+/// Takes a recording that was opened: fits the window into it and shows the window's last frame; or
+/// the one that is open with another camera: frame and bookmarks stay.
 void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording);
 
 }  // namespace gpo

@@ -54,6 +54,14 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   return opened;
 }
 
+/// Whether a camera is to be found, because the user wants it or wants it for all that is opened.
+bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
+  const bool wished = std::exchange(state.wishes.calibrate, false);
+  const bool guessed = state.recording && state.recording->pictures &&
+                       state.recording->camera_source == CameraSource::guess;
+  return wished || (opened && link.calibrates && guessed);
+}
+
 /// Whose normals the open pane shows; null: none does.
 std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
   return needs_of(state.panes).study ? state.inspection : nullptr;
@@ -111,16 +119,21 @@ void synchronize(WorkbenchState& state,
   const bool opened = receive(state, link, worker, survey);
   const bool open_example = std::exchange(state.wishes.open_example, false);
   const auto open = std::exchange(state.wishes.open, {});
+  const bool calibrate = wants_calibration(state, link, opened);
   const bool again = std::exchange(state.wishes.compute, false);
   if (std::exchange(state.wishes.cancel, false) && link.busy()) {
     worker.cancel();
     link.survey_canceled = true;
-    say(state, "canceled; F5 computes again");
+    say(state,
+        std::exchange(link.calibrating, false) ? "the calibration was canceled; nothing was kept"
+                                               : "canceled; F5 computes again");
   }
   const bool compute = state.recording && (opened || again || state.settings != link.requested);
   if (open_example) worker.open(example);
   const bool opening = open && open_path(state, worker, *open);
   if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
+  if (calibrate) worker.calibrate();
+  link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {
     worker.request(state.settings);
     link.requested = state.settings;
@@ -130,7 +143,7 @@ void synchronize(WorkbenchState& state,
   survey.study(link.survey_canceled ? nullptr : to_study(state));
   link.survey = survey.status();
   // Busy until the next call has seen what became of it.
-  if (open_example || opening || compute) link.worker = {true, "", 0, 0, ""};
+  if (open_example || opening || calibrate || compute) link.worker = {true, "", 0, 0, ""};
 }
 
 }  // namespace gpo

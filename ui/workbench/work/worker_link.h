@@ -21,6 +21,8 @@ struct WorkerLink {
   std::string error;              ///< the worker's last one that was said
   std::filesystem::path opening;  ///< what is being opened; remembered once it is open
   bool remembers_files = false;   ///< in the user's list of recent files
+  bool calibrating = false;       ///< until there is a camera, a reason why not, or another wish
+  bool calibrates = false;        ///< whatever is opened with a guessed camera
   bool survey_canceled = false;   ///< until something else is computed
 
   bool busy() const { return worker.busy || survey.busy(); }

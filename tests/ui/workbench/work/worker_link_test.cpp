@@ -32,6 +32,10 @@ class WorkerLinkTest : public testing::Test {
     auto recording = std::make_shared<Recording>();
     recording->name = path.string();
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
+    if (path == "bare.mp4") {
+      recording->camera_source = CameraSource::guess;
+      recording->pictures = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
+    }
     return {recording,
             [this, recording](const Settings& settings, std::stop_token stop, const Progress&) {
               {
@@ -43,6 +47,15 @@ class WorkerLinkTest : public testing::Test {
               inspection->recording = recording;
               inspection->settings = settings;
               return inspection;
+            },
+            [this, recording](const std::stop_token& stop, const Progress&) {
+              while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+              if (stop.stop_requested()) return Worker::Opened{};
+              Worker::Opened opened = open("desk");
+              auto calibrated = std::make_shared<Recording>(*recording);
+              calibrated->camera_source = CameraSource::self_calibrated;
+              opened.recording = calibrated;
+              return opened;
             }};
   }
   void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, "example"); }
@@ -169,6 +182,49 @@ TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
   EXPECT_TRUE(state_.wishes.quit);
   EXPECT_EQ(state_.wishes.screenshots.size(), 1U);
   EXPECT_FALSE(state_.wishes.compute);
+}
+
+TEST_F(WorkerLinkTest, OneClickCalibratesAndKeepsFrameAndBookmarks) {
+  apply(state_, OpenPath{"bare.mp4"});
+  settle();
+  apply(state_, GoToFrame{7});
+  state_.bookmarks = {{7, "here"}};
+  apply(state_, RunAction{"calibrate"});
+  settle();
+  EXPECT_EQ(state_.recording->camera_source, CameraSource::self_calibrated);
+  EXPECT_EQ(state_.frame, 7);
+  EXPECT_THAT(state_.bookmarks, ElementsAre(Bookmark{7, "here"}));
+  ASSERT_NE(state_.inspection, nullptr);
+}
+
+TEST_F(WorkerLinkTest, ACanceledCalibrationLeavesTheGuess) {
+  apply(state_, OpenPath{"bare.mp4"});
+  settle();
+  hold_ = true;
+  apply(state_, RunAction{"calibrate"});
+  synchronize();
+  EXPECT_TRUE(link_.worker.busy);
+  state_.wishes.cancel = true;
+  synchronize();
+  EXPECT_EQ(state_.message, "the calibration was canceled; nothing was kept");
+  hold_ = false;
+  settle();
+  EXPECT_EQ(state_.recording->camera_source, CameraSource::guess);
+}
+
+TEST_F(WorkerLinkTest, CalibratesWhatIsOpenedWithAGuessWhereTheUserWantsIt) {
+  link_.calibrates = true;
+  apply(state_, OpenPath{"bare.mp4"});
+  settle();
+  EXPECT_EQ(state_.recording->camera_source, CameraSource::self_calibrated);
+}
+
+TEST_F(WorkerLinkTest, ACameraFromAFileStays) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  apply(state_, RunAction{"calibrate"});
+  EXPECT_FALSE(state_.wishes.calibrate);
+  EXPECT_THAT(state_.message, testing::HasSubstr("calibrate: the recording has no pictures"));
 }
 
 }  // namespace
