@@ -28,12 +28,12 @@ std::optional<fs::path> any_folder(const fs::path& path) {
 }  // namespace
 
 std::span<const Layout> layouts() {
-  static constexpr std::array<Layout, 5> kLayouts = {
+  static constexpr auto kLayouts = std::to_array<Layout>(
       {{"EuRoC", "cam0/data.csv (EuRoC)", "", find_euroc, has_euroc_pictures, read_euroc},
        {"TUM RGB-D", "rgb.txt (TUM RGB-D)", "rgb.txt", find_tum, always, read_tum},
        {"pictures", "a video or numbered pictures", "", find_pictures, always, read_pictures},
        {"ROS bag", "a bag of ROS (bag, db3, mcap)", "", find_bag, always, nullptr, read_bag},
-       {"tracks", "tracks.csv", "tracks.csv", any_folder, never, read_pictures}}};
+       {"tracks", "tracks.csv", "tracks.csv", any_folder, never, read_pictures}});
   return kLayouts;
 }
 
