@@ -77,6 +77,13 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
   return recent_.front().second;
 }
 
+void ChunkReader::fail_message(std::uint32_t number, std::uint64_t place) const {
+  throw InputError(fmt::format("{}: found no whole message at byte {} of the chunk at {}",
+                               file_->path().string(),
+                               place,
+                               chunks_[number].place));
+}
+
 std::string ChunkReader::read(std::uint32_t number,
                               std::uint64_t place,
                               std::uint64_t count,

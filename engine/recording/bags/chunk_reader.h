@@ -45,6 +45,8 @@ class ChunkReader {
   /// All of one that may be cut or broken, up to there, without keeping it. Throws InputError where
   /// it is whole but has another sum.
   Decompressed contents(std::uint32_t chunk) const;
+  /// Throws the InputError of a message that does not lie there as a whole.
+  [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
   /// From now on it may be cut.
   void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
 

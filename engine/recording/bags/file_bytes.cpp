@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -54,6 +55,13 @@ std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
   }
   bytes.resize(done);
   return bytes;
+}
+
+std::string cut_note(const FileBytes& file, std::uint64_t place) {
+  return fmt::format(
+      "the bag is cut or broken in what begins at byte {} of {}: it is read up to there",
+      place,
+      file.size());
 }
 
 }  // namespace gpo

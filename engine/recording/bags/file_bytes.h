@@ -29,4 +29,7 @@ class FileBytes {
   std::uint64_t size_ = 0;
 };
 
+/// What people are told of a file that is read up to a place only.
+std::string cut_note(const FileBytes& file, std::uint64_t place);
+
 }  // namespace gpo

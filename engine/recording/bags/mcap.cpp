@@ -240,14 +240,10 @@ void scan(Opening& opening) {
   }
   opening.bag.notes.push_back(
       ended ? "the bag has no index of all messages: it was read from its beginning to its end"
-            : fmt::format("the bag is cut or broken in what begins at byte {} of {}: it is read up "
-                          "to there",
-                          place,
-                          opening.file->size()));
+            : cut_note(*opening.file, place));
 }
 
-std::string read_message(const FileBytes& file,
-                         const ChunkReader& chunks,
+std::string read_message(const ChunkReader& chunks,
                          const BagMessage& message,
                          std::uint64_t most_bytes) {
   const bool all = most_bytes == kWholeMessage;
@@ -261,12 +257,8 @@ std::string read_message(const FileBytes& file,
   const std::uint64_t size = fits ? length - kLongestMessageHead : 0;
   if (is_message && fits)
     bytes = chunks.read(message.chunk, message.place + before, std::min(size, most_bytes), all);
-  if (bytes.empty() || (all && bytes.size() < size)) {
-    throw InputError(fmt::format("{}: found no whole message at byte {} of the chunk at {}",
-                                 file.path().string(),
-                                 message.place,
-                                 chunks.chunk(message.chunk).place));
-  }
+  if (bytes.empty() || (all && bytes.size() < size))
+    chunks.fail_message(message.chunk, message.place);
   return bytes;
 }
 
@@ -281,9 +273,9 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
     scan(opening);
   }
   opening.topics.finish();
-  opening.bag.read = [file, chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
+  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
                          const BagMessage& message, std::uint64_t most_bytes) {
-    return read_message(*file, *chunks, message, most_bytes);
+    return read_message(*chunks, message, most_bytes);
   };
   return std::move(opening.bag);
 }

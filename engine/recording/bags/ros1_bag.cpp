@@ -161,14 +161,10 @@ void scan(Opening& opening, std::uint64_t place) {
   const bool whole = place == opening.file->size();
   opening.bag.notes.push_back(
       whole ? "the bag has no index: it was read from its beginning to its end"
-            : fmt::format("the bag is cut or broken in what begins at byte {} of {}: it is read up "
-                          "to there",
-                          place,
-                          opening.file->size()));
+            : cut_note(*opening.file, place));
 }
 
-std::string read_message(const FileBytes& file,
-                         const ChunkReader& chunks,
+std::string read_message(const ChunkReader& chunks,
                          const BagMessage& message,
                          std::uint64_t most_bytes) {
   const bool whole = most_bytes == kWholeMessage;
@@ -180,12 +176,8 @@ std::string read_message(const FileBytes& file,
   std::string bytes;
   if (record && record->is(Ros1Op::message) && size <= kMostMessageBytes)
     bytes = read(record->data_place, std::min(size, most_bytes));
-  if (bytes.empty() || (whole && bytes.size() < size)) {
-    throw InputError(fmt::format("{}: found no whole message at byte {} of the chunk at {}",
-                                 file.path().string(),
-                                 message.place,
-                                 chunks.chunk(message.chunk).place));
-  }
+  if (bytes.empty() || (whole && bytes.size() < size))
+    chunks.fail_message(message.chunk, message.place);
   return bytes;
 }
 
@@ -204,9 +196,9 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
     scan(opening, header->end());
   }
   opening.topics.finish();
-  opening.bag.read = [file, chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
+  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
                          const BagMessage& message, std::uint64_t most_bytes) {
-    return read_message(*file, *chunks, message, most_bytes);
+    return read_message(*chunks, message, most_bytes);
   };
   return std::move(opening.bag);
 }
