@@ -3,6 +3,7 @@
 #include "engine/initializers/plane/plane_translations.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
