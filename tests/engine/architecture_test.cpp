@@ -92,7 +92,7 @@ const Names kPure = {"engine/base/",
                      "engine/truth/",
                      "engine/evaluation/"};
 const Names kLibrariesOfPicturesAndFiles = {
-    "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib", "bzlib", "lz4frame", "zstd", "sqlite3"};
+    "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib", "bzlib", "lz4frame", "zstd", "sqlite3", "exiv2/"};
 /// The engine needs no screen and no command line.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 
