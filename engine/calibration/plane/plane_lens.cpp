@@ -25,11 +25,10 @@ using Planes = std::vector<SightedPlane>;
 using Progress = std::function<void(int done, int of)>;
 
 constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // of f [widths]
-constexpr double kSameStart =
-    0.05;                          // of f; the guess is a start of its own where it is farther away
-constexpr int kNormals = 2;        // that are tried with each
-constexpr int kLeastPictures = 6;  // in all
-constexpr int kRounds = 3;         // of dropping what is far off
+constexpr double kSameStart = 0.05;  // by which the guess differs from one, or is one more [-]
+constexpr int kNormals = 2;          // that are tried with each
+constexpr int kLeastPictures = 6;    // in all
+constexpr int kRounds = 3;           // of dropping what is far off
 constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // of the progress
 constexpr double kFar = 4.5;  // noises, beyond which an observation is dropped
 constexpr double kKnee = 2;   // of Huber's loss, in noises

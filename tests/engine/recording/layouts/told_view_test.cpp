@@ -266,13 +266,12 @@ TEST(GoProSettings, TellTheAngleAlongTheDiagonal) {
 TEST_F(ToldViews, OfAGoProIsThatOfAFisheye) {
   const auto file = video({}, "GX010001.mp4");
   std::string bytes = folder.read("GX010001.mp4");
-  const std::size_t movie = bytes.rfind("moov") - 4;
-  std::string rest = bytes.substr(movie + 4);
-  // At the end of the movie; its length is what is left of the file.
+  // Before the data that FFmpeg adds to the movie, whose length is what is left of the file.
   const std::string added = box("udta", box("GPMF", settings(120, "W")));
-  folder.write("GX010001.mp4",
-               bytes.substr(0, movie) + big_endian({std::ssize(rest) + 4 + std::ssize(added)}, 4) +
-                   rest + added);
+  const std::size_t movie = bytes.rfind("moov") - 4;
+  bytes.insert(bytes.find("udta", movie) - 4, added);
+  bytes.replace(movie, 4, big_endian({std::ssize(bytes) - static_cast<std::ptrdiff_t>(movie)}, 4));
+  folder.write("GX010001.mp4", bytes);
   const auto recording = open_recording(file);
   const Camera& camera = recording->camera;
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
