@@ -7,7 +7,7 @@ build_packages=(
   libglfw3-dev libimgui-dev libstb-dev libglew-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
-  libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev
+  libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libexiv2-dev
 )
 test_packages=(
   libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// To be raised whenever another camera is found in the same pictures.
-constexpr int kAlgorithm = 1;
+constexpr int kAlgorithm = 2;
 
 /// FNV-1a.
 std::uint64_t hash(std::string_view bytes) {
@@ -52,13 +52,21 @@ std::optional<Camera> kept_camera(const fs::path& file) {
   }
 }
 
+/// A guess may rest on what the camera wrote; any other camera is not to be believed here.
+Camera start_of(const Recording& recording) {
+  const Camera& camera = recording.camera;
+  return recording.camera_source == CameraSource::guess
+             ? camera
+             : camera_of_view(camera.width, camera.height);
+}
+
 SelfCalibration calibrate(const Recording& recording,
                           const CalibrationProgress& progress,
                           const std::stop_token& stop) {
   // Without its axes a gyroscope tells nothing of the camera.
   const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
   return calibrate_from_plane(*recording.pictures,
-                              camera_of_view(recording.camera.width, recording.camera.height),
+                              start_of(recording),
                               with_gyroscope ? &*recording.gyroscope : nullptr,
                               recording.timestamps_ns,
                               {},

@@ -10,8 +10,8 @@
 
 namespace gpo {
 
-/// With a progress bar on standard error; from a field of view of 70 degrees, whatever camera the
-/// recording has. Throws Interrupted.
+/// With a progress bar on standard error; from the recording's guess, or a field of view of 70
+/// degrees where it has another camera, which is not to be believed. Throws Interrupted.
 SelfCalibration self_calibrate(const Recording& recording);
 
 /// The recording with the camera that is found in its pictures, which is kept in the user's cache;

@@ -9,7 +9,11 @@ namespace gpo {
 /// What most cameras see along the diagonal of their pictures, where nobody says more [deg].
 inline constexpr double kUsualView_deg = 70;
 
-/// A pinhole camera that sees so much along the diagonal of its pictures, its axis in the middle.
+/// A pinhole camera whose focal length is so many diagonals of its pictures, its axis in the
+/// middle.
+Camera camera_of_focal(int width, int height, double focal_diagonals);
+
+/// One that sees so much along the diagonal.
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
 
 }  // namespace gpo

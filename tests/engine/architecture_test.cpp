@@ -91,8 +91,18 @@ const Names kPure = {"engine/base/",
                      "engine/initializers/",
                      "engine/truth/",
                      "engine/evaluation/"};
-const Names kLibrariesOfPicturesAndFiles = {
-    "opencv2/", "yaml-cpp/", "nlohmann/", "libav", "libsw", "tinyxml2", "zlib", "bzlib", "lz4frame", "zstd", "sqlite3"};
+const Names kLibrariesOfPicturesAndFiles = {"opencv2/",
+                                            "yaml-cpp/",
+                                            "nlohmann/",
+                                            "libav",
+                                            "libsw",
+                                            "tinyxml2",
+                                            "zlib",
+                                            "bzlib",
+                                            "lz4frame",
+                                            "zstd",
+                                            "sqlite3",
+                                            "exiv2/"};
 /// The engine needs no screen and no command line.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 

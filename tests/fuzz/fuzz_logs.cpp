@@ -4,8 +4,11 @@
 // read as.
 #include "engine/recording/loggers/camm.h"
 #include "engine/recording/loggers/gpmf.h"
+#include "engine/recording/loggers/gpmf_view.h"
 #include "engine/recording/loggers/logger_files.h"
 #include "engine/recording/loggers/telemetry_track.h"
+#include "engine/recording/pictures/movie_boxes.h"
+#include "engine/recording/pictures/video_metadata.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/fuzzed_folder.h"
 
@@ -63,6 +66,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 'm':
         gpo::gopro_settings(gpo::fuzz::file_of(bytes));
         gpo::read_telemetry_track(gpo::fuzz::file_of(bytes));
+        gpo::view_of_metadata(gpo::fuzz::file_of(bytes));
+        break;
+      case 'v':
+        gpo::view_of_gpmf(bytes);
+        break;
+      case 'k':
+        gpo::metadata_value(bytes, "com.apple.quicktime.camera.focal_length.35mm_equivalent");
         break;
       default:
         read_folder(bytes);

@@ -25,10 +25,11 @@ using Planes = std::vector<SightedPlane>;
 using Progress = std::function<void(int done, int of)>;
 
 constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // of f [widths]
-constexpr int kNormals = 2;                                   // that are tried with each
-constexpr int kLeastPictures = 6;                             // in all
-constexpr int kRounds = 3;                                    // of dropping what is far off
-constexpr int kSteps = 2 * static_cast<int>(kStarts.size()) + 2 * kRounds;  // of the progress
+constexpr double kSameStart = 0.05;  // by which the guess differs from one, or is one more [-]
+constexpr int kNormals = 2;          // that are tried with each
+constexpr int kLeastPictures = 6;    // in all
+constexpr int kRounds = 3;           // of dropping what is far off
+constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // of the progress
 constexpr double kFar = 4.5;  // noises, beyond which an observation is dropped
 constexpr double kKnee = 2;   // of Huber's loss, in noises
 constexpr double kStartKnee_px = 2;
@@ -88,14 +89,27 @@ std::optional<Adjustment> started(Planes& planes, const Camera& camera, int norm
   return start;
 }
 
+/// Focal lengths to start from [px].
+std::vector<double> starts_px(const Camera& guess) {
+  const double guess_px = std::sqrt(guess.fx * guess.fy);
+  std::vector<double> starts;
+  bool has_guess = false;
+  for (const double start : kStarts) {
+    starts.push_back(start * guess.width);
+    has_guess = has_guess || std::abs(std::log(starts.back() / guess_px)) < kSameStart;
+  }
+  if (!has_guess) starts.push_back(guess_px);
+  return starts;
+}
+
 /// The cheapest of all starts, by a few sights and points.
 std::optional<Adjustment> best_by_few(const Work& all,
                                       const Camera& guess,
                                       const Progress& progress) {
   std::optional<Adjustment> best;
   int done = 0;
-  for (const double focal : kStarts) {
-    const Camera camera = with_focal(guess, focal * all.width);
+  for (const double focal_px : starts_px(guess)) {
+    const Camera camera = with_focal(guess, focal_px);
     for (int normal = 0; normal < kNormals; ++normal) {
       if (progress) progress(done++, kSteps);
       if (all.options.stop.stop_requested()) return std::nullopt;

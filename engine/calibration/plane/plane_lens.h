@@ -39,8 +39,9 @@ struct PlaneLens {
 };
 
 /// Autocalibration from planar scenes (Triggs 1998; engine/method.md, "The lens from the plane"):
-/// from several focal lengths, each with the normals that suit it best, then one least squares over
-/// the lens, all points and all poses. `guess` has the pictures' size and, roughly, the lens' bend.
+/// from several focal lengths, the guess' among them, each with the normals that suit it best, then
+/// one least squares over the lens, all points and all poses. `guess` has the pictures' size and,
+/// roughly, the lens' bend.
 PlaneLens lens_from_planes(std::vector<SightedPlane> planes,
                            const GyroTurns& gyro,
                            const Camera& guess,

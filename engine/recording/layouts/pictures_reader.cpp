@@ -8,6 +8,7 @@
 #include "engine/recording/layouts/bag_reader.h"
 #include "engine/recording/layouts/calibration_file.h"
 #include "engine/recording/layouts/gyroscope_file.h"
+#include "engine/recording/layouts/told_view.h"
 #include "engine/recording/layouts/tracks_reader.h"
 #include "engine/recording/layouts/truth_file.h"
 #include "engine/recording/loggers/logs.h"
@@ -228,7 +229,8 @@ Recording read_pictures(const fs::path& path,
     add_picture_files(recording, std::move(files), cache_bytes);
   }
   if (!found) {
-    guess_camera(recording);
+    const auto& files = recording.picture_files;
+    guess_camera(recording, files.empty() ? std::nullopt : told_view(files.front()));
   } else if (calibration.self_calibrated) {
     set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }

@@ -4,12 +4,9 @@
 
 #include "engine/base/error.h"
 #include "engine/recording/pictures/libav.h"
+#include "engine/recording/pictures/movie_boxes.h"
 
-#include <array>
-#include <cstdint>
-#include <fstream>
 #include <memory>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -56,40 +53,6 @@ AVStream* telemetry_stream(AVFormatContext& format) {
   return found;
 }
 
-std::uint64_t big_endian(std::string_view bytes) {
-  std::uint64_t value = 0;
-  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
-  return value;
-}
-
-/// Where a box of an MP4 holds what it holds.
-struct Box {
-  std::uint64_t begin = 0, end = 0;
-};
-
-/// The first box of that kind inside of another one.
-std::optional<Box> box_in(std::ifstream& file, Box outer, std::string_view kind) {
-  constexpr int kMostBoxes = 10'000;
-  std::array<char, 16> head{};
-  for (int k = 0; k < kMostBoxes && outer.begin + 8 <= outer.end; ++k) {
-    file.clear();
-    file.seekg(static_cast<std::streamoff>(outer.begin));
-    if (!file.read(head.data(), 8)) return std::nullopt;
-    std::uint64_t length = big_endian({head.data(), 4});
-    std::uint64_t head_length = 8;
-    if (length == 1 && file.read(head.data() + 8, 8)) {
-      length = big_endian({head.data() + 8, 8});
-      head_length = 16;
-    }
-    if (length == 0) length = outer.end - outer.begin;
-    if (length < head_length || length > outer.end - outer.begin) return std::nullopt;
-    if (std::string_view(head.data() + 4, 4) == kind)
-      return Box{outer.begin + head_length, outer.begin + length};
-    outer.begin += length;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
@@ -118,21 +81,9 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
 }
 
 std::string gopro_settings(const fs::path& video) {
-  constexpr std::uint64_t kMostSettings = 1 << 20;
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(video, error);
-  std::ifstream file(video, std::ios::binary);
-  if (error || !file) return "";
-  std::optional<Box> box = Box{0, size};
-  for (const char* kind : {"moov", "udta", "GPMF"}) {
-    box = box_in(file, *box, kind);
-    if (!box) return "";
-  }
-  if (box->end - box->begin > kMostSettings) return "";
-  std::string bytes(box->end - box->begin, '\0');
-  file.clear();
-  file.seekg(static_cast<std::streamoff>(box->begin));
-  return file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ? bytes : "";
+  MovieFile movie(video);
+  const auto box = movie.box_at({"moov", "udta", "GPMF"});
+  return box ? movie.bytes_of(*box) : "";
 }
 
 }  // namespace gpo

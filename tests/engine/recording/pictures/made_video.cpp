@@ -97,7 +97,12 @@ void make_video(const std::filesystem::path& file,
   check(avcodec_parameters_from_context(stream->codecpar, encoder), "no parameters");
   if (options.clockwise_degrees != 0) turn(stream, options.clockwise_degrees);
   check(avio_open(&format->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
-  check(avformat_write_header(format, nullptr), "no header");
+  AVDictionary* muxing = nullptr;
+  for (const auto& [key, value] : options.metadata)
+    av_dict_set(&format->metadata, key.c_str(), value.c_str(), 0);
+  if (!options.metadata.empty()) av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
+  check(avformat_write_header(format, &muxing), "no header");
+  av_dict_free(&muxing);
   for (int i = 0; i < static_cast<int>(pictures.size()); ++i) {
     AVFrame* frame =
         frame_of(pictures[i], *encoder, options.times_ms.empty() ? i : options.times_ms[i]);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -15,6 +17,7 @@ struct VideoOptions {
   bool b_frames = false;        ///< MPEG-4, a key frame in 12 and two B-frames between others
   int clockwise_degrees = 0;    ///< by which a player turns the picture; MP4 and MOV only
   std::vector<int> times_ms{};  ///< one a picture; default: 25 frames a second
+  std::map<std::string, std::string> metadata{};  ///< of the whole file, by its keys
 };
 
 /// Writes MJPEG (or MPEG-4 with B-frames) in the container that the file's name asks for.
