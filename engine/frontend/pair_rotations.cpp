@@ -84,18 +84,18 @@ WindowRays rays_of(const Window& window) {
 }
 
 /// A pair of frames: which tracks both see, and how the frames are to each other.
-struct Pair {
+struct JoinedPair {
   std::vector<int> common;  // index into WindowRays
   RelativePose pose;
 };
 
 /// `usable`: one a track.
-std::optional<Pair> joined(const WindowRays& window,
-                           int i,
-                           int j,
-                           const std::vector<bool>& usable,
-                           RelativePoseOptions options) {
-  Pair pair;
+std::optional<JoinedPair> joined(const WindowRays& window,
+                                 int i,
+                                 int j,
+                                 const std::vector<bool>& usable,
+                                 RelativePoseOptions options) {
+  JoinedPair pair;
   RayPairs rays;
   for (Eigen::Index k = 0; k < window.rays[i].cols(); ++k) {
     if (!usable[k] || !window.rays[i].col(k).allFinite() || !window.rays[j].col(k).allFinite())
@@ -135,11 +135,11 @@ double off_plane_share(const WindowRays& rays, double threshold_px) {
 
 /// The share of the tracks that are off the plane and yet keep to the epipolar geometry.
 double structure_share(const WindowRays& rays,
-                       const std::vector<Pair>& reference_pairs,
+                       const std::vector<JoinedPair>& reference_pairs,
                        double threshold_px) {
   std::vector<double> shares;
   for (std::size_t j = 1; j < rays.rays.size(); ++j) {
-    const Pair& pair = reference_pairs[j - 1];
+    const JoinedPair& pair = reference_pairs[j - 1];
     int off = 0;
     int consistent = 0;
     for (std::size_t k = 0; k < pair.common.size(); ++k) {
@@ -161,9 +161,9 @@ Rotations flat(const char* name) {
 }
 
 /// Tracks that agree with at least half of the pairs that see them.
-std::vector<bool> trusted(const WindowRays& rays, const std::vector<Pair>& pairs) {
+std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>& pairs) {
   std::vector<int> votes(rays.tracks.size(), 0);
-  for (const Pair& pair : pairs)
+  for (const JoinedPair& pair : pairs)
     for (std::size_t k = 0; k < pair.common.size(); ++k)
       votes[pair.common[k]] += pair.pose.inlier[k] ? 1 : -1;
   std::vector<bool> usable;
@@ -196,7 +196,7 @@ Rotations pair_rotations(const Window& window,
                               .gate = options.threshold_px / window.K(0, 0),
                               .seed = options.seed};
   const std::vector<bool> all(rays.tracks.size(), true);
-  std::vector<Pair> reference_pairs;
+  std::vector<JoinedPair> reference_pairs;
   std::vector<RelativeRotation> relative;
   std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
   const auto add = [&](int i, int j, const RelativePose& pose) {

@@ -19,9 +19,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Quadratic = Eigen::Matrix<double, 6, 1>;  // 1, a, b, a^2, ab, b^2
 
-constexpr std::size_t kLeastTracks = 12;  // twice the quadratic's numbers
+constexpr std::size_t kLeastHeights = 12;  // twice the quadratic's numbers
 /// Chi-square of three numbers that noise alone exceeds once in 50,000 windows.
-constexpr double kStandsOut = 24;
+constexpr double kLeastBend = 24;
 
 /// A track's height above its plane, from all frames that see it.
 struct Height {
@@ -67,7 +67,7 @@ std::optional<Eigen::Matrix2d> bend_of(const PlaneObservations& observations,
                                        int plane,
                                        double sigma_px) {
   const std::vector<Height> heights = heights_of(observations, motion, plane);
-  if (heights.size() < kLeastTracks || !(sigma_px > 0)) return std::nullopt;
+  if (heights.size() < kLeastHeights || !(sigma_px > 0)) return std::nullopt;
   const double distance = plane == 0 ? 1 : 1 / motion.others[plane - 1].m.norm();
   Vector2d mean = Vector2d::Zero();
   for (const Height& one : heights) mean += one.place / static_cast<double>(heights.size());
@@ -94,7 +94,7 @@ std::optional<Eigen::Matrix2d> bend_of(const PlaneObservations& observations,
   const Eigen::Matrix3d covariance =
       noise * factor.solve(Eigen::Matrix<double, 6, 6>::Identity()).bottomRightCorner<3, 3>();
   const Vector3d curvature = fit.tail<3>();
-  if (!(curvature.dot(covariance.inverse() * curvature) > kStandsOut)) return std::nullopt;
+  if (!(curvature.dot(covariance.inverse() * curvature) > kLeastBend)) return std::nullopt;
   Eigen::Matrix2d slope;
   slope << 2 * curvature(0), curvature(1), curvature(1), 2 * curvature(2);
   return Eigen::Matrix2d(slope * spread * slope);

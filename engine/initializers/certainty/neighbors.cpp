@@ -15,14 +15,14 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kBlocks = 16;
-constexpr int kLeastTracks = 3 * kBlocks;
+constexpr int kLeastPlaces = 3 * kBlocks;
 
 constexpr int kQuarters = 4;
 /// Degrees of freedom of the spreads, mostly along one direction; their mean stands out where it is
 /// so many times what independent tracks would make it, which chance exceeds in one window of ten.
 constexpr double kFreedomOfQuarters = kQuarters - 1;
 constexpr double kFreedomOfBlocks = kBlocks - 1;
-constexpr double kStandsOut = 1.45;
+constexpr double kLeastDisagreement = 1.45;
 
 struct PlacedTrack {
   int track = 0;
@@ -47,7 +47,7 @@ std::vector<int> blocks_of(const PlaneObservations& observations, int tracks) {
   for (int k = 0; k <= static_cast<int>(observations.others.size()); ++k)
     for (const FrameObservations& f : of_plane(observations, k))
       for (int o = 0; o < f.count; ++o) places[f.track[o]] = {f.ray_x[o], f.ray_y[o]};
-  if (static_cast<int>(places.size()) < kLeastTracks) return {};
+  if (static_cast<int>(places.size()) < kLeastPlaces) return {};
   std::vector<PlacedTrack> placed;
   for (const auto& [track, ray] : places) placed.push_back({track, ray});
   std::vector<int> blocks(tracks, 0);
@@ -206,7 +206,7 @@ std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const Window& windo
         (kFreedomOfQuarters * excess(*quarters) + kFreedomOfBlocks * excess(*sixteenths)) /
         (kFreedomOfQuarters + kFreedomOfBlocks);
     const Eigen::Matrix2d of_noise = noise.block<2, 2>(at, at);
-    if (mean > kStandsOut && trace(quarters->spread) > mean * trace(noise))
+    if (mean > kLeastDisagreement && trace(quarters->spread) > mean * trace(noise))
       spreads[k] = quarters->spread.block<2, 2>(at, at);
     else if (mean > 1)
       spreads[k] = mean * of_noise;
