@@ -139,7 +139,8 @@ bool is_solution(const Linearization& whole,
   Eigen::VectorXd step = step_of(whole, bread, inverse);
   for (std::size_t i = 1; i < bread.noise_weights.size(); ++i) {  // where its prior pulls
     const Eigen::Vector3d g = bread.noise_weights[i] * motion.gyro_noise_rad[i];
-    step += inverse * (bread.frames[i].gain.topRows<3>().transpose() * g);
+    const Eigen::VectorXd pull = bread.frames[i].gain.topRows<3>().transpose() * g;
+    step += inverse * pull;
   }
   return step.head<2>().squaredNorm() < 0.25 * noise.topLeftCorner<2, 2>().trace();
 }
