@@ -285,7 +285,8 @@ void add_gyro_noise(const Window& window,
   for (int i = frames - 1; i > 0; --i) {
     const Eigen::Matrix3d turn = bread.noise_weights[i] * motion.R_wc[i].transpose();
     own[i] = -bread.frames[i].inverse.leftCols<3>() * turn;
-    later[i] = later[i + 1] + shared_inverse * bread.frames[i].gain.topRows<3>().transpose() * turn;
+    const SharedMatrix pull = bread.frames[i].gain.topRows<3>().transpose() * turn;
+    later[i] = later[i + 1] + shared_inverse * pull;
   }
   SharedMatrix walked = Moves::Zero(shared_inverse.rows(), 3);
   double before = 0;
