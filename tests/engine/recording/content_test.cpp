@@ -87,6 +87,9 @@ TEST_F(Content, KnowsTheGyroscope) {
   const RecordingContent before = content_of(recording);
   recording.gyroscope->rates_rad_s[7].x() += 1e-9;
   EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
+  recording.gyroscope->rates_rad_s[7].x() -= 1e-9;
+  recording.gyroscope->noise_density *= 2;
+  EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
 }
 
 }  // namespace
