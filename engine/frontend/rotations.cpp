@@ -130,6 +130,7 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
                        gyroscope.bias_rad_s,
                        sigma_rad_s,
                        sigma_rad_s * sigma_rad_s * Eigen::Matrix3d::Identity(),
+                       gyroscope.noise_density,
                        {},
                        {}};
   Turn turn;

@@ -41,11 +41,17 @@ constexpr int kShutterRounds = 4;
 constexpr double kMostBias_rad_s = 0.5;
 constexpr double kMostBiasSigmas = 6;
 
+/// What is unknown of the rotations.
+struct Turns {
+  RotationModel model = RotationModel::known;
+  bool gyro_noise = false;
+};
+
 /// A solution, and the window as the shutter that goes with it would have seen it.
 struct Fit {
   Window window;
   PlaneSolution solution;
-  RotationModel rotations;
+  Turns turns;
   double row_delay_s = 0;
   double cost = 0;  ///< as the loss has it, which solutions with different weights share [px^2]
   PlaneObservations observations = {};  ///< of this window, with the weights of the last round
@@ -62,19 +68,19 @@ PlaneSolution solve_once(const Task& task,
                          const Window& window,
                          const PlaneObservations& observations,
                          const PlaneMotion& start,
-                         RotationModel rotations) {
-  const bool offset = task.options.time_offset && rotations == RotationModel::bias;
-  const PlaneUnknowns unknowns{rotations, offset, task.sigma_px};
+                         Turns turns) {
+  const bool offset = task.options.time_offset && turns.model == RotationModel::bias;
+  const PlaneUnknowns unknowns{turns.model, offset, task.sigma_px, turns.gyro_noise};
   return task.options.solver == Solver::ceres
              ? solve_plane_with_ceres(window, observations, start, unknowns, task.watch)
              : solve_plane(window, observations, start, unknowns, task.watch);
 }
 
-Fit solve(const Task& task, const PlaneMotion& start, RotationModel rotations) {
+Fit solve(const Task& task, const PlaneMotion& start, Turns turns) {
   const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
   const auto solve_from = [&](const PlaneMotion& from) {
-    return solve_once(task, window, observations, from, rotations);
+    return solve_once(task, window, observations, from, turns);
   };
   PlaneSolution solution = solve_from(start);
   for (int round = 0; is_weighted(task.options) && round < kWeightRounds; ++round) {
@@ -90,7 +96,7 @@ Fit solve(const Task& task, const PlaneMotion& start, RotationModel rotations) {
   const double cost =
       solution.solver.final_cost +
       loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
-  return {window, std::move(solution), rotations, 0, cost, std::move(observations)};
+  return {window, std::move(solution), turns, 0, cost, std::move(observations)};
 }
 
 /// The weights of one fit for the same observations in another one.
@@ -109,11 +115,10 @@ void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
 /// costs compare to the last digit; time and iterations add up.
 Fit refit(const Task& task, const Fit& from, double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit{
-      without_rolling_shutter(task.window, motion, row_delay_s), {}, from.rotations, row_delay_s};
+  Fit fit{without_rolling_shutter(task.window, motion, row_delay_s), {}, from.turns, row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
-  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
+  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.turns);
   fit.cost = fit.solution.solver.final_cost;
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
@@ -123,10 +128,11 @@ bool converged(const Fit& fit) {
   return fit.solution.solver.termination == Termination::convergence;
 }
 
+int freedom(const Fit& fit) { return fit.solution.solver.residuals - fit.solution.solver.unknowns; }
+
 /// Of a coordinate's noise, as the residuals tell it [px^2].
 double variance(const Fit& fit) {
-  const SolverReport& s = fit.solution.solver;
-  return 2 * s.final_cost / std::max(1, s.residuals - s.unknowns);
+  return 2 * fit.solution.solver.final_cost / std::max(1, freedom(fit));
 }
 
 /// Whether so many more unknowns explain more than noise: `fit` leaves what noise there is.
@@ -170,8 +176,8 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
   return chosen;
 }
 
-Fit fitted(const Task& task, const PlaneMotion& start, RotationModel rotations) {
-  const Fit global = solve(task, start, rotations);
+Fit fitted(const Task& task, const PlaneMotion& start, Turns turns) {
+  const Fit global = solve(task, start, turns);
   return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
 }
 
@@ -181,7 +187,7 @@ Fit better_reading(const Task& task, Fit free) {
   auto other = other_reading(task.window, free.solution.motion);
   if (!other) return free;
   if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
-  Fit twin = fitted(task, *other, RotationModel::free);
+  Fit twin = fitted(task, *other, {RotationModel::free});
   const bool better = converged(twin) && variance(free) > kWorthFreeRotations * variance(twin);
   Fit& chosen = better ? twin : free;
   add_effort((better ? free : twin).solution.solver, chosen.solution.solver);
@@ -194,13 +200,16 @@ struct Best {
   Eigen::Vector3d bias_rad_s;
 };
 
-/// With a gyroscope, the bias alone, unless the pictures know the rotations better than it does.
+/// With a gyroscope, its bias and its noise, unless the pictures know the rotations better than so
+/// good a gyroscope does.
 Best best_fit(const Task& task, const PlaneMotion& start) {
-  Fit fit = fitted(task, start, task.window.rotations);
+  const Window& window = task.window;
+  const bool noisy = window.rotations == RotationModel::bias && window.gyro->noise_density > 0;
+  Fit fit = fitted(task, start, {window.rotations, noisy});
   const Eigen::Vector3d bias = fit.solution.motion.bias_rad_s;
-  if (fit.rotations != RotationModel::bias) return {std::move(fit), bias};
-  Fit free = fitted(task, fit.solution.motion, RotationModel::free);
-  const int more = free.solution.solver.unknowns - fit.solution.solver.unknowns;
+  if (fit.turns.model != RotationModel::bias) return {std::move(fit), bias};
+  Fit free = fitted(task, fit.solution.motion, {RotationModel::free});
+  const int more = freedom(fit) - freedom(free);
   const bool better =
       is_significant(fit, free, more) && variance(fit) > kWorthFreeRotations * variance(free);
   if (!better) {
@@ -229,14 +238,14 @@ std::optional<Window> uncalibrated(const Window& window) {
 /// The start optimized, then with the other planes beside the leading one, where they are asked
 /// for.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
-  Fit fit = solve(task, start, task.window.rotations);
+  Fit fit = solve(task, start, {task.window.rotations});
   add_effort(fit.solution.solver, effort);
   if (task.options.planes == Planes::one || task.window.planes.size() < 2 || !converged(fit))
     return fit;
   PlaneMotion with_others = fit.solution.motion;
   with_others.others = other_planes(task.window, with_others);
   if (with_others.others.empty()) return fit;
-  Fit all = solve(task, with_others, task.window.rotations);
+  Fit all = solve(task, with_others, {task.window.rotations});
   add_effort(all.solution.solver, effort);
   return converged(all) ? all : fit;
 }
@@ -281,7 +290,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 /// With the weights that the solution rests on.
 void add_uncertainty(const Fit& fit, Initialization& result) {
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
-  result.uncertainty = uncertainty_of(fit.window, fit.observations, motion, fit.rotations);
+  result.uncertainty = uncertainty_of(fit.window, fit.observations, motion, fit.turns.model);
   if (!result.uncertainty || result.planes.empty()) return;
   result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
   result.planes[0].distance_sigma = 0;
@@ -328,7 +337,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (!result.ok) return result;
   add_uncertainty(fit, result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
-  if (fit.rotations == RotationModel::bias && options.time_offset)
+  if (fit.turns.model == RotationModel::bias && options.time_offset)
     result.time_offset_s = fit.solution.motion.time_offset_s;
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
   return result;

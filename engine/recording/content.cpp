@@ -55,11 +55,12 @@ void add_camera(RecordingContent& content, const Camera& camera) {
 }
 
 std::string digest_of(const Gyroscope& gyroscope) {
-  std::string text = fmt::format("{}{} {}{}\n{}",
+  std::string text = fmt::format("{}{} {}{} {}\n{}",
                                  text_of(gyroscope.R_gyro_camera),
                                  gyroscope.time_offset_ns,
                                  text_of(gyroscope.bias_rad_s),
                                  gyroscope.bias_sigma_rad_s,
+                                 gyroscope.noise_density,
                                  fmt::join(gyroscope.timestamps_ns, " "));
   for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s) text += text_of(rate);
   return sha256(text);

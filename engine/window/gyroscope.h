@@ -23,6 +23,7 @@ struct Gyroscope {
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   double bias_sigma_rad_s = 0.1;           ///< each axis; by default as bad as MEMS sensors come
+  double noise_density = 3e-4;             ///< of the rates, white [rad/s/sqrt(Hz)]; a phone's
   bool bias_known = false;                 ///< a file says it
   std::string bias_source = "none: zero";  ///< where the bias comes from, for people
 };

@@ -49,6 +49,7 @@ struct GyroSensitivity {
   double prior_sigma_rad_s = 0.1;                         ///< and how surely, each axis
   /// Of `bias_rad_s`: what holds the rotations as they are is wrong by that.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
+  double noise_density = 0;               ///< of the rates, white [rad/s/sqrt(Hz)]
   std::vector<Eigen::Matrix3d> d_bias;    ///< one a frame, of its camera axes [s]
   std::vector<Eigen::Vector3d> d_offset;  ///< one a frame, of its camera axes [rad/s]
 };

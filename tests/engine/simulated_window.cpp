@@ -76,6 +76,7 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   std::normal_distribution<double> normal_noise;
   Gyroscope gyroscope;
   gyroscope.bias_sigma_rad_s = 0.01;
+  gyroscope.noise_density = options.gyro_noise_rad_s * std::sqrt(0.005);
   gyroscope.R_gyro_camera = so3_exp(Vector3d(1.2, -0.7, 2));
   const double last_s = kFramePeriod_s * (options.frames - 1);
   constexpr double kPeriod_s = 0.005;

@@ -132,11 +132,17 @@ Eigen::VectorXd step_of(const Linearization& part,
 /// Whether the observations ask for no step of the normal that matters: elsewhere than at the
 /// solution, say where a gyroscope's wrong bias was held, every block asks for one.
 bool is_solution(const Linearization& whole,
+                 const PlaneMotion& motion,
                  const Bread& bread,
                  const SharedMatrix& inverse,
                  const SharedMatrix& noise) {
-  return step_of(whole, bread, inverse).head<2>().squaredNorm() <
-         0.25 * noise.topLeftCorner<2, 2>().trace();
+  Eigen::VectorXd step = step_of(whole, bread, inverse);
+  for (std::size_t i = 1; i < bread.noise_weights.size(); ++i) {  // where its prior pulls
+    const Eigen::Vector3d g = bread.noise_weights[i] * motion.gyro_noise_rad[i];
+    const Eigen::VectorXd pull = bread.frames[i].gain.topRows<3>().transpose() * g;
+    step += inverse * pull;
+  }
+  return step.head<2>().squaredNorm() < 0.25 * noise.topLeftCorner<2, 2>().trace();
 }
 
 /// How far what the frames share moves as blocks are left out, and how far independent errors of
@@ -191,7 +197,7 @@ std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const Window& windo
   for (int b = 1; b < kBlocks; ++b) add(blocks[b], 1, whole);
   const Bread bread = bread_of(window, motion, whole, model);
   const auto independent = inverse_information(bread.information);
-  if (!independent || !is_solution(whole, bread, *independent, noise)) return spreads;
+  if (!independent || !is_solution(whole, motion, bread, *independent, noise)) return spreads;
   const auto quarters = leave_out(window, motion, model, blocks, whole, *independent, kQuarters);
   const auto sixteenths = leave_out(window, motion, model, blocks, whole, *independent, kBlocks);
   if (!quarters || !sixteenths) return spreads;

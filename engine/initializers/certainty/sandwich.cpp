@@ -134,7 +134,10 @@ SharedMatrix spread_by_frame(const std::vector<Influence>& all,
 
 }  // namespace
 
-int own_size(RotationModel model) { return model == RotationModel::free ? 6 : 3; }
+int own_size(RotationModel model, const PlaneMotion& motion) {
+  const bool noisy = model == RotationModel::bias && !motion.gyro_noise_rad.empty();
+  return model == RotationModel::free || noisy ? 6 : 3;
+}
 
 const std::vector<FrameObservations>& of_plane(const PlaneObservations& observations, int plane) {
   return plane == 0 ? observations.frames : observations.others[plane - 1];
@@ -175,7 +178,8 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
       cost += normals.cost;
     }
   }
-  const int unknowns = Layout{others, gyro_size(model)}.size() + own_size(model) * (frames - 1);
+  const int unknowns =
+      Layout{others, gyro_size(model)}.size() + own_size(model, motion) * (frames - 1);
   all.sigma_px = noise_px(2 * cost, 2 * observations.count(), unknowns);
   if (huber) all.sigma_px /= kSigmaOfHuber;
   return all;
@@ -195,7 +199,7 @@ Bread bread_of(const Window& window,
                RotationModel model) {
   const int planes = static_cast<int>(linearized.planes.size());
   const int frames = static_cast<int>(motion.tau.size());
-  const int own = own_size(model);
+  const int own = own_size(model, motion);
   Bread bread{.layout = {planes - 1, gyro_size(model)}};
   const int size = bread.layout.size();
   bread.columns.assign(planes, std::vector<PlaneColumns>(frames));
@@ -206,6 +210,7 @@ Bread bread_of(const Window& window,
     bread.prior.diagonal().tail<3>().setConstant(ratio * ratio);
   }
   bread.information = bread.prior;
+  if (model == RotationModel::bias && own == 6) bread.noise_weights.resize(frames);
   for (int i = 1; i < frames; ++i) {
     const GyroColumns gyro = gyro_columns(window, motion, i, bread.layout.gyro);
     const Vector3d tau_c = motion.R_wc[i].transpose() * motion.tau[i];
@@ -218,6 +223,11 @@ Bread bread_of(const Window& window,
       bread.information(at, at) += M.transpose() * F * M;
       so(at, Eigen::all) += M.transpose() * F.rightCols(own);
       oo += F.bottomRightCorner(own, own);
+    }
+    if (!bread.noise_weights.empty()) {
+      const double ratio = linearized.sigma_px / gyro_noise_sigma_rad(window, i);
+      bread.noise_weights[i] = ratio * ratio;
+      oo.diagonal().head<3>().array() += bread.noise_weights[i];
     }
     const OwnMatrix inverse = oo.ldlt().solve(OwnMatrix::Identity(own, own));
     bread.information -= so * inverse * so.transpose();
@@ -258,6 +268,37 @@ Spread spread_of(const Window& window,
   if (of_normal(both) > of_normal(spread.shared) && eigen.eigenvalues()(0) >= 0)
     spread.shared = both;
   return spread;
+}
+
+// What a step of the walk turns, it turns in all later frames: there its axes are R_wc^T of the
+// world's. A frame whose noise is phi moves the solution by the prior's weight times it.
+void add_gyro_noise(const Window& window,
+                    const PlaneMotion& motion,
+                    const Bread& bread,
+                    const SharedMatrix& shared_inverse,
+                    Spread& spread) {
+  if (bread.noise_weights.empty()) return;
+  const int frames = static_cast<int>(motion.tau.size());
+  using Moves = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  std::vector<OwnMatrix> own(frames);  // of each frame's noise, in the world's axes
+  std::vector<Moves> later(frames + 1, Moves::Zero(shared_inverse.rows(), 3));
+  for (int i = frames - 1; i > 0; --i) {
+    const Eigen::Matrix3d turn = bread.noise_weights[i] * motion.R_wc[i].transpose();
+    own[i] = -bread.frames[i].inverse.leftCols<3>() * turn;
+    const SharedMatrix pull = bread.frames[i].gain.topRows<3>().transpose() * turn;
+    later[i] = later[i + 1] + shared_inverse * pull;
+  }
+  SharedMatrix walked = Moves::Zero(shared_inverse.rows(), 3);
+  double before = 0;
+  for (int i = 1; i < frames; ++i) {
+    const double sigma = gyro_noise_sigma_rad(window, i);
+    const double variance = sigma * sigma;
+    walked += (variance - before) * later[i];
+    spread.shared += (variance - before) * later[i] * later[i].transpose();
+    spread.cross[i] += walked * own[i].transpose();
+    spread.own[i] += variance * own[i] * own[i].transpose();
+    before = variance;
+  }
 }
 
 void add_lens(const Window& window,

@@ -19,11 +19,12 @@ namespace gpo {
 
 /// Over what all frames share (`Layout`).
 using SharedMatrix = Eigen::MatrixXd;
-/// Over what is a frame's own: t, or phi and t where rotations are free.
+/// Over what is a frame's own: t, or phi and t where rotations are free or a gyroscope's noise is
+/// unknown.
 using OwnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 using OwnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
-int own_size(RotationModel model);
+int own_size(RotationModel model, const PlaneMotion& motion);
 
 /// The observations of the leading plane (0) or a further one.
 const std::vector<FrameObservations>& of_plane(const PlaneObservations& observations, int plane);
@@ -59,6 +60,8 @@ struct Bread {
   std::vector<Eliminated> frames = {};                  ///< the first one's is empty
   SharedMatrix prior = {};                              ///< the bias' [px^2]
   SharedMatrix information = {};  ///< on what the frames share, with the prior
+  /// One a frame where a gyroscope's noise is unknown, its prior [px^2]; else empty.
+  std::vector<double> noise_weights = {};
 
   /// Where the columns of a plane stand among all shared unknowns.
   std::vector<int> places(int plane) const;
@@ -86,6 +89,14 @@ Spread spread_of(const Window& window,
                  const Bread& bread,
                  const SharedMatrix& shared_inverse,
                  double degrees_of_freedom);
+
+/// Adds what a gyroscope's noise, a random walk, moves where it is unknown (engine/method.md, eq.
+/// 14f).
+void add_gyro_noise(const Window& window,
+                    const PlaneMotion& motion,
+                    const Bread& bread,
+                    const SharedMatrix& shared_inverse,
+                    Spread& spread);
 
 /// Adds what is not known of the lens: its parameters' errors are independent, each moves the whole
 /// solution.

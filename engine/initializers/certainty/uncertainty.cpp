@@ -101,7 +101,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   if (!inverse) return std::nullopt;
   const int frames = static_cast<int>(motion.tau.size());
   const double residuals = 2.0 * observations.count();
-  const double unknowns = inverse->rows() + own_size(model) * (frames - 1.0);
+  const double unknowns = inverse->rows() + own_size(model, motion) * (frames - 1.0);
   Spread spread = spread_of(window,
                             observations,
                             motion,
@@ -119,6 +119,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   add_lens(window, observations, motion, bread, *inverse, spread);
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
+  add_gyro_noise(window, motion, bread, *inverse, spread);
   spread.shared += bias_share(window, bread, *inverse, linearized->sigma_px, holds_bias);
   const SharedMatrix& covariance = spread.shared;
   Uncertainty result;

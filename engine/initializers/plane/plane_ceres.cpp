@@ -20,8 +20,8 @@ template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
 /// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
-/// rotation: nothing, the bias (3) or bias and time offset (4) that all frames share, or a rotation
-/// vector (3) of its own.
+/// rotation: the bias (3) or bias and time offset (4) that all frames share, and a rotation vector
+/// (3) of its own; either, both or none.
 struct Blocks {
   Eigen::Quaterniond normal = Eigen::Quaterniond::Identity();
   std::vector<Vector3d> others;
@@ -30,33 +30,45 @@ struct Blocks {
   std::vector<Vector3d> phi;
 };
 
-/// R_wc of a frame and how it moves: R_wc exp(d_parameters dp).
+/// R_wc of a frame and how it moves with each of its parameter blocks: R_wc exp(moves dp).
 struct Rotation {
+  using Moves = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
   Matrix3d R_wc;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_parameters;
+  std::vector<Moves> moves = {};
 };
+
+bool is_shared(const PlaneUnknowns& unknowns) { return unknowns.rotations == RotationModel::bias; }
+bool is_own(const PlaneUnknowns& unknowns) {
+  return unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
+}
+
+/// Turns what was there before.
+void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation) {
+  const Matrix3d R = so3_exp(phi);
+  for (Rotation::Moves& before : rotation.moves) before = R.transpose() * before;
+  rotation.R_wc = rotation.R_wc * R;
+  rotation.moves.emplace_back(so3_right_jacobian(phi) * moves);
+}
 
 Rotation rotation_at(const Window& window,
                      const PlaneUnknowns& unknowns,
                      const Matrix3d& R_wc_start,
                      int frame,
-                     const double* parameters) {
-  if (unknowns.rotations == RotationModel::free) {
-    const Eigen::Map<const Vector3d> phi(parameters);
-    return {R_wc_start * so3_exp(phi), so3_right_jacobian(phi)};
+                     const double* const* parameters) {
+  Rotation rotation{R_wc_start};
+  if (is_shared(unknowns)) {
+    rotation.R_wc = window.R_wc[frame];
+    const GyroSensitivity& gyro = *window.gyro;
+    const int size = unknowns.time_offset ? 4 : 3;
+    Rotation::Moves moves(3, size);
+    moves.leftCols<3>() = gyro.d_bias[frame];
+    if (size == 4) moves.col(3) = gyro.d_offset[frame];
+    Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(*parameters++, size);
+    change.head<3>() -= gyro.bias_rad_s;
+    turn(moves * change, moves, rotation);
   }
-  const GyroSensitivity& gyro = *window.gyro;
-  const int size = unknowns.time_offset ? 4 : 3;
-  Rotation rotation;
-  rotation.d_parameters.resize(3, size);
-  rotation.d_parameters.leftCols<3>() = gyro.d_bias[frame];
-  if (size == 4) rotation.d_parameters.col(3) = gyro.d_offset[frame];
-  Eigen::Vector4d change(
-      parameters[0], parameters[1], parameters[2], size == 4 ? parameters[3] : 0);
-  change.head<3>() -= gyro.bias_rad_s;
-  const Vector3d phi = rotation.d_parameters * change.head(size);
-  rotation.R_wc = window.R_wc[frame] * so3_exp(phi);
-  rotation.d_parameters = so3_right_jacobian(phi) * rotation.d_parameters;
+  if (is_own(unknowns))
+    turn(Eigen::Map<const Vector3d>(*parameters), Matrix3d::Identity(), rotation);
   return rotation;
 }
 
@@ -82,14 +94,12 @@ class FrameCost : public ceres::CostFunction {
         frame_(frame),
         block_(block) {
     *mutable_parameter_block_sizes() = {block == PlaneBlock::m ? 3 : 4, 3};
-    if (unknowns.rotations != RotationModel::known)
-      mutable_parameter_block_sizes()->push_back(rotation_size(unknowns));
+    if (is_shared(unknowns)) mutable_parameter_block_sizes()->push_back(shared_size(unknowns));
+    if (is_own(unknowns)) mutable_parameter_block_sizes()->push_back(3);
     set_num_residuals(2 * observations.count);
   }
 
-  static int rotation_size(const PlaneUnknowns& unknowns) {
-    return unknowns.rotations == RotationModel::bias && unknowns.time_offset ? 4 : 3;
-  }
+  static int shared_size(const PlaneUnknowns& unknowns) { return unknowns.time_offset ? 4 : 3; }
 
   bool Evaluate(const double* const* parameters,
                 double* residuals,
@@ -102,10 +112,7 @@ class FrameCost : public ceres::CostFunction {
       m = direction(q);
       d_m = direction_jacobian(q);
     }
-    const bool rotates = unknowns_.rotations != RotationModel::known;
-    const Rotation rotation = rotates
-                                  ? rotation_at(window_, unknowns_, R_wc_, frame_, parameters[2])
-                                  : Rotation{R_wc_, {}};
+    const Rotation rotation = rotation_at(window_, unknowns_, R_wc_, frame_, parameters + 2);
     for (int k = 0; k < observations_.count; ++k) {
       const Vector3d ray_1(observations_.ray_x[k], observations_.ray_y[k], 1);
       const Transfer transfer = transfer_on_plane(focal_, rotation.R_wc, ray_1, m, tau);
@@ -121,7 +128,8 @@ class FrameCost : public ceres::CostFunction {
       };
       write(0, (transfer.d_normal * d_m).eval());
       write(1, transfer.d_tau);
-      if (rotates) write(2, (transfer.d_rotation * rotation.d_parameters).eval());
+      for (std::size_t r = 0; r < rotation.moves.size(); ++r)
+        write(2 + static_cast<int>(r), (transfer.d_rotation * rotation.moves[r]).eval());
     }
     return true;
   }
@@ -136,7 +144,7 @@ class FrameCost : public ceres::CostFunction {
   PlaneBlock block_;
 };
 
-/// Gaussian priors on the bias and the time offset, in pixels of the noise.
+/// Gaussian priors on bias and time offset, or on a frame's own rotation, in pixels of the noise.
 class PriorCost : public ceres::CostFunction {
  public:
   PriorCost(const Vector3d& bias_rad_s, const Eigen::Vector4d& weights, int size)
@@ -169,7 +177,8 @@ Blocks blocks_of(const PlaneMotion& motion) {
   for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
   blocks.tau = motion.tau;
   blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
-  blocks.phi.assign(motion.tau.size(), Vector3d::Zero());
+  blocks.phi = motion.gyro_noise_rad;
+  blocks.phi.resize(motion.tau.size(), Vector3d::Zero());
   return blocks;
 }
 
@@ -185,8 +194,8 @@ PlaneMotion motion_of(const Window& window,
   motion.time_offset_s = blocks.bias_offset(3);
   for (int i = 1; i < window.frame_count(); ++i) {
     if (unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
-    if (unknowns.rotations == RotationModel::bias)
-      motion.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, motion));
+    if (unknowns.gyro_noise) motion.gyro_noise_rad[i] = blocks.phi[i];
+    if (is_shared(unknowns)) motion.R_wc[i] = gyro_rotation(window, i, motion);
   }
   return motion;
 }
@@ -195,19 +204,19 @@ PlaneMotion motion_of(const Window& window,
 
 PlaneSolution solve_plane_with_ceres(const Window& window,
                                      const PlaneObservations& observations,
-                                     const PlaneMotion& start,
+                                     const PlaneMotion& given,
                                      const PlaneUnknowns& unknowns,
                                      const Watch& watch,
                                      double cost_tolerance) {
+  const PlaneMotion start = started(given, unknowns);
   Blocks blocks = blocks_of(start);
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   double* const normal = blocks.normal.coeffs().data();
   problem.AddParameterBlock(normal, 4, new DirectionManifold);
   ordering->AddElementToGroup(normal, 1);
-  const bool shared = unknowns.rotations == RotationModel::bias;
-  if (shared) {
-    const int size = FrameCost::rotation_size(unknowns);
+  if (is_shared(unknowns)) {
+    const int size = FrameCost::shared_size(unknowns);
     Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
     weights.head<3>() /= window.gyro->prior_sigma_rad_s;
     weights(3) /= kTimeOffsetSigma_s;
@@ -223,8 +232,8 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     const auto add = [&](double* plane, const FrameObservations& f, PlaneBlock block) {
       if (f.count == 0) return;
       std::vector<double*> parameters{plane, blocks.tau[i].data()};
-      if (shared) parameters.push_back(blocks.bias_offset.data());
-      if (unknowns.rotations == RotationModel::free) parameters.push_back(blocks.phi[i].data());
+      if (is_shared(unknowns)) parameters.push_back(blocks.bias_offset.data());
+      if (is_own(unknowns)) parameters.push_back(blocks.phi[i].data());
       problem.AddResidualBlock(
           new FrameCost(window, f, unknowns, start.R_wc[i], i, block), nullptr, parameters);
     };
@@ -232,8 +241,13 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     for (std::size_t k = 0; k < blocks.others.size(); ++k)
       add(blocks.others[k].data(), observations.others[k][i], PlaneBlock::m);
     ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
-    if (unknowns.rotations == RotationModel::free)
-      ordering->AddElementToGroup(blocks.phi[i].data(), 1);
+    if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 1);
+    if (unknowns.gyro_noise) {
+      const double weight = unknowns.sigma_px / gyro_noise_sigma_rad(window, i);
+      const Eigen::Vector4d weights = Eigen::Vector4d::Constant(weight);
+      problem.AddResidualBlock(
+          new PriorCost(Vector3d::Zero(), weights, 3), nullptr, blocks.phi[i].data());
+    }
   }
   const SolverReport solver = solve_by_schur(
       problem, std::move(ordering), {.cost = cost_tolerance}, watch, [&blocks]() -> Vector3d {

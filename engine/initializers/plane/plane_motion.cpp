@@ -56,6 +56,17 @@ Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const Plane
          gyro.d_offset[frame] * motion.time_offset_s;
 }
 
+Eigen::Matrix3d gyro_rotation(const Window& window, int frame, const PlaneMotion& motion) {
+  const Eigen::Matrix3d R =
+      window.R_wc[frame] * so3_exp(gyro_correction_rad(window, frame, motion));
+  return motion.gyro_noise_rad.empty() ? R : R * so3_exp(motion.gyro_noise_rad[frame]);
+}
+
+double gyro_noise_sigma_rad(const Window& window, int frame) {
+  const auto ns = static_cast<double>(window.timestamps_ns[frame] - window.timestamps_ns[0]);
+  return window.gyro->noise_density * std::sqrt(1e-9 * ns);
+}
+
 FrameState frame_state(const PlaneObservations& observations,
                        const PlaneMotion& motion,
                        int frame) {

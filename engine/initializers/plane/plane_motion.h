@@ -31,6 +31,9 @@ struct PlaneMotion {
   std::vector<Eigen::Matrix3d> R_wc;    ///< one a frame
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< where the rotations depend on it
   double time_offset_s = 0;  ///< added to the gyroscope's own, where they depend on it
+  /// One a frame: its rotation is what the gyroscope's turns into, times exp(this); empty where the
+  /// gyroscope's noise is no unknown.
+  std::vector<Eigen::Vector3d> gyro_noise_rad = {};
 };
 
 /// The window's rotations, all translations zero, the normal along z: where the paper starts.
@@ -45,6 +48,12 @@ std::vector<Pose> cameras_of(const PlaneMotion& motion);
 /// What a gyroscope's rotation R_wc of a frame turns into with the motion's bias and time offset is
 /// R_wc exp(this), to first order.
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion);
+
+/// R_wc of a frame from the gyroscope with the motion's bias, time offset and noise.
+Eigen::Matrix3d gyro_rotation(const Window& window, int frame, const PlaneMotion& motion);
+/// Standard deviation of that noise, each axis: the rates' white noise, integrated from the
+/// reference frame on [rad].
+double gyro_noise_sigma_rad(const Window& window, int frame);
 
 /// Where a frame's errors are linearized.
 FrameState frame_state(const PlaneObservations& observations, const PlaneMotion& motion, int frame);

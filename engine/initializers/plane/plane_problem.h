@@ -26,7 +26,7 @@ using KnownRotations = Split<2, 3>;     // normal | t
 using UnknownBias = Split<5, 3>;        // normal, bias | t
 using UnknownBiasOffset = Split<6, 3>;  // normal, bias, time offset | t
 using FreeRotations = Split<2, 6>;      // normal | phi, t
-// Of several planes, as many as there are (`Layout`).
+// Of several planes, as many as there are (`Layout`); the latter also with a gyroscope's noise.
 using SeveralPlanes = Split<Eigen::Dynamic, 3>;
 using SeveralPlanesFree = Split<Eigen::Dynamic, 6>;
 
@@ -241,10 +241,14 @@ class PlaneProblem {
     for (int i = 1; i < frame_count(); ++i) {
       to.tau[i] += from.R_wc[i] * step.own[i].template tail<3>();
       if constexpr (S::kOwn == 6) {
-        to.R_wc[i] = from.R_wc[i] * so3_exp(step.own[i].template head<3>());
-      } else if (has_gyro()) {
-        to.R_wc[i] = window_.R_wc[i] * so3_exp(gyro_correction_rad(window_, i, to));
+        const Eigen::Matrix3d turn = so3_exp(step.own[i].template head<3>());
+        if (has_noise()) {
+          to.gyro_noise_rad[i] = so3_log(so3_exp(from.gyro_noise_rad[i]) * turn);
+        } else {
+          to.R_wc[i] = from.R_wc[i] * turn;
+        }
       }
+      if (has_gyro()) to.R_wc[i] = gyro_rotation(window_, i, to);
     }
     return to;
   }
@@ -252,6 +256,7 @@ class PlaneProblem {
  private:
   // False at compile time where there is no room for them.
   bool has_gyro() const { return (kSeveral<S> || S::kShared > 2) && layout_.gyro > 0; }
+  bool has_noise() const { return kSeveral<S> && S::kOwn == 6 && unknowns_.gyro_noise; }
   bool has_clock() const { return (kSeveral<S> || S::kShared == 6) && layout_.gyro == 4; }
 
   FrameNormals normals_of(const FrameObservations& f,
@@ -282,6 +287,10 @@ class PlaneProblem {
       add_plane<S>(at.frames[frame], layout_, 0, plane_columns(0, tau_c, gyro), sum);
       for (int k = 0; k < layout_.others; ++k)
         add_plane<S>(at.others[k][frame], layout_, k + 1, plane_columns(k + 1, tau_c, gyro), sum);
+      if (has_noise()) {
+        sum.oo.diagonal().template head<3>().array() += noise_weight(frame);
+        sum.o.template head<3>() += noise_weight(frame) * motion.gyro_noise_rad[frame];
+      }
       return sum;
     }
   }
@@ -291,6 +300,8 @@ class PlaneProblem {
     if (has_gyro())
       cost += 0.5 * bias_weight() * (motion.bias_rad_s - window_.gyro->prior_rad_s).squaredNorm();
     if (has_clock()) cost += 0.5 * offset_weight() * motion.time_offset_s * motion.time_offset_s;
+    for (int i = 1; has_noise() && i < frame_count(); ++i)
+      cost += 0.5 * noise_weight(i) * motion.gyro_noise_rad[i].squaredNorm();
     return cost;
   }
 
@@ -313,6 +324,10 @@ class PlaneProblem {
 
   double bias_weight() const {
     const double ratio = unknowns_.sigma_px / window_.gyro->prior_sigma_rad_s;
+    return ratio * ratio;
+  }
+  double noise_weight(int frame) const {
+    const double ratio = unknowns_.sigma_px / gyro_noise_sigma_rad(window_, frame);
     return ratio * ratio;
   }
   double offset_weight() const {

@@ -75,21 +75,38 @@ PlaneSolution solve_split(const Window& window,
 
 }  // namespace
 
+PlaneMotion started(PlaneMotion start, const PlaneUnknowns& unknowns) {
+  if (!unknowns.gyro_noise) start.gyro_noise_rad.clear();
+  if (unknowns.gyro_noise && start.gyro_noise_rad.empty())
+    start.gyro_noise_rad.assign(start.tau.size(), Eigen::Vector3d::Zero());
+  return start;
+}
+
+namespace {
+
+/// A gyroscope's rotations are measurements, too, where its noise is unknown.
+int residual_count(const PlaneObservations& observations, const PlaneUnknowns& unknowns) {
+  const int frames = static_cast<int>(observations.frames.size());
+  return 2 * observations.count() + (unknowns.gyro_noise ? 3 * (frames - 1) : 0);
+}
+
+}  // namespace
+
 PlaneSolution solve_plane(const Window& window,
                           const PlaneObservations& observations,
                           const PlaneMotion& start,
                           const PlaneUnknowns& unknowns,
                           const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
-  const bool several = !observations.others.empty();
-  const bool free = unknowns.rotations == RotationModel::free;
+  const bool several = !observations.others.empty() || unknowns.gyro_noise;
+  const bool free = unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
   const auto solve = several ? (free ? solve_split<SeveralPlanesFree> : solve_split<SeveralPlanes>)
                      : unknowns.rotations == RotationModel::known ? solve_split<KnownRotations>
                      : unknowns.rotations == RotationModel::free  ? solve_split<FreeRotations>
                      : unknowns.time_offset                       ? solve_split<UnknownBiasOffset>
                                                                   : solve_split<UnknownBias>;
-  PlaneSolution solution = solve(window, observations, start, unknowns, watch);
-  solution.solver.residuals = 2 * observations.count();
+  PlaneSolution solution = solve(window, observations, started(start, unknowns), unknowns, watch);
+  solution.solver.residuals = residual_count(observations, unknowns);
   solution.solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return solution;

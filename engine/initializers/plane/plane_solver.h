@@ -16,6 +16,9 @@ struct PlaneSolution {
   SolverReport solver;
 };
 
+/// With a noise of the gyroscope where it is an unknown, and nowhere else.
+PlaneMotion started(PlaneMotion start, const PlaneUnknowns& unknowns);
+
 /// Least squared transfer error over the plane's normal, all scaled translations (engine/method.md,
 /// eq. 7) and what else is unknown. Levenberg-Marquardt; translations and free rotations are
 /// eliminated frame by frame (Schur complement), so that a step costs one pass over the

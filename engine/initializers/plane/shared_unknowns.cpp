@@ -11,7 +11,9 @@ GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int fr
   if (unknowns == 0) return columns;
   columns.leftCols<3>() = window.gyro->d_bias[frame];
   if (unknowns == 4) columns.col(3) = window.gyro->d_offset[frame];
-  return so3_right_jacobian(gyro_correction_rad(window, frame, motion)) * columns;
+  columns = so3_right_jacobian(gyro_correction_rad(window, frame, motion)) * columns;
+  if (!motion.gyro_noise_rad.empty()) columns = so3_exp(-motion.gyro_noise_rad[frame]) * columns;
+  return columns;
 }
 
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro) {

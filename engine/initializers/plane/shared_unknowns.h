@@ -16,6 +16,9 @@ struct PlaneUnknowns {
   RotationModel rotations = RotationModel::known;
   bool time_offset = false;  ///< with `bias`: the offset between the clocks, too
   double sigma_px = 0.5;     ///< noise of a coordinate, against which the priors are weighed
+  /// With `bias`: three more unknowns a frame, the gyroscope's integrated noise, with a prior that
+  /// takes frames as independent (engine/method.md, eq. 6b).
+  bool gyro_noise = false;
 };
 
 /// Standard deviation of the offset between clocks before anything is measured [s].

@@ -50,7 +50,11 @@ std::string bias_yaml(const Gyroscope& gyroscope) {
   std::string text;
   if (!gyroscope.bias_rad_s.isZero(0))
     text = fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
-  return text + fmt::format("gyroscope_bias_sigma: {}  # [rad/s]\n", gyroscope.bias_sigma_rad_s);
+  return text + fmt::format(
+                    "gyroscope_bias_sigma: {}  # [rad/s]\n"
+                    "gyroscope_noise_density: {}  # [rad/s/sqrt(Hz)]\n",
+                    gyroscope.bias_sigma_rad_s,
+                    gyroscope.noise_density);
 }
 
 std::string lens_yaml(const Camera& camera) {

@@ -47,7 +47,7 @@ std::string yaml_list(std::span<const double> values);
 std::string yaml_list(const Eigen::Vector3d& values);
 /// `T_BS` as EuRoC's sensor.yaml has it; reads back as the same numbers.
 std::string transformation_yaml(const Pose& pose);
-/// `gyroscope_bias`, unless it is zero, and `gyroscope_bias_sigma`.
+/// `gyroscope_bias`, unless it is zero, `gyroscope_bias_sigma` and `gyroscope_noise_density`.
 std::string bias_yaml(const Gyroscope& gyroscope);
 /// Beside poses that are not to be interpolated.
 inline constexpr const char* kNoInterpolation =

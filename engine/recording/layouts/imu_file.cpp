@@ -29,6 +29,12 @@ ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
   }
   if (const auto sigma = find(root, "gyroscope_bias_sigma"))
     result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
+  if (const auto density = find(root, "gyroscope_noise_density")) {
+    const std::string expected = "a number that is not negative in rad/s/sqrt(Hz)";
+    const double value = number(*density, expected);
+    if (value < 0) yaml_fail(*density, expected);
+    if (value > 0) result.noise_density = value;
+  }
   return result;
 }
 
@@ -39,6 +45,7 @@ void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const cha
     gyroscope.bias_source = source;
   }
   if (calibration.bias_sigma_rad_s) gyroscope.bias_sigma_rad_s = *calibration.bias_sigma_rad_s;
+  if (calibration.noise_density) gyroscope.noise_density = *calibration.noise_density;
 }
 
 }  // namespace gpo

@@ -155,7 +155,8 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);
   const auto& gyroscope = recording.gyroscope;
-  const bool unusual = gyroscope && gyroscope->bias_sigma_rad_s != Gyroscope{}.bias_sigma_rad_s;
+  const bool unusual = gyroscope && (gyroscope->bias_sigma_rad_s != Gyroscope{}.bias_sigma_rad_s ||
+                                     gyroscope->noise_density != Gyroscope{}.noise_density);
   if (gyroscope && (unusual || !gyroscope->bias_rad_s.isZero(0)))
     files["imu.yaml"] = bias_yaml(*gyroscope);
   if (poses && lacks_truth(*poses)) files["groundtruth.yaml"] = kNoInterpolation;

@@ -156,15 +156,17 @@ TEST(GyroSensitivity, OfTheClockIsTheDifferenceQuotient) {
   }
 }
 
-TEST(GyroSensitivity, KnowsTheBiasAndItsPrior) {
+TEST(GyroSensitivity, KnowsTheBiasItsPriorAndTheNoise) {
   Gyroscope gyroscope = constant_rate(Vector3d(0.1, 0.2, 0.3));
   gyroscope.bias_rad_s = Vector3d(0.01, 0.02, -0.03);
   gyroscope.bias_sigma_rad_s = 0.002;
+  gyroscope.noise_density = 0.0007;
   const Rotations rotations = sensitive_gyro_rotations(gyroscope, frame_times());
   EXPECT_EQ(rotations.model, RotationModel::bias);
   EXPECT_EQ(rotations.gyro->bias_rad_s, gyroscope.bias_rad_s);
   EXPECT_EQ(rotations.gyro->prior_rad_s, gyroscope.bias_rad_s);
   EXPECT_EQ(rotations.gyro->prior_sigma_rad_s, 0.002);
+  EXPECT_EQ(rotations.gyro->noise_density, 0.0007);
   EXPECT_EQ(rotations.gyro->d_bias.size(), 30U);
   EXPECT_EQ(rotations.gyro->d_offset.size(), 30U);
 }

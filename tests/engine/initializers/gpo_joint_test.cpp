@@ -135,6 +135,39 @@ TEST(GpoJoint, WithoutAGyroscopeFreesTheRotations) {
   EXPECT_LT(median(freed), 0.5 * median(held));
 }
 
+/// The root mean square of the cameras' errors [d].
+double camera_error(const Initialization& result, const Simulation& truth) {
+  double squares = 0;
+  for (std::size_t i = 0; i < truth.cameras.size(); ++i)
+    squares += (result.cameras[i].p_wc - truth.cameras[i].p_wc).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(truth.cameras.size()));
+}
+
+/// Pictures that are better than the gyroscope, and a gyroscope that is better than none.
+TEST(GpoJoint, WeighsANoisyGyroscopeAgainstThePictures) {
+  std::vector<double> weighed, trusted, ignored;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
+                                                          .noise_px = 0.1,
+                                                          .gyro_bias_rad_s = 0.002,
+                                                          .gyro_noise_rad_s = 0.005,
+                                                          .seed = seed}));
+    const auto error = [&] {
+      const Initialization result =
+          initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
+      EXPECT_TRUE(result.ok) << result.reason;
+      return camera_error(result, truth);
+    };
+    weighed.push_back(error());
+    truth.window.gyro->noise_density = 0;
+    trusted.push_back(error());
+    truth.window.rotations = RotationModel::free;
+    ignored.push_back(error());
+  }
+  EXPECT_LT(median(weighed), 0.8 * median(trusted));
+  EXPECT_LT(median(weighed), 0.95 * median(ignored));
+}
+
 TEST(GpoJoint, FindsTheOffsetBetweenTheClocks) {
   std::vector<double> errors_s;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

@@ -55,19 +55,34 @@ TEST(SeveralPlanes, JointSolutionIsExactWithoutNoise) {
   }
 }
 
-class SolversOfSeveralPlanes : public testing::TestWithParam<RotationModel> {};
+/// True rotations, told by a gyroscope of unknown bias and with noise.
+GyroSensitivity gyroscope_of(const Window& window) {
+  GyroSensitivity gyro;
+  gyro.noise_density = 1e-3;
+  for (const std::int64_t t : window.timestamps_ns) {
+    const double seconds = 1e-9 * static_cast<double>(t - window.timestamps_ns[0]);
+    gyro.d_bias.emplace_back(-seconds * Eigen::Matrix3d::Identity());
+    gyro.d_offset.emplace_back(Vector3d::Zero());
+  }
+  return gyro;
+}
+
+class SolversOfSeveralPlanes : public testing::TestWithParam<PlaneUnknowns> {};
 
 TEST_P(SolversOfSeveralPlanes, EndInOneMinimum) {
-  const Room room = room_of(2, 0.3);
+  Room room = room_of(2, 0.3);
+  room.window.gyro = gyroscope_of(room.window);
   const PlaneMotion start = truth_of(room);
   const PlaneObservations observations = plane_observations(room.window, numbers_of(start.others));
-  const PlaneUnknowns unknowns{GetParam(), false, 0.3};
+  PlaneUnknowns unknowns = GetParam();
+  unknowns.sigma_px = 0.3;
   const PlaneSolution ours = solve_plane(room.window, observations, start, unknowns, {});
   const PlaneSolution ceres =
       solve_plane_with_ceres(room.window, observations, start, unknowns, {}, 1e-16);
   ASSERT_EQ(ours.solver.termination, Termination::convergence);
   EXPECT_NEAR(ours.solver.final_cost / ceres.solver.final_cost, 1, 1e-8);
-  EXPECT_EQ(ours.solver.residuals, 2 * observations.count());
+  const int of_noise = unknowns.gyro_noise ? 3 * (room.window.frame_count() - 1) : 0;
+  EXPECT_EQ(ours.solver.residuals, 2 * observations.count() + of_noise);
   EXPECT_LT(angle_deg(ours.motion.normal, ceres.motion.normal), 1e-4);
   for (std::size_t k = 0; k < start.others.size(); ++k)
     EXPECT_LT((ours.motion.others[k].m - ceres.motion.others[k].m).norm(), 1e-5);
@@ -75,8 +90,15 @@ TEST_P(SolversOfSeveralPlanes, EndInOneMinimum) {
 
 INSTANTIATE_TEST_SUITE_P(Rotations,
                          SolversOfSeveralPlanes,
-                         testing::Values(RotationModel::known, RotationModel::free),
-                         [](const auto& info) { return std::string(to_string(info.param)); });
+                         testing::Values(PlaneUnknowns{.rotations = RotationModel::known},
+                                         PlaneUnknowns{.rotations = RotationModel::bias},
+                                         PlaneUnknowns{.rotations = RotationModel::bias,
+                                                       .gyro_noise = true},
+                                         PlaneUnknowns{.rotations = RotationModel::free}),
+                         [](const auto& info) {
+                           return std::string(to_string(info.param.rotations)) +
+                                  (info.param.gyro_noise ? "_and_noise" : "");
+                         });
 
 TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
   const Room room = room_of(3, 0.5);

@@ -85,7 +85,11 @@ TEST_F(Content, KnowsTheGyroscope) {
   const std::string desk = std::string(GPO_SOURCE_DIR) + "/sequences/desk";
   Recording recording = *open_recording(desk);
   const RecordingContent before = content_of(recording);
+  const Gyroscope gyroscope = *recording.gyroscope;
   recording.gyroscope->rates_rad_s[7].x() += 1e-9;
+  EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
+  recording.gyroscope = gyroscope;
+  recording.gyroscope->noise_density *= 2;
   EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
 }
 

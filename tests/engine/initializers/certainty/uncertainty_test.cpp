@@ -114,6 +114,31 @@ INSTANTIATE_TEST_SUITE_P(,
                                          RotationModel::free),
                          [](const auto& each) { return std::string(to_string(each.param)); });
 
+/// The walk is a worse enemy than the independent noise a frame that the solver takes it for.
+TEST(Uncertainty, OfANoisyGyroscopeKnowsThatItsNoiseWalks) {
+  const Method& method = find_method("gpo_joint");
+  ChiSquare normal{2}, center{3}, middle{3};
+  for (std::uint64_t seed = 1; seed <= 240; ++seed) {
+    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+    const Simulation truth = with_fitted_homographies(simulate({.motion = motion,
+                                                                .noise_px = 0.2,
+                                                                .gyro_bias_rad_s = 0.01,
+                                                                .gyro_noise_rad_s = 0.01,
+                                                                .seed = seed}));
+    const Initialization result = assessed(
+        method, truth.window, method.initialize(truth.window, {.shutter = Shutter::global}, {}));
+    ASSERT_TRUE(result.ok) << result.reason;
+    EXPECT_EQ(result.uncertainty->rotations, RotationModel::bias) << seed;
+    add_errors(truth, result, normal, center);
+    middle.add(normalized_square(result.cameras[15].p_wc - truth.cameras[15].p_wc,
+                                 result.uncertainty->center_covariances[15]),
+               kQuantile3);
+  }
+  normal.expect();
+  center.expect();
+  middle.expect();
+}
+
 TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
   const Method& method = find_method("gpo");
   ChiSquare normal{2}, center{3};

@@ -42,14 +42,18 @@ double difference(const PlaneMotion& a, const PlaneMotion& b) {
   return most;
 }
 
+Window of_noisy_gyroscope(Window window, double noise_density = 3e-4) {
+  window.gyro->noise_density = noise_density;
+  return window;
+}
+
 class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
 
 TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
   int same = 0;
   int equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
-    const Simulation truth = random_window(seed);
-    const Window& window = truth.window;
+    const Window window = of_noisy_gyroscope(random_window(seed).window);
     PlaneMotion start = *closed_form_motion(window);
     const PlaneSolution held = solve_plane(window, plane_observations(window), start, {}, {});
     start = held.motion;
@@ -74,17 +78,21 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
   EXPECT_GE(equal, GetParam().rotations == RotationModel::known ? 145 : 120);
 }
 
-INSTANTIATE_TEST_SUITE_P(,
-                         PlaneSolverJudged,
-                         testing::Values(PlaneUnknowns{.rotations = RotationModel::known},
-                                         PlaneUnknowns{.rotations = RotationModel::bias},
-                                         PlaneUnknowns{.rotations = RotationModel::bias,
-                                                       .time_offset = true},
-                                         PlaneUnknowns{.rotations = RotationModel::free}),
-                         [](const auto& each) {
-                           return std::string(to_string(each.param.rotations)) +
-                                  (each.param.time_offset ? "_and_offset" : "");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    ,
+    PlaneSolverJudged,
+    testing::Values(PlaneUnknowns{.rotations = RotationModel::known},
+                    PlaneUnknowns{.rotations = RotationModel::bias},
+                    PlaneUnknowns{.rotations = RotationModel::bias, .time_offset = true},
+                    PlaneUnknowns{.rotations = RotationModel::bias, .gyro_noise = true},
+                    PlaneUnknowns{
+                        .rotations = RotationModel::bias, .time_offset = true, .gyro_noise = true},
+                    PlaneUnknowns{.rotations = RotationModel::free}),
+    [](const auto& each) {
+      return std::string(to_string(each.param.rotations)) +
+             (each.param.time_offset ? "_and_offset" : "") +
+             (each.param.gyro_noise ? "_and_noise" : "");
+    });
 
 TEST(PlaneSolver, FindsTheExactAnswerWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
@@ -115,6 +123,25 @@ TEST(PlaneSolver, FreeRotationsFindTheTrueOnes) {
                                              {.rotations = RotationModel::free},
                                              {});
   EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
+}
+
+/// Between a gyroscope that is exact but for its bias and none at all.
+TEST(PlaneSolver, TrustsAGyroscopeAsFarAsItsNoiseTells) {
+  const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
+  const PlaneObservations observations = plane_observations(truth.window);
+  const PlaneMotion start = *closed_form_motion(truth.window);
+  const auto solved = [&](double noise_density, const PlaneUnknowns& unknowns) {
+    const Window window = of_noisy_gyroscope(truth.window, noise_density);
+    return solve_plane(window, observations, start, unknowns, {}).motion;
+  };
+  const PlaneUnknowns noisy{.rotations = RotationModel::bias, .gyro_noise = true};
+  const PlaneMotion exact = solved(0, {.rotations = RotationModel::bias});
+  const PlaneMotion none = solved(0, {.rotations = RotationModel::free});
+  EXPECT_LT(difference(solved(1e-9, noisy), exact), 1e-8);
+  PlaneMotion worthless = solved(1e4, noisy);
+  worthless.bias_rad_s = none.bias_rad_s;  // nothing tells it
+  EXPECT_LT(difference(worthless, none), 1e-7);
+  EXPECT_GT(difference(exact, none), 1e-4);
 }
 
 TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {

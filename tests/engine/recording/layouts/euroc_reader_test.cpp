@@ -250,6 +250,22 @@ TEST_F(EurocReader, ReadsHowSureTheBiasIs) {
   }
 }
 
+TEST_F(EurocReader, ReadsTheGyroscopesNoise) {
+  const auto density = [&](const std::string& text) {
+    folder.write("mav0/imu0/sensor.yaml",
+                 std::string(kTbsImu) + "gyroscope_noise_density: " + text + "\n");
+    return open()->gyroscope->noise_density;
+  };
+  EXPECT_EQ(density("1.7e-4"), 1.7e-4);
+  EXPECT_EQ(density("0.0"), Gyroscope{}.noise_density) << "nobody measured it";
+  for (const char* bad : {"-0.01", "small", "nan"}) {
+    folder.write("mav0/imu0/sensor.yaml",
+                 std::string(kTbsImu) + "gyroscope_noise_density: " + bad + "\n");
+    EXPECT_THAT(error(), HasSubstr("sensor.yaml:2: key `gyroscope_noise_density`: found")) << bad;
+    EXPECT_THAT(error(), HasSubstr("expected a number that is not negative")) << bad;
+  }
+}
+
 /// Textured, so that every part of the file carries picture.
 cv::Mat noise() {
   cv::Mat picture(48, 64, CV_8UC3);

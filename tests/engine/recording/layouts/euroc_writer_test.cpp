@@ -43,6 +43,7 @@ Recording everything() {
   gyroscope.time_offset_ns = -2345678;
   gyroscope.bias_rad_s = {0.001, 1.0 / 3000, -0.002};
   gyroscope.bias_sigma_rad_s = 0.0123;
+  gyroscope.noise_density = 1.0 / 7000;
   recording.gyroscope = gyroscope;
   recording.plane = Plane{Eigen::Vector3d(1, 2, 3).normalized(), 0.7};
   recording.board = Board{9, 6, 0.025};
@@ -78,6 +79,7 @@ TEST(EurocWriter, WritesWhatOpensAsTheSame) {
   EXPECT_EQ(read->gyroscope->time_offset_ns, recording.gyroscope->time_offset_ns);
   EXPECT_EQ(read->gyroscope->bias_rad_s, recording.gyroscope->bias_rad_s);
   EXPECT_EQ(read->gyroscope->bias_sigma_rad_s, recording.gyroscope->bias_sigma_rad_s);
+  EXPECT_EQ(read->gyroscope->noise_density, recording.gyroscope->noise_density);
   ASSERT_TRUE(read->truth);
   for (int i = 0; i < 4; ++i) {
     ASSERT_EQ(read->truth->poses[i].has_value(), truth.poses[i].has_value()) << i;
