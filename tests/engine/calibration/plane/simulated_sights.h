@@ -21,6 +21,7 @@ struct SimulatedSights {
   double moves_m = 0.5;      ///< sideways, at most
   double noise_px = 0.3;
   double track_noise_px = 0;  ///< the same in all pictures of a point
+  double unevenness_m = 0;    ///< heights of the plane's waves, at most
   double outliers = 0;        ///< share of the observations, up to 20 px off
 };
 
