@@ -119,6 +119,7 @@ std::vector<SightedPlane> without_far(const std::vector<SightedPlane>& planes,
   for (const auto& sights : errors)
     for (const Eigen::VectorXd& sight : sights)
       if (sight.size() > 0) medians.push_back(median_of(sight));
+  if (medians.empty()) return planes;
   const double most_median_px = kDisagrees * median(medians);
   std::vector<SightedPlane> kept = planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {

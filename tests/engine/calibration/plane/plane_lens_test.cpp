@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
+#include "engine/calibration/plane/plane_selection.h"
 #include "tests/engine/calibration/plane/simulated_sights.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <fmt/format.h>
@@ -77,6 +79,27 @@ TEST(PlaneLens, FindsUnlikeLensesWithinStandardDeviationsThatTellTheErrors) {
     EXPECT_THAT(std::sqrt(squares[k] / count), testing::AllOf(testing::Gt(0.3), testing::Lt(1.8)))
         << kLensNames[k];
   }
+}
+
+TEST(PlaneLens, AnUnevenPlaneIsNoNoiseOfItsPoints) {
+  // Waves of 4 mm, seen from 1 m, move points by a pixel as the camera goes around them.
+  const SimulatedSights options{
+      .points = 150, .pictures = 24, .half_m = 0.9, .unevenness_m = 0.004};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto scene = simulate_sights(options, seed);
+    const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
+    ASSERT_TRUE(found.ok) << found.reason;
+    EXPECT_LT(found.rms_px, 1.2 * std::numbers::sqrt2 * options.noise_px) << seed;
+    EXPECT_LT(std::abs(normalized_errors(found, options.camera)[0]), 3.5) << seed;
+  }
+}
+
+TEST(PlaneLens, NothingLeftIsNotLookedAtAnyFarther) {
+  const std::vector<SightedPlane> planes{{3, {{0, {}, Eigen::Matrix2Xd(2, 0)}}}};
+  std::vector<int> left_out;
+  const auto kept = without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out);
+  EXPECT_EQ(observation_count(kept), 0);
+  EXPECT_THAT(left_out, testing::IsEmpty());
 }
 
 TEST(PlaneLens, CountsWhatIsWrongWithAPointOnce) {

@@ -59,7 +59,7 @@ SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t see
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, options.points);
   Eigen::Matrix2Xd offsets(2, options.points);
   for (int j = 0; j < options.points; ++j) {
-    points.col(j).head<2>() << 1.5 * uniform(random), 1.5 * uniform(random);
+    points.col(j).head<2>() << options.half_m * uniform(random), options.half_m * uniform(random);
     offsets.col(j) << options.track_noise_px * normal(random),
         options.track_noise_px * normal(random);
   }

@@ -11,11 +11,12 @@
 
 namespace gpo {
 
-/// Pictures of points on z = 0 within 1.5 m, from about 1 m.
+/// Pictures of points on z = 0, from about 1 m.
 struct SimulatedSights {
   Camera camera = {640, 480, 560, 565, 325, 232, Distortion::radial_tangential, {0.05, -0.1}};
   int points = 300;
   int pictures = 40;
+  double half_m = 1.5;       ///< the points are within, along x and y
   double slant_deg = 35;     ///< of the plane's normal to the optical axis, at most
   double kept_tilt_deg = 0;  ///< a slant that all pictures share
   double moves_m = 0.5;      ///< sideways, at most
