@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// To be raised whenever another camera is found in the same pictures.
-constexpr int kAlgorithm = 1;
+constexpr int kAlgorithm = 2;
 
 /// FNV-1a.
 std::uint64_t hash(std::string_view bytes) {
