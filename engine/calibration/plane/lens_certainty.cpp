@@ -134,7 +134,7 @@ LensCertainty lens_certainty(const std::vector<SightedPlane>& planes,
   for (Eigen::Index row = 0; row < JY.rows(); ++row) {
     const ResidualSource& source = problem.sources()[linear.source_of_row[row]];
     if (source.plane < 0) {
-      known += options.prior_px * options.prior_px * JY.row(row).transpose() * JY.row(row);
+      known += source.sigma_px * source.sigma_px * JY.row(row).transpose() * JY.row(row);
       continue;
     }
     const LensVector move = JY.row(row).transpose() * linear.r[row];

@@ -28,11 +28,14 @@ constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // of f [widths]
 constexpr double kSameStart = 0.05;  // by which the guess differs from one, or is one more [-]
 constexpr int kNormals = 2;          // that are tried with each
 constexpr int kLeastPictures = 6;    // in all
-constexpr int kRounds = 3;           // of dropping what is far off
+constexpr int kRounds = 4;           // of dropping what is far off
 constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // of the progress
 constexpr double kFar = 4.5;  // noises, beyond which an observation is dropped
 constexpr double kKnee = 2;   // of Huber's loss, in noises
 constexpr double kStartKnee_px = 2;
+// Of a plane's points [distances]: no paper and no floor is flatter; what is rougher is none.
+constexpr double kFlattest = 3e-5;
+constexpr double kRoughest = 1e-2;
 constexpr double kMostDesign = 100;  // by how much clusters widen the variance, at most
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
@@ -166,7 +169,9 @@ Adjustment settled(Work& work,
     const SightErrors errors = errors_of(work, now);
     const double noise_px = noise_of(errors);
     work.options.knee_px = kKnee * noise_px;
-    work.options.prior_px = noise_px;
+    work.options.prior_px = work.options.noise_px = noise_px;
+    work.options.height_sigma =
+        round == 0 ? kRoughest : std::clamp(height_of(work.planes, now), kFlattest, kRoughest);
     work.planes = without_far(work.planes, errors, kFar * noise_px, left_out);
     now = adjusted(work, now);
   }

@@ -25,6 +25,17 @@ struct PriorError {
   }
 };
 
+/// A point's height over its plane, in pixels of the noise.
+struct HeightError {
+  double weight;
+
+  template <typename T>
+  bool operator()(const T* point, T* error) const {
+    error[0] = weight * point[2];
+    return true;
+  }
+};
+
 /// By which rotation two poses and the gyroscope differ, in pixels of the noise.
 struct TurnError {
   GyroTurn turn;
@@ -56,7 +67,7 @@ std::vector<int> sight_counts(const SightedPlane& plane) {
 }
 
 /// Two points of the plane that are seen often and are far apart.
-std::pair<int, int> held_points(const SightedPlane& plane, const Eigen::Matrix2Xd& places) {
+std::pair<int, int> held_points(const SightedPlane& plane, const Eigen::Matrix3Xd& places) {
   const std::vector<int> counts = sight_counts(plane);
   const int most = *std::ranges::max_element(counts);
   const auto first = static_cast<int>(std::ranges::find(counts, most) - counts.begin());
@@ -93,9 +104,10 @@ PlaneProblem::PlaneProblem(const std::vector<SightedPlane>& planes,
           new PriorError<kLensUnknowns>{prior.mean, weights}),
       nullptr,
       unknowns_.lens.data());
-  sources_.push_back({.rows = kLensUnknowns});
+  sources_.push_back({.rows = kLensUnknowns, .sigma_px = options.prior_px});
   add_sights(planes, width, height);
   hold_gauge(planes);
+  if (options.height_sigma > 0) add_heights();
   if (!gyro.turns.empty()) add_turns(planes, gyro);
 }
 
@@ -108,7 +120,7 @@ void PlaneProblem::add_sights(const std::vector<SightedPlane>& planes, int width
       for (std::size_t k = 0; k < sight.points.size(); ++k) {
         const Vector2d raw_px = sight.raw_px.col(static_cast<Eigen::Index>(k));
         problem_.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<SightError, 2, kLensUnknowns, 6, 2>(
+            new ceres::AutoDiffCostFunction<SightError, 2, kLensUnknowns, 6, 3>(
                 new SightError(raw_px, width, height)),
             loss,
             unknowns_.lens.data(),
@@ -122,17 +134,36 @@ void PlaneProblem::add_sights(const std::vector<SightedPlane>& planes, int width
 }
 
 void PlaneProblem::hold_gauge(const std::vector<SightedPlane>& planes) {
+  const bool flat = !(options_.height_sigma > 0);
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    Eigen::Matrix2Xd& places = unknowns_.planes[p].points;
+    Eigen::Matrix3Xd& places = unknowns_.planes[p].points;
     const auto [first, second] = held_points(planes[p], places);
     for (int j = 0; j < planes[p].points; ++j) {
       double* const place = places.col(j).data();
       if (!problem_.HasParameterBlock(place)) continue;
-      if (j == first || j == second) {
+      const bool is_held = j == first || j == second;
+      if (is_held && flat) {
         problem_.SetParameterBlockConstant(place);
-      } else {
-        free_blocks_.push_back(place);
+        continue;
       }
+      if (is_held) problem_.SetManifold(place, new ceres::SubsetManifold(3, {0, 1}));
+      if (flat) problem_.SetManifold(place, new ceres::SubsetManifold(3, {2}));
+      free_blocks_.push_back(place);
+    }
+  }
+}
+
+void PlaneProblem::add_heights() {
+  const double weight = options_.noise_px / options_.height_sigma;
+  for (AdjustedPlane& plane : unknowns_.planes) {
+    for (Eigen::Index j = 0; j < plane.points.cols(); ++j) {
+      double* const place = plane.points.col(j).data();
+      if (!problem_.HasParameterBlock(place)) continue;
+      problem_.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<HeightError, 1, 3>(new HeightError{weight}),
+          nullptr,
+          place);
+      sources_.push_back({.rows = 1, .sigma_px = options_.noise_px});
     }
   }
 }
@@ -144,7 +175,7 @@ void PlaneProblem::add_turns(const std::vector<SightedPlane>& planes, const Gyro
                                 new PriorError<3>{Vector3d::Zero(), weights}),
                             nullptr,
                             bias);
-  sources_.push_back({.rows = 3});
+  sources_.push_back({.rows = 3, .sigma_px = options_.prior_px});
   free_blocks_.push_back(bias);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     std::map<int, double*> pose_of_frame;
@@ -161,7 +192,7 @@ void PlaneProblem::add_turns(const std::vector<SightedPlane>& planes, const Gyro
                                 a->second,
                                 b->second,
                                 bias);
-      sources_.push_back({.rows = 3});
+      sources_.push_back({.rows = 3, .sigma_px = options_.prior_px});
     }
   }
 }

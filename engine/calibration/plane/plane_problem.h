@@ -22,9 +22,8 @@ class SightError {
   template <typename T>
   bool operator()(const T* lens, const T* pose, const T* point, T* error) const {
     using std::exp;
-    const T on_plane[3] = {point[0], point[1], T(0)};
     T p[3];
-    ceres::AngleAxisRotatePoint(pose, on_plane, p);
+    ceres::AngleAxisRotatePoint(pose, point, p);
     const T z = p[2] + pose[5];
     if (!(z > T(1e-6))) return false;
     const T x = (p[0] + pose[3]) / z;
@@ -53,6 +52,7 @@ struct ResidualSource {
   int sight = 0;
   int point = 0;
   int rows = 2;
+  double sigma_px = 0;  ///< of a prior's rows: what they weigh as
 };
 
 /// The least squares of `adjust`, over the unknowns of an adjustment that it changes in place.
@@ -76,6 +76,7 @@ class PlaneProblem {
   void add_sights(const std::vector<SightedPlane>& planes, int width, int height);
   void add_turns(const std::vector<SightedPlane>& planes, const GyroTurns& gyro);
   void hold_gauge(const std::vector<SightedPlane>& planes);
+  void add_heights();
 
   const AdjustmentOptions& options_;
   Adjustment& unknowns_;

@@ -11,11 +11,12 @@
 namespace gpo {
 namespace {
 
-constexpr int kLeastSights = 3;   // of a point
-constexpr int kLeastPoints = 8;   // of a sight
-constexpr int kFewSights = 16;    // of a plane, where starts are compared
-constexpr int kFewPoints = 70;    // the same
-constexpr double kDisagrees = 3;  // medians of all sights, beyond which one is left out
+constexpr int kLeastSights = 3;             // of a point
+constexpr int kLeastPoints = 8;             // of a sight
+constexpr int kFewSights = 16;              // of a plane, where starts are compared
+constexpr int kFewPoints = 70;              // the same
+constexpr double kDisagrees = 3;            // medians of all sights, beyond which one is left out
+constexpr double kMedianOfNormal = 0.6745;  // of the absolute value of a standard normal one
 
 /// The sight's observations that `is_kept(column)` says.
 template <typename Predicate>
@@ -118,6 +119,7 @@ std::vector<SightedPlane> without_far(const std::vector<SightedPlane>& planes,
   for (const auto& sights : errors)
     for (const Eigen::VectorXd& sight : sights)
       if (sight.size() > 0) medians.push_back(median_of(sight));
+  if (medians.empty()) return planes;
   const double most_median_px = kDisagrees * median(medians);
   std::vector<SightedPlane> kept = planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
@@ -147,6 +149,16 @@ std::vector<double> finite(const SightErrors& errors) {
 double noise_of(const SightErrors& errors) {
   const std::vector<double> all = finite(errors);
   return all.empty() ? 1 : median(all) / kMedianOfRayleigh;
+}
+
+double height_of(const std::vector<SightedPlane>& planes, const Adjustment& adjustment) {
+  std::vector<double> heights;
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const std::vector<int> counts = counts_of(planes[p]);
+    for (int j = 0; j < planes[p].points; ++j)
+      if (counts[j] > 0) heights.push_back(std::abs(adjustment.planes[p].points(2, j)));
+  }
+  return heights.empty() ? 0 : median(heights) / kMedianOfNormal;
 }
 
 int observation_count(const std::vector<SightedPlane>& planes) {

@@ -36,6 +36,9 @@ std::vector<double> finite(const SightErrors& errors);
 /// Noise of a coordinate [px], by the median of the errors' lengths.
 double noise_of(const SightErrors& errors);
 
+/// How far points are off their planes, by the median of those that are seen [distances].
+double height_of(const std::vector<SightedPlane>& planes, const Adjustment& adjustment);
+
 int observation_count(const std::vector<SightedPlane>& planes);
 int sight_count(const std::vector<SightedPlane>& planes);  ///< that show any point
 int point_count(const std::vector<SightedPlane>& planes);  ///< that are seen

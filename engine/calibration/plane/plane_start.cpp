@@ -206,7 +206,7 @@ std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
                                       double focal_px,
                                       const Vector3d& normal) {
   const Matrix3d frame = plane_frame(normal);
-  AdjustedPlane plane{Matrix2Xd::Zero(2, mosaic.points.cols()), {}};
+  AdjustedPlane plane{Eigen::Matrix3Xd::Zero(3, mosaic.points.cols()), {}};
   Vector2d one = Vector2d::Constant(kNaN);
   int behind = 0;
   for (Eigen::Index j = 0; j < mosaic.points.cols(); ++j) {
@@ -217,7 +217,7 @@ std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
     behind += slope < kLeastSlope ? 1 : 0;
     const double depth = std::max(slope, kLeastSlope);
     const Vector3d place = frame.transpose() * ray / depth;
-    plane.points.col(j) = place.head<2>();
+    plane.points.col(j).head<2>() = place.head<2>();
     if (!one.allFinite() || place.head<2>().norm() < one.norm()) one = place.head<2>();
   }
   if (behind > kMostBehind * static_cast<double>(mosaic.points.cols())) return std::nullopt;

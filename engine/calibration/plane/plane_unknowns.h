@@ -23,10 +23,10 @@ struct LensPrior {
   LensVector sigma = {1.0, 0.01, 0.04, 0.04, 0.3, 0.5, 0.003, 0.003};
 };
 
-/// A plane as it is adjusted: its points (x, y, 0), and a pose for each of its sights,
-/// x_c = exp(w) X + t, as (w, t).
+/// A plane as it is adjusted: its points (x, y, height), in the distance of the picture that it was
+/// begun in, and a pose for each of its sights, x_c = exp(w) X + t, as (w, t).
 struct AdjustedPlane {
-  Eigen::Matrix2Xd points;
+  Eigen::Matrix3Xd points;
   std::vector<Eigen::Matrix<double, 6, 1>> poses;
 };
 
@@ -39,8 +39,10 @@ struct Adjustment {
 };
 
 struct AdjustmentOptions {
-  double knee_px = 1;   ///< of Huber's loss, on the length of an error [px]
-  double prior_px = 1;  ///< so many pixels of an error weigh as one sigma of a prior
+  double knee_px = 1;       ///< of Huber's loss, on the length of an error [px]
+  double prior_px = 1;      ///< so many pixels of an error weigh as one sigma of a prior
+  double noise_px = 1;      ///< the same of the heights' prior
+  double height_sigma = 0;  ///< of points off their plane [distances]; 0: planes are flat
   int most_iterations = 40;
   bool holds_distortion = false;  ///< its coefficients stay as they are
   std::stop_token stop = {};

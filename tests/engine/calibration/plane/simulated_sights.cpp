@@ -36,6 +36,19 @@ class Wander {
   double frequency_[3];
 };
 
+/// A floor's waves, about as long as a picture is wide.
+void raise(Eigen::Matrix3Xd& points, double most_m, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
+  for (int wave = 0; wave < 4; ++wave) {
+    const double heading = uniform(random);
+    const double phase = uniform(random);
+    const double rate = 4 + wave;  // [rad / m]
+    const Eigen::Vector2d along = rate * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    for (auto point : points.colwise())
+      point.z() += most_m / 4 * std::sin(along.dot(point.head<2>()) + phase);
+  }
+}
+
 }  // namespace
 
 SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t seed) {
@@ -46,10 +59,11 @@ SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t see
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, options.points);
   Eigen::Matrix2Xd offsets(2, options.points);
   for (int j = 0; j < options.points; ++j) {
-    points.col(j).head<2>() << 1.5 * uniform(random), 1.5 * uniform(random);
+    points.col(j).head<2>() << options.half_m * uniform(random), options.half_m * uniform(random);
     offsets.col(j) << options.track_noise_px * normal(random),
         options.track_noise_px * normal(random);
   }
+  if (options.unevenness_m > 0) raise(points, options.unevenness_m, random);
   const Wander slant_x(random), slant_y(random), roll(random), x(random), y(random), z(random);
   SimulatedScene scene;
   scene.plane.points = options.points;

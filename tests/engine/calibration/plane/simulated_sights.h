@@ -11,16 +11,18 @@
 
 namespace gpo {
 
-/// Pictures of points on z = 0 within 1.5 m, from about 1 m.
+/// Pictures of points on z = 0, from about 1 m.
 struct SimulatedSights {
   Camera camera = {640, 480, 560, 565, 325, 232, Distortion::radial_tangential, {0.05, -0.1}};
   int points = 300;
   int pictures = 40;
+  double half_m = 1.5;       ///< the points are within, along x and y
   double slant_deg = 35;     ///< of the plane's normal to the optical axis, at most
   double kept_tilt_deg = 0;  ///< a slant that all pictures share
   double moves_m = 0.5;      ///< sideways, at most
   double noise_px = 0.3;
   double track_noise_px = 0;  ///< the same in all pictures of a point
+  double unevenness_m = 0;    ///< heights of the plane's waves, at most
   double outliers = 0;        ///< share of the observations, up to 20 px off
 };
 
