@@ -11,8 +11,8 @@ namespace gpo {
 
 /// Global plane optimization in which what is uncertain of the rotations is unknown, too: a
 /// constant gyroscope bias (Gaussian prior), the gyroscope's integrated noise and, asked for, the
-/// offset between the clocks; without a gyroscope the rotation of every frame. Starts from GPO with the rotations as given, never from
-/// rest, and says so where it ends in a wrong minimum.
+/// offset between the clocks; without a gyroscope the rotation of every frame. Starts from GPO with
+/// the rotations as given, never from rest, and says so where it ends in a wrong minimum.
 Initialization initialize_gpo_joint(const Window& window,
                                     const InitializerOptions& options,
                                     const Watch& watch);
