@@ -14,6 +14,7 @@ test_packages=(
   clang libclang-rt-dev  # tests/fuzz
   # bags that we did not write
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
+  python3-opencv python3-jsonschema  # an initializer that we did not compile
 )
 benchmark_packages=(libbenchmark-dev)
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/method_commands.h"
 #include "app/setting_options.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
@@ -257,6 +258,7 @@ void add_convert(CLI::App& app, ConvertArguments& arguments) {
 }
 
 struct AllArguments {
+  MethodArguments methods;  ///< already registered
   CalibrateArguments calibrate;
   EvaluateArguments evaluate;
   InfoArguments info;
@@ -284,6 +286,8 @@ void declare(CLI::App& app, AllArguments& arguments) {
   add_run(app, arguments.run);
   add_snapshot(app, arguments.snapshot);
   add_evaluate(app, arguments.evaluate);
+  for (const char* command : {"view", "run", "snapshot", "evaluate"})
+    add_method_commands(*app.get_subcommand(command), arguments.methods);
   add_calibrate(app, arguments.calibrate);
   CLI::App* synthesize =
       app.add_subcommand("synthesize", "A recording with perfect ground truth, from a recipe");
@@ -348,6 +352,7 @@ int main_with_errors(int argc, char** argv) {
   AllArguments arguments;
   try {
     quiet_libraries();
+    register_method_commands(argc, argv);
     declare(app, arguments);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);

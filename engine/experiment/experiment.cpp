@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/initializers/methods.h"
 
 #include <algorithm>
 #include <numeric>
@@ -75,6 +76,7 @@ ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
   if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
   if (a.seed != b.seed) found.plan.emplace_back("seed");
   if (a.program != b.program) found.content.emplace_back("version of the program");
+  if (a.commands != b.commands) found.content.emplace_back("command of a method");
   if (!same_names(a, b)) {
     found.plan.emplace_back("recordings");
     return found;
@@ -103,6 +105,10 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
     experiment.configurations.push_back(configuration_of(apply(one, {})));
   experiment.seed = request.seed;
   experiment.program = GPO_VERSION;
+  for (const Configuration& one : experiment.configurations) {
+    const std::string& identity = find_method(one.method).identity;
+    if (!identity.empty()) experiment.commands[one.method] = identity;
+  }
   int most_frames = 0;
   for (const auto& recording : recordings) {
     most_frames = std::max(most_frames, recording->frame_count());
@@ -203,12 +209,19 @@ ordered_json to_json(const Experiment& experiment) {
   for (const Configuration& configuration : experiment.configurations) {
     configurations.push_back(key_of(configuration));
   }
-  return {{"format", kFormat},
-          {"program", experiment.program},
-          {"recordings", std::move(recordings)},
-          {"lengths", experiment.lengths},
-          {"configurations", std::move(configurations)},
-          {"seed", experiment.seed}};
+  ordered_json json = {{"format", kFormat},
+                       {"program", experiment.program},
+                       {"recordings", std::move(recordings)},
+                       {"lengths", experiment.lengths},
+                       {"configurations", std::move(configurations)},
+                       {"seed", experiment.seed}};
+  if (!experiment.commands.empty()) json["commands"] = experiment.commands;
+  return json;
+}
+
+std::map<std::string, std::string> commands_in(const ordered_json& json) {
+  if (!json.contains("commands")) return {};
+  return json.at("commands").get<std::map<std::string, std::string>>();
 }
 
 Experiment experiment_from_json(const ordered_json& json) {
@@ -232,6 +245,7 @@ Experiment experiment_from_json(const ordered_json& json) {
   }
   experiment.seed = json.at("seed").get<std::uint64_t>();
   experiment.program = json.at("program").get<std::string>();
+  experiment.commands = commands_in(json);
   return experiment;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,6 +40,8 @@ struct Experiment {
   std::vector<Configuration> configurations;
   std::uint64_t seed = 1;
   std::string program = {};  ///< its version
+  /// Of the user's own methods among them what they are, by their keys.
+  std::map<std::string, std::string> commands = {};
 
   bool operator==(const Experiment&) const = default;
 };
@@ -97,6 +100,8 @@ int window_count(std::span<const ExperimentTask> tasks);
 int timed_length(const std::vector<int>& lengths);
 
 nlohmann::ordered_json to_json(const Experiment& experiment);
+/// Of an experiment's file, or a window's. Throws nlohmann::json::exception.
+std::map<std::string, std::string> commands_in(const nlohmann::ordered_json& json);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
 Experiment experiment_from_json(const nlohmann::ordered_json& json);
 

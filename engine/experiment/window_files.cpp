@@ -39,6 +39,7 @@ std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ordered_json& window) {
   std::vector<std::string> differs;
   if (window.at("program") != experiment.program) differs.emplace_back("version of the program");
+  if (commands_in(window) != experiment.commands) differs.emplace_back("command of a method");
   const auto content = window.at("content").get<RecordingContent>();
   for (const std::string& part : differing_parts(content, recording.content))
     differs.push_back(fmt::format("{} of {}", part, recording.name));
@@ -125,6 +126,7 @@ void save_window(const fs::path& folder, const Experiment& experiment, std::span
   ordered_json json = {{"program", experiment.program},
                        {"content", recording->content},
                        {"rows", ordered_json::array()}};
+  if (!experiment.commands.empty()) json["commands"] = experiment.commands;
   for (const Row& row : rows) json["rows"].push_back(to_json(row));
   write_file(window_file(folder, first.recording, first.settings.start, first.settings.frames),
              json_text(json, 1));

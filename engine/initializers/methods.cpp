@@ -18,7 +18,9 @@
 #include "engine/initializers/pnp_ba.h"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
+#include <iterator>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -59,14 +61,13 @@ void say_what_makes_it_weak(const std::optional<Uncertainty>& judged_by, Verdict
         *judged_by->neighbors_sigma_deg);
 }
 
-}  // namespace
-
-std::span<const Method> methods() {
+/// The rows of this program.
+std::vector<Method> our_methods() {
   using enum MethodFamily;
   using enum Inliers;
   using enum RotationModel;
   // clang-format off
-  static const std::array table{
+  return {
       Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo},
       Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  planes, free,         {}, plain<initialize_pnp>},
       Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>},
@@ -79,7 +80,41 @@ std::span<const Method> methods() {
              {"solver", "error", "loss", "shutter", "planes", "time_offset"}, initialize_gpo_joint},
   };
   // clang-format on
+}
+
+/// What `add_methods` keeps until the table is made, which happens once.
+struct Registry {
+  std::vector<Method> own;
+  std::atomic<bool> closed = false;
+};
+
+Registry& registry() {
+  static Registry one;
+  return one;
+}
+
+}  // namespace
+
+std::span<const Method> methods() {
+  static const std::vector<Method> table = [] {
+    registry().closed = true;
+    std::vector<Method> all = our_methods();
+    std::ranges::move(registry().own, std::back_inserter(all));
+    return all;
+  }();
   return table;
+}
+
+void add_methods(std::vector<Method> own) {
+  if (registry().closed) throw std::logic_error("methods are added before they are used");
+  std::vector<std::string> taken;
+  for (const Method& method : our_methods()) taken.push_back(method.key);
+  for (const Method& method : own) {
+    if (std::ranges::find(taken, method.key) != taken.end())
+      throw InputError(fmt::format("there already is a method '{}'", method.key));
+    taken.push_back(method.key);
+  }
+  registry().own = std::move(own);
 }
 
 Initialization assessed(const Method& method, const Window& window, Initialization result) {

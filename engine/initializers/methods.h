@@ -4,10 +4,12 @@
 
 #include "engine/initializers/common/initialization.h"
 #include "engine/initializers/common/initializer_options.h"
+#include "engine/initializers/common/sources.h"
 #include "engine/initializers/common/watch.h"
 #include "engine/window/window.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,12 +35,24 @@ struct Method {
   std::optional<RotationModel> rotations;
   /// The options that it heeds (fields of `InitializerOptions`), by the keys of their settings.
   std::vector<std::string> reads;
-  Initialization (*initialize)(const Window& window,
-                               const InitializerOptions& options,
-                               const Watch& watch);
+  std::function<Initialization(
+      const Window& window, const InitializerOptions& options, const Watch& watch)>
+      initialize;
+  /// Of a user's own: the same for those who have more than the window; empty of ours.
+  std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
+      initialize_from = {};
+  /// Of a user's own: what it is, by which results of another are told from its own; empty of ours.
+  std::string identity = {};
 };
 
+/// Ours, and then the user's own.
 std::span<const Method> methods();
+
+/// The user's own, in their order: to be called once at most, before anything asks for `methods()`
+/// (main does, before it reads its other arguments), so that the table never changes under those
+/// who read it, on whatever thread. Throws std::logic_error where it is too late; InputError for a
+/// key that is taken.
+void add_methods(std::vector<Method> own);
 
 /// What a method made of the window, with its uncertainty and the verdict on the window. A
 /// degenerate window's result becomes a failure.

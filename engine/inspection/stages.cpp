@@ -86,6 +86,31 @@ Watch told_by(const Settings& settings, const std::stop_token& stop, const Progr
           }};
 }
 
+/// What the window was made of.
+Sources sources_of(const Recording& recording, const Window& window) {
+  Sources sources;
+  sources.camera = &recording.camera;
+  sources.gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  const auto& files = recording.picture_files;
+  if (std::ssize(files) == recording.frame_count()) {
+    sources.pictures.assign(files.begin() + window.start,
+                            files.begin() + window.start + window.frame_count());
+  } else if (files.size() == 1) {
+    sources.pictures = files;
+  }
+  return sources;
+}
+
+Initialization initialized(const Recording& recording,
+                           const Window& window,
+                           const Settings& settings,
+                           const Watch& watch) {
+  const Method& method = find_method(settings.method);
+  return method.initialize_from
+             ? method.initialize_from(window, sources_of(recording, window), watch)
+             : method.initialize(window, settings.initializer, watch);
+}
+
 }  // namespace
 
 bool Stages::update_tracks(const Settings& settings,
@@ -165,8 +190,7 @@ void Stages::initialize(const Settings& settings,
   Initialization initialization =
       given.R_wc.empty()
           ? failed(given.reason)
-          : find_method(settings.method)
-                .initialize(window, settings.initializer, told_by(settings, stop, progress));
+          : initialized(*recording, window, settings, told_by(settings, stop, progress));
   Timing& t = inspection.timing;
   t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
                 .value.milliseconds[settings.frames - 1];

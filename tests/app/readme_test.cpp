@@ -57,6 +57,7 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   const fs::path top = GPO_SOURCE_DIR;
   for (const char* page : {"README.md",
                            "assets/nine/README.md",
+                           "engine/commands/README.md",
                            "engine/recording/README.md",
                            "engine/synthesis/README.md",
                            "tests/benchmark/README.md",

@@ -1,0 +1,17 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/commands/answer.h"
+#include "engine/window/window.h"
+
+namespace gpo {
+
+/// The answer as our methods deliver theirs: the world is the reference camera, the leading plane's
+/// distance 1. Points that are not given are those on the plane, or where no plane is given either
+/// triangulated; a plane that is not given is fitted to the inlier points; a camera that is null is
+/// resected from the points. A failure that says why where that does not go, or where the result
+/// does not fit the window's tracks, by which any method's is judged.
+Initialization initialization_of(const Window& window, const Answer& answer);
+
+}  // namespace gpo

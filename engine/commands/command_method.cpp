@@ -1,0 +1,254 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/commands/command_method.h"
+
+#include "engine/base/error.h"
+#include "engine/commands/answered.h"
+#include "engine/commands/window_json.h"
+#include "engine/files/json_text.h"
+#include "engine/process/child_process.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <zlib.h>
+
+namespace gpo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kLongestLine = 300;
+
+/// The last line that is not empty.
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \n\r\t");
+  if (end == std::string::npos) return "";
+  const std::size_t begin = text.rfind('\n', end);
+  return legible(text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin),
+                 kLongestLine);
+}
+
+struct Worker {
+  explicit Worker(const std::string& command) : process(command) {}
+  ChildProcess process;
+  int asked = 0;  ///< windows
+};
+
+/// A command and its processes.
+class Program {
+ public:
+  Program(MethodCommand command, CommandOptions options)
+      : command_(std::move(command)), options_(std::move(options)) {}
+
+  Initialization initialize(const Window& window, const Sources& sources, const Watch& watch) {
+    try {
+      return answered(window, sources, watch);
+    } catch (const std::exception& error) {
+      return failed(fmt::format("{}: {}", command_.name, message_of(error)));
+    }
+  }
+
+ private:
+  Initialization answered(const Window& window, const Sources& sources, const Watch& watch);
+  std::unique_ptr<Worker> take();
+  void give_back(std::unique_ptr<Worker> worker);
+  ProcessReply ask(Worker& worker, nlohmann::ordered_json& question, const Watch& watch) const;
+  void tell(const std::string& said) const;
+  std::string why_none(Worker& worker, const ProcessReply& reply) const;
+
+  const MethodCommand command_;
+  const CommandOptions options_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> idle_;
+};
+
+/// One that waits for a window, else a new one.
+std::unique_ptr<Worker> Program::take() {
+  while (true) {
+    std::unique_ptr<Worker> worker;
+    {
+      const std::lock_guard lock(mutex_);
+      if (idle_.empty()) break;
+      worker = std::move(idle_.back());
+      idle_.pop_back();
+    }
+    if (worker->process.is_in_step()) return worker;
+  }
+  return std::make_unique<Worker>(command_.command);
+}
+
+void Program::give_back(std::unique_ptr<Worker> worker) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(worker));
+}
+
+ProcessReply Program::ask(Worker& worker,
+                          nlohmann::ordered_json& question,
+                          const Watch& watch) const {
+  question["id"] = ++worker.asked;
+  ReplyLimits limits;
+  limits.time = options_.time_limit;
+  ProcessReply reply = worker.process.ask(json_text(question, -1), limits, watch.stop);
+  tell(reply.said);
+  return reply;
+}
+
+void Program::tell(const std::string& said) const {
+  if (!options_.told) return;
+  constexpr int kMostLines = 20;
+  std::istringstream lines(said);
+  int count = 0;
+  for (std::string line; std::getline(lines, line) && count <= kMostLines; ++count)
+    options_.told(command_.name, count < kMostLines ? legible(line, kLongestLine) : "...");
+}
+
+std::string Program::why_none(Worker& worker, const ProcessReply& reply) const {
+  const int number = worker.asked;
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
+  switch (reply.reply) {
+    case Reply::late:
+      return fmt::format("no answer {} within {:g} s{}",
+                         number,
+                         std::chrono::duration<double>(options_.time_limit).count(),
+                         reply.answer.empty() ? "" : ", only the beginning of it");
+    case Reply::too_long:
+      return fmt::format(
+          "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
+    default:
+      break;
+  }
+  const std::string last = last_line(reply.said);
+  return fmt::format("{} {} answer {}{}{}",
+                     worker.process.end(),
+                     reply.answer.empty() ? "before" : "in the middle of",
+                     number,
+                     last.empty() ? "" : ": ",
+                     last);
+}
+
+Initialization Program::answered(const Window& window, const Sources& sources, const Watch& watch) {
+  nlohmann::ordered_json question = {{"id", 0}};
+  question.update(window_json(window, sources));
+  const auto begin = Clock::now();
+  std::unique_ptr<Worker> worker = take();
+  ProcessReply reply = ask(*worker, question, watch);
+  // Programs that answer once and end are started anew for each window.
+  if (reply.reply == Reply::ended && reply.answer.empty() && worker->asked > 1) {
+    worker = std::make_unique<Worker>(command_.command);
+    reply = ask(*worker, question, watch);
+  }
+  if (reply.reply == Reply::stopped) return stopped_early();
+  if (reply.reply != Reply::answered) {
+    const std::string why = why_none(*worker, reply);
+    return failed(fmt::format("{}: {}", command_.name, why));
+  }
+  const double elapsed_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  const Asked asked{worker->asked,
+                    window.frame_count(),
+                    window.track_count(),
+                    static_cast<int>(window.planes.size())};
+  Initialization result;
+  try {
+    const Answer answer = read_answer(reply.answer, asked);
+    give_back(std::move(worker));
+    result = initialization_of(window, answer);
+    result.solver.milliseconds =
+        std::clamp(answer.milliseconds.value_or(elapsed_ms), 0.0, elapsed_ms);
+  } catch (const InputError& error) {
+    // What its next line would be an answer to is not known: it is not asked again.
+    return failed(fmt::format("{}: answer {}: {}", command_.name, asked.id, error.what()));
+  }
+  if (!result.ok) result.reason = fmt::format("{}: {}", command_.name, result.reason);
+  return result;
+}
+
+/// The command, and what is in those of its words that are files.
+std::string identity_of(const std::string& command) {
+  std::string identity = command;
+  std::istringstream words(command);
+  for (std::string word; words >> word;) {
+    std::erase_if(word, [](char c) { return c == '"' || c == '\''; });
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(word, none)) continue;
+    std::ifstream file(word, std::ios::binary);
+    std::array<char, 65'536> buffer{};
+    uLong sum = crc32(0, nullptr, 0);
+    while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
+      sum = crc32(sum,
+                  reinterpret_cast<const Bytef*>(buffer.data()),  // NOLINT(*-reinterpret-cast)
+                  static_cast<uInt>(file.gcount()));
+    identity += fmt::format(" {:08x}", sum);
+  }
+  return identity;
+}
+
+/// Unlike ours and each other.
+std::uint32_t color_of_own(int number) {
+  constexpr std::array<std::uint32_t, 6> kColors{
+      0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
+  return kColors[static_cast<std::size_t>(number) % kColors.size()];
+}
+
+}  // namespace
+
+MethodCommand parse_method_command(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  constexpr std::size_t kLongest = 40;
+  const bool fits =
+      !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '-';
+      });
+  const bool has_command =
+      equals != std::string::npos && text.find_first_not_of(" \t", equals + 1) != std::string::npos;
+  if (!fits || !has_command || name == "all") {
+    throw InputError(fmt::format(
+        "--method-command: '{}', expected NAME='COMMAND', the name of letters, digits, _ and -",
+        text));
+  }
+  return {name, text.substr(equals + 1)};
+}
+
+Method command_method(const MethodCommand& command, const CommandOptions& options, int number) {
+  const auto program = std::make_shared<Program>(command, options);
+  Method method{};
+  method.key = method.title = command.name;
+  method.rgb = color_of_own(number);
+  method.family = MethodFamily::optimization;
+  method.needs_plane = false;
+  method.inliers = Inliers::planes;
+  method.rotations = RotationModel::free;
+  method.initialize_from = [program](
+                               const Window& window, const Sources& sources, const Watch& watch) {
+    return program->initialize(window, sources, watch);
+  };
+  method.initialize =
+      [program](const Window& window, const InitializerOptions& /*options*/, const Watch& watch) {
+        return program->initialize(window, {}, watch);
+      };
+  method.identity = identity_of(command.command);
+  return method;
+}
+
+std::vector<Method> command_methods(std::span<const MethodCommand> commands,
+                                    const CommandOptions& options) {
+  std::vector<Method> methods;
+  for (const MethodCommand& command : commands)
+    methods.push_back(command_method(command, options, static_cast<int>(methods.size())));
+  return methods;
+}
+
+}  // namespace gpo

@@ -1,0 +1,22 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/camera.h"
+#include "engine/window/gyroscope.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace gpo {
+
+/// What a window was made of. No method of ours asks for it; a user's own may. Null or empty: there
+/// is none.
+struct Sources {
+  const Camera* camera = nullptr;        ///< of the raw pictures
+  const Gyroscope* gyroscope = nullptr;  ///< of the whole recording
+  /// A video of the whole recording, or one picture a frame of the window.
+  std::vector<std::filesystem::path> pictures = {};
+};
+
+}  // namespace gpo

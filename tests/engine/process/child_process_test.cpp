@@ -1,0 +1,129 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/process/child_process.h"
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+ReplyLimits within(milliseconds time) {
+  ReplyLimits limits;
+  limits.time = time;
+  return limits;
+}
+
+constexpr milliseconds kEnough{20'000};
+
+TEST(ChildProcess, AnswersLineByLine) {
+  ChildProcess process("while read a; do echo \"<$a>\"; done");
+  for (const std::string text : {"one", "two"}) {
+    const ProcessReply reply = process.ask(text + "\n", within(kEnough));
+    EXPECT_EQ(reply.reply, Reply::answered);
+    EXPECT_EQ(reply.answer, "<" + text + ">");
+    EXPECT_TRUE(process.is_in_step());
+  }
+  EXPECT_EQ(process.end(), "closed its standard output") << "that is: it lived";
+}
+
+// Neither end may wait for the other: the question and the answer are larger than any pipe.
+TEST(ChildProcess, TakesAndGivesMoreThanAPipeHolds) {
+  ChildProcess process("cat");
+  const std::string question = std::string(3'000'000, 'x') + "\n";
+  const ProcessReply reply = process.ask(question, within(kEnough));
+  EXPECT_EQ(reply.reply, Reply::answered);
+  EXPECT_EQ(reply.answer + "\n", question);
+}
+
+TEST(ChildProcess, HowItEndedIsTold) {
+  for (const auto& [command, how] :
+       {std::pair{"exit 3", "ended with exit code 3"},
+        std::pair{"read a; printf half; kill -9 $$", "was killed by signal 9 (Killed)"},
+        std::pair{"exec >&-; sleep 60", "closed its standard output"}}) {
+    ChildProcess process(command);
+    const ProcessReply reply = process.ask("question\n", within(kEnough));
+    EXPECT_EQ(reply.reply, Reply::ended) << command;
+    EXPECT_EQ(reply.answer, how == std::string("was killed by signal 9 (Killed)") ? "half" : "");
+    EXPECT_FALSE(process.is_in_step()) << command;
+    EXPECT_EQ(process.end(), how);
+  }
+}
+
+TEST(ChildProcess, ALateOneIsKilledWithAllThatItStarted) {
+  pid_t grandchild = 0;
+  {
+    ChildProcess process("sleep 1000 & echo $!; wait");
+    grandchild = std::stoi(process.ask("", within(kEnough)).answer);
+    ASSERT_EQ(kill(grandchild, 0), 0);
+    EXPECT_EQ(process.ask("question\n", within(milliseconds(100))).reply, Reply::late);
+  }
+  // Whoever inherits it has to wait for it.
+  bool gone = false;
+  for (int i = 0; i < 500 && !gone; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+    std::string state(1, 'Z');
+    if (std::FILE* file =
+            std::fopen(("/proc/" + std::to_string(grandchild) + "/stat").c_str(), "r")) {
+      char letter = 'R';
+      if (std::fscanf(file, "%*d (%*[^)]) %c", &letter) == 1) state[0] = letter;
+      std::fclose(file);
+    }
+    gone = state == "Z";
+  }
+  EXPECT_TRUE(gone);
+}
+
+TEST(ChildProcess, AnEndlessAnswerEndsAtItsLimit) {
+  ChildProcess process("yes | tr -d '\\n'");
+  const ProcessReply reply = process.ask("question\n", within(kEnough));
+  EXPECT_EQ(reply.reply, Reply::too_long);
+  EXPECT_LT(reply.answer.size(), ReplyLimits{}.answer_bytes + 100'000);
+}
+
+TEST(ChildProcess, OfEndlessComplaintsTheBeginningIsKept) {
+  ChildProcess process("read a; yes complaint | head -c 50000000 >&2; echo done");
+  const ProcessReply reply = process.ask("question\n", within(kEnough));
+  EXPECT_EQ(reply.answer, "done");
+  EXPECT_EQ(reply.said.size(), ReplyLimits{}.said_bytes);
+  EXPECT_THAT(reply.said, StartsWith("complaint\ncomplaint\n"));
+}
+
+TEST(ChildProcess, AStopIsHeeded) {
+  ChildProcess process("sleep 1000");
+  std::stop_source stop;
+  std::jthread stopper([&] {
+    std::this_thread::sleep_for(milliseconds(50));
+    stop.request_stop();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(process.ask("question\n", within(kEnough), stop.get_token()).reply, Reply::stopped);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kEnough / 2);
+}
+
+// A write to it raises SIGPIPE, which would end this program.
+TEST(ChildProcess, OneThatDoesNotListenDoesNoHarm) {
+  ChildProcess process("exec <&-; sleep 0.2; echo answered anyway");
+  const ProcessReply reply = process.ask(std::string(500'000, 'x') + "\n", within(kEnough));
+  EXPECT_EQ(reply.reply, Reply::answered);
+  EXPECT_EQ(reply.answer, "answered anyway");
+  EXPECT_FALSE(process.is_in_step()) << "what it has not read it cannot have answered";
+}
+
+TEST(ChildProcess, AnswersThatNobodyAskedForPutItOutOfStep) {
+  ChildProcess process("while read a; do echo first; echo second; done");
+  EXPECT_EQ(process.ask("question\n", within(kEnough)).answer, "first");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_FALSE(process.is_in_step());
+}
+
+}  // namespace
+}  // namespace gpo
