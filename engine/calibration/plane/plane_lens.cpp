@@ -36,7 +36,8 @@ constexpr double kStartKnee_px = 2;
 // Of a plane's points [distances]: no paper and no floor is flatter; what is rougher is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
-constexpr double kMostDesign = 100;  // by how much clusters widen the variance, at most
+constexpr double kTellsHeights = 0.1;  // how far a camera moves that does [distances]
+constexpr double kMostDesign = 100;    // by how much clusters widen the variance, at most
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
 
@@ -158,42 +159,6 @@ SightErrors errors_of(const Work& work, const Adjustment& adjustment) {
   return sight_errors(work.planes, work.width, work.height, adjustment);
 }
 
-/// Rounds of dropping what is far off, with a loss that suits the noise.
-Adjustment settled(Work& work,
-                   Adjustment now,
-                   std::vector<int>& left_out,
-                   const Progress& progress) {
-  for (int round = 0; round < kRounds; ++round) {
-    if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
-    if (work.options.stop.stop_requested()) break;
-    const SightErrors errors = errors_of(work, now);
-    const double noise_px = noise_of(errors);
-    work.options.knee_px = kKnee * noise_px;
-    work.options.prior_px = work.options.noise_px = noise_px;
-    work.options.height_sigma =
-        round == 0 ? kRoughest : std::clamp(height_of(work.planes, now), kFlattest, kRoughest);
-    work.planes = without_far(work.planes, errors, kFar * noise_px, left_out);
-    now = adjusted(work, now);
-  }
-  return now;
-}
-
-LensCertainty certainty_of(const Work& work, const Adjustment& now, double noise_px) {
-  return lens_certainty(
-      work.planes, work.gyro, work.width, work.height, now, work.prior, noise_px, work.options);
-}
-
-/// Observations say less than their number: a prior weighs accordingly more.
-LensCertainty weigh_prior(Work& work, Adjustment& now) {
-  const double noise_px = noise_of(errors_of(work, now));
-  const LensCertainty first = certainty_of(work, now, noise_px);
-  const double design =
-      std::clamp(std::pow(first.sigma[0] / first.own_sigma[0], 2), 1.0, kMostDesign);
-  work.options.prior_px = noise_px * std::sqrt(design);
-  now = adjusted(work, now);
-  return certainty_of(work, now, noise_px);
-}
-
 /// The largest angle between the plane's normals in the camera's axes, and distance between
 /// centers, in distances from the plane.
 void measure_motion(const Work& work, const Adjustment& now, PlaneLens& result) {
@@ -214,6 +179,46 @@ void measure_motion(const Work& work, const Adjustment& now, PlaneLens& result) 
       }
     }
   }
+}
+
+/// Rounds of dropping what is far off, with a loss that suits the noise.
+Adjustment settled(Work& work,
+                   Adjustment now,
+                   std::vector<int>& left_out,
+                   const Progress& progress) {
+  PlaneLens flat;
+  measure_motion(work, now, flat);
+  const bool tells_heights = flat.moved >= kTellsHeights;
+  for (int round = 0; round < kRounds; ++round) {
+    if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
+    if (work.options.stop.stop_requested()) break;
+    const SightErrors errors = errors_of(work, now);
+    const double noise_px = noise_of(errors);
+    work.options.knee_px = kKnee * noise_px;
+    work.options.prior_px = work.options.noise_px = noise_px;
+    if (tells_heights)
+      work.options.height_sigma =
+          round == 0 ? kRoughest : std::clamp(height_of(work.planes, now), kFlattest, kRoughest);
+    work.planes = without_far(work.planes, errors, kFar * noise_px, left_out);
+    now = adjusted(work, now);
+  }
+  return now;
+}
+
+LensCertainty certainty_of(const Work& work, const Adjustment& now, double noise_px) {
+  return lens_certainty(
+      work.planes, work.gyro, work.width, work.height, now, work.prior, noise_px, work.options);
+}
+
+/// Observations say less than their number: a prior weighs accordingly more.
+LensCertainty weigh_prior(Work& work, Adjustment& now) {
+  const double noise_px = noise_of(errors_of(work, now));
+  const LensCertainty first = certainty_of(work, now, noise_px);
+  const double design =
+      std::clamp(std::pow(first.sigma[0] / first.own_sigma[0], 2), 1.0, kMostDesign);
+  work.options.prior_px = noise_px * std::sqrt(design);
+  now = adjusted(work, now);
+  return certainty_of(work, now, noise_px);
 }
 
 std::string why_unknown(const PlaneLens& result) {
