@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

@@ -99,8 +99,13 @@ std::string ending_of(pid_t pid) {
   if (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
       info.si_pid == 0)
     return "";
-  if (info.si_code == CLD_EXITED) return fmt::format("ended with exit code {}", info.si_status);
-  return fmt::format("was killed by signal {} ({})", info.si_status, sigdescr_np(info.si_status));
+  // By 128 + N a shell says that what it waited for was killed by signal N.
+  const bool told_by_shell = info.si_code == CLD_EXITED && info.si_status > 128;
+  const int signal = told_by_shell ? info.si_status - 128 : info.si_status;
+  const char* name = sigdescr_np(signal);
+  if (info.si_code == CLD_EXITED && !(told_by_shell && name != nullptr))
+    return fmt::format("ended with exit code {}", info.si_status);
+  return fmt::format("was killed by signal {} ({})", signal, name == nullptr ? "?" : name);
 }
 
 }  // namespace

@@ -58,10 +58,9 @@ std::string answer_of(const json& result) {
     for (int i = 0; i < 3; ++i) rows.push_back({R(i, 0), R(i, 1), R(i, 2)});
     cameras.push_back({{"R_wc", rows}, {"center", frame["p_wc"]}});
   }
-  return json{
-      {"cameras", answer["cameras"]},
-      {"plane", {{"normal", result["plane"]["normal"]}, {"distance", result["plane"]["distance"]}}}}
-      .dump();
+  json plane;
+  for (const char* key : {"normal", "distance"}) plane[key] = result["plane"][key];
+  return json{{"cameras", cameras}, {"plane", plane}}.dump();
 }
 
 TEST(MethodCommand, WhatOursFoundComesBackAsItIs) {

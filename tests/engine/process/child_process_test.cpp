@@ -48,6 +48,9 @@ TEST(ChildProcess, HowItEndedIsTold) {
   for (const auto& [command, how] :
        {std::pair{"exit 3", "ended with exit code 3"},
         std::pair{"read a; printf half; kill -9 $$", "was killed by signal 9 (Killed)"},
+        std::pair{"read a; printf half; sh -c 'kill -9 $$'; exit $?",
+                  "was killed by signal 9 (Killed)"},
+        std::pair{"exit 255", "ended with exit code 255"},
         std::pair{"exec >&-; sleep 60", "closed its standard output"}}) {
     ChildProcess process(command);
     const ProcessReply reply = process.ask("question\n", within(kEnough));
