@@ -17,7 +17,7 @@ namespace {
 
 using State = WorkbenchState;
 
-void add_methods(std::vector<Action>& table) {
+void add_choices_of_method(std::vector<Action>& table) {
   for (std::size_t i = 0; i < methods().size(); ++i) {
     const Method& method = methods()[i];
     std::vector<Shortcut> shortcuts;
@@ -118,7 +118,7 @@ void wish_calibration(State& s) {
 }  // namespace
 
 void add_method_actions(std::vector<Action>& table) {
-  add_methods(table);
+  add_choices_of_method(table);
   add_settings(table);
   table.push_back(plain("compute",
                         "Compute again",
