@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::string_view;
 
-constexpr std::uint64_t kMostBytes = 1 << 20;
+constexpr std::uint64_t kMostBoxBytes = 1 << 20;
 constexpr int kMostBoxes = 10'000;
 
 std::uint64_t big_endian(Bytes bytes) {
@@ -109,7 +109,7 @@ std::optional<MovieBox> MovieFile::box_at(std::initializer_list<std::string_view
 }
 
 std::string MovieFile::bytes_of(MovieBox box) {
-  if (box.end - box.begin > kMostBytes) return "";
+  if (box.end - box.begin > kMostBoxBytes) return "";
   std::string bytes(box.end - box.begin, '\0');
   file_.clear();
   file_.seekg(static_cast<std::streamoff>(box.begin));
