@@ -140,9 +140,9 @@ TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
 TEST(Snapshot, DifferentCubeIsNoticed) {
   const fs::path folder = fresh_folder();
   ASSERT_EQ(snapshot("image", folder / "base.png").exit_code, 0);
-  // Another source of rotations moves the cube and the outliers by little.
+  // Another method moves the cube and the outliers by little.
   const Outcome outcome = snapshot(
-      "image", folder / "a.png", "--rotations truth --baseline " + (folder / "base.png").string());
+      "image", folder / "a.png", "--method gpo --baseline " + (folder / "base.png").string());
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
 }
 
