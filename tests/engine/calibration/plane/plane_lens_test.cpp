@@ -116,7 +116,8 @@ TEST(PlaneLens, FindsUnlikeLensesWithinStandardDeviationsThatTellTheErrors) {
     squares += some.squares / static_cast<double>(lenses.size());
   }
   EXPECT_GE(within_three, 23);  // of 25: nine of ten
-  EXPECT_THAT(squares[0], testing::AllOf(testing::Gt(0.4), testing::Lt(1.8)));
+  // 99.9 % of a chi-square of 25 numbers; ten seeds a lens have a mean of 1.35.
+  EXPECT_THAT(squares[0], testing::AllOf(testing::Gt(0.4), testing::Lt(2.1)));
   for (int k = 1; k < 6; ++k) {
     EXPECT_THAT(squares[k], testing::AllOf(testing::Gt(0.35), testing::Lt(2.5))) << kLensNames[k];
   }
