@@ -31,14 +31,16 @@ struct CameraCalibration {
   std::vector<int> frames;  ///< used
   double coverage = 0;      ///< of the picture, in cells of 8 x 6, where corners were
   double slant_deg = 0;     ///< of the board to the picture's plane: nine tenths are below
+  double bend_m = 0;        ///< its corners' largest distance off a plane; 0: taken as flat
   std::vector<std::string> warnings;
 };
 
 /// Least squares over views that differ (`choose_views`), again without those that fit far worse
 /// than the others. Views that follow one another share their errors (blur, rolling shutter, the
 /// same part of the lens), so the least squares' own standard deviations are too small; leaving out
-/// blocks of time shows how far the result depends on them. Of a board that is not flat, or of
-/// another size, they know nothing.
+/// blocks of time shows how far the result depends on them. Where every view shows all corners, a
+/// board that is not flat is told by its fit, and taken as it is: half a percent of its width moves
+/// a focal length by percents. Of a board of another size they know nothing.
 ///
 /// A coefficient that the views do not determine is left at 0, with a warning that names it: one
 /// that is within three standard deviations of 0, where these are above 10 or each would shift the

@@ -35,6 +35,11 @@ std::string seen(const CameraCalibration& calibration) {
                      calibration.slant_deg);
 }
 
+std::string board(const CameraCalibration& calibration) {
+  return fmt::format("not flat: corners are up to {:.2g} mm off a plane, which is allowed for",
+                     1000 * calibration.bend_m);
+}
+
 }  // namespace
 
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source) {
@@ -45,6 +50,7 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
                                  calibration.frames.size(),
                                  calibration.rms_px,
                                  seen(calibration));
+  if (calibration.bend_m > 0) text += fmt::format("# board {}\n", board(calibration));
   for (const std::string& warning : calibration.warnings) {
     text += fmt::format("# warning: {}\n", warning);
   }
@@ -79,6 +85,7 @@ std::string to_text(const CameraCalibration& calibration) {
                       : fmt::format("{:10.5f} +- {:.5f}", values[i], sigma));
   }
   text += row("seen", seen(calibration));
+  if (calibration.bend_m > 0) text += row("board", board(calibration));
   for (const std::string& warning : calibration.warnings) text += row("warning", warning);
   return text;
 }

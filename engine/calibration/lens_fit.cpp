@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 
 namespace gpo {
@@ -79,7 +80,21 @@ int flags_of(const HeldCoefficients& held, Distortion distortion) {
   return flags;
 }
 
-LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start) {
+/// Largest distance of points off the plane through them.
+double bend_of(const cv::Mat& points) {
+  Eigen::Matrix3Xd all(3, points.total());
+  for (int i = 0; i < all.cols(); ++i) {
+    const auto& p = points.at<cv::Point3f>(i);
+    all.col(i) << p.x, p.y, p.z;
+  }
+  all.colwise() -= all.rowwise().mean().eval();
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(all, Eigen::ComputeFullU);
+  return (svd.matrixU().col(2).transpose() * all).cwiseAbs().maxCoeff();
+}
+
+/// `columns`: of corners. The last of the first row is held, with the first and the last corner's
+/// height: the gauge of OpenCV's object releasing method (Strobl and Hirzinger 2011).
+LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
   Camera camera = start.camera;
   LensFit solution;
   cv::Mat K(intrinsics_of(camera));
@@ -92,18 +107,25 @@ LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& star
   if (camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
   if (camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
   flags |= flags_of(start.held, camera.distortion);
-  solution.rms_px = cv::calibrateCamera(seen.points,
-                                        seen.pixels,
-                                        {camera.width, camera.height},
-                                        K,
-                                        coefficients,
-                                        rotations,
-                                        translations,
-                                        start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
-                                        cv::noArray(),
-                                        solution.view_rms_px,
-                                        flags,
-                                        kEnough);
+  cv::Mat points;
+  // With the board held, it is the same as cv::calibrateCamera.
+  solution.rms_px =
+      cv::calibrateCameraRO(seen.points,
+                            seen.pixels,
+                            {camera.width, camera.height},
+                            start.bent ? columns - 1 : -1,
+                            K,
+                            coefficients,
+                            rotations,
+                            translations,
+                            start.bent ? cv::OutputArray(points) : cv::noArray(),
+                            start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
+                            cv::noArray(),
+                            cv::noArray(),
+                            solution.view_rms_px,
+                            flags,
+                            kEnough);
+  if (start.bent) solution.bend_m = bend_of(points);
   set_parameters(camera, K, coefficients);
   solution.camera = camera;
   for (std::size_t i = 0; start.with_sigmas && i < 4 + camera.coefficients.size(); ++i) {
@@ -160,6 +182,13 @@ std::span<const LensCoefficient> coefficients_of(Distortion distortion) {
   return kRadialTangential;
 }
 
+bool can_tell_bend(const std::vector<CalibrationView>& views, Distortion distortion) {
+  const auto complete = [](const CalibrationView& view) {
+    return std::ranges::all_of(view.corners, [](const auto& px) { return px.allFinite(); });
+  };
+  return distortion != Distortion::equidistant && std::ranges::all_of(views, complete);
+}
+
 std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start) {
@@ -167,7 +196,7 @@ std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
     const Correspondences seen = correspondences(views, board);
     LensFit solution = start.camera.distortion == Distortion::equidistant
                            ? fit_equidistant(seen, start)
-                           : fit_radial_tangential(seen, start);
+                           : fit_radial_tangential(seen, start, board.columns);
     if (plausible(solution.camera)) return solution;
   } catch (const cv::Exception&) {
     // OpenCV's word for views that fix no camera.

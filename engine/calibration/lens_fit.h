@@ -32,6 +32,9 @@ struct LensStart {
   bool known = false;
   bool with_sigmas = true;
   HeldCoefficients held{};
+  /// The board's corners may be off their plane, and off their grid: paper bends, printers stretch.
+  /// Only where every view shows all of them, and not with an equidistant lens.
+  bool bent = false;
 };
 
 /// One least squares.
@@ -41,7 +44,11 @@ struct LensFit {
   std::vector<double> sigmas;       ///< the least squares' own; empty where it tells none
   std::vector<double> view_rms_px;  ///< one a view
   std::vector<double> slant_deg;    ///< one a view
+  double bend_m = 0;                ///< of a bent board: its corners' largest distance off a plane
 };
+
+/// Whether the views tell how a board bends.
+bool can_tell_bend(const std::vector<CalibrationView>& views, Distortion distortion);
 
 /// The camera that brings the corners of all views nearest to where they were seen. Nothing where
 /// the least squares come to nothing sensible.

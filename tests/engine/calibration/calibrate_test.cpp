@@ -42,15 +42,22 @@ Pose pose_from(std::mt19937& random, double distance, double slant_deg) {
   return {R, looked_at - distance * (1 + 0.3 * uniform(random)) * R.col(2)};
 }
 
-/// Views as a search would have found them, with noise on the corners.
-BoardSearch simulated(const Camera& camera, int count, int seed, double distance, double slant) {
+/// Views as a search would have found them, with noise on the corners, of a board whose middle
+/// rises above its ends.
+BoardSearch simulated(
+    const Camera& camera, int count, int seed, double distance, double slant, double rise_m = 0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.15);
   BoardSearch search;
   search.size = {camera.width, camera.height};
   while (static_cast<int>(search.views.size()) < count) {
-    CalibrationView view{
-        search.examined++, project_board(kBoard, camera, pose_from(random, distance, slant)), 1.5};
+    CalibrationView view{search.examined++, {}, 1.5};
+    const Pose pose = pose_from(random, distance, slant);
+    for (Eigen::Vector3d corner : board_points(kBoard)) {
+      const double along = 2 * corner.x() / ((kBoard.columns - 1) * kBoard.square_m) - 1;
+      corner.z() = rise_m * (1 - along * along);
+      view.corners.push_back(project(camera, to_camera(pose, corner)));
+    }
     bool inside = true;
     for (auto& corner : view.corners) {
       corner += Eigen::Vector2d(noise(random), noise(random));
@@ -84,6 +91,22 @@ TEST(Calibrate, FindsTheCameraWithinThreeStandardDeviations) {
     EXPECT_GT(found.coverage, 0.7);
     EXPECT_GT(found.slant_deg, 25);
     EXPECT_TRUE(found.warnings.empty()) << found.warnings.front();
+    EXPECT_EQ(found.bend_m, 0) << "the board is flat";
+  }
+}
+
+/// Paper that rises by 1.5 mm over 20 cm, as that of chessboard-floor does.
+TEST(Calibrate, TakesABentBoardAsItIs) {
+  const double rise_m = 0.0015;
+  for (const int seed : {1, 2, 3, 4}) {
+    const auto found = calibrate_camera(simulated(phone(), 40, seed, 0.4, 35, rise_m), kBoard);
+    ASSERT_TRUE(found.ok) << found.reason;
+    EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
+    EXPECT_NEAR(found.camera.fx, phone().fx, 0.01 * phone().fx) << seed;
+    EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
+    // A parabola lies two thirds of its rise above one side of its plane.
+    EXPECT_NEAR(found.bend_m, 2 * rise_m / 3, 0.2e-3) << seed;
+    EXPECT_THAT(to_text(found), HasSubstr("not flat: corners are up to"));
   }
 }
 
