@@ -33,13 +33,6 @@ fs::path baseline_of(const std::string& view) {
   return fs::exists(own) ? own : all / (view + ".png");
 }
 
-/// Debian 13's own pictures are of the defaults before `gpo_joint`, and have not been remade.
-bool lacks_baseline(const std::string& view) {
-  const bool needs_own = view == "scene" || view == "window" || view == "curves";
-  return std::string(GPO_SUITE) == "debian13" && needs_own &&
-         !fs::exists(fs::path(GPO_SOURCE_DIR) / "tests/snapshots" / GPO_SUITE / (view + ".png"));
-}
-
 class SnapshotOf : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SnapshotOf, IsTheSameToTheByteTwice) {
@@ -51,7 +44,6 @@ TEST_P(SnapshotOf, IsTheSameToTheByteTwice) {
 
 // A failure leaves the picture and the difference beside it; their place is in the message.
 TEST_P(SnapshotOf, AgreesWithItsBaseline) {
-  if (lacks_baseline(GetParam())) GTEST_SKIP() << "no baseline of this suite's libraries yet";
   const fs::path baseline = baseline_of(GetParam());
   const Outcome outcome = snapshot(
       GetParam(), fresh_folder() / (GetParam() + ".png"), "--baseline " + baseline.string());
@@ -70,7 +62,6 @@ class SnapshotOfSeveral : public ::testing::TestWithParam<std::pair<const char*,
 
 TEST_P(SnapshotOfSeveral, AgreesWithItsBaseline) {
   const auto& [view, size] = GetParam();
-  if (lacks_baseline(view)) GTEST_SKIP() << "no baseline of this suite's libraries yet";
   const fs::path baseline = baseline_of(view);
   const Outcome outcome =
       snapshot(view,
