@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <gpo/initialize.h>
+#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

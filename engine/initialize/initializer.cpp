@@ -23,8 +23,8 @@ namespace gpo {
 namespace {
 
 /// Below so much of what a ready window needs no window is solved. One homography tells the way
-/// with an error of some percent.
-constexpr double kTravelShare = 0.7;
+/// with an error of few percent.
+constexpr double kTravelShare = 0.8;
 constexpr double kMostTurnSigmas = 4;  // of an answer, once it is ready
 constexpr double kLonger = 1.5;        // than the last one, of a window that may better an answer
 constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // of a gyroscope, before the window

@@ -140,7 +140,7 @@ TEST(Initialize, BadInputIsRefusedByOneLineThatNamesIt) {
     return message([&](auto&, auto&, InitializeOptions& o, auto&) { change(o); });
   };
   EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
-            "camera: fx 0, fy 500, cx 320, cy 240, expected focal lengths above 0");
+            "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
   EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frames, expected at least 2");
   EXPECT_THAT(of_frames([](Frames& f) { f[2].timestamp_ns = f[1].timestamp_ns; }),
               HasSubstr("frame 2: time stamp"));
