@@ -42,6 +42,8 @@ class GpoReconstruction {
     frame.raw_px.conservativeResize(2, static_cast<Eigen::Index>(frame.ids.size()));
     frames_.push_back(std::move(frame));
     const gpo::Initialized result = gpo::initialize(camera_, frames_);
+    reason_ = result.initialization.verdict ? result.initialization.verdict->reason
+                                            : result.initialization.reason;
     if (!result.is_ready()) return false;
 
     const gpo::Pose& now = result.initialization.cameras.back();
@@ -63,7 +65,8 @@ class GpoReconstruction {
     return true;
   }
 
-  int frames() const { return static_cast<int>(frames_.size()); }
+  /// Why the last call returned false.
+  const std::string& reason() const { return reason_; }
 
  private:
   bool is_initial(const std::vector<cv::KeyPoint>& keys) const {
@@ -83,6 +86,7 @@ class GpoReconstruction {
 
   gpo::Camera camera_;
   std::vector<gpo::Frame> frames_;
+  std::string reason_;
 };
 
 namespace {
@@ -92,11 +96,13 @@ struct Features {
   cv::Mat descriptors;
 };
 
-/// ORB's features, undistorted by nobody.
+/// Those of the finest level: the others' places are too coarse, for ORB-SLAM's initialization,
+/// too.
 Features features_of(const std::string& file) {
   Features features;
-  cv::ORB::create(1000)->detectAndCompute(
-      cv::imread(file, cv::IMREAD_GRAYSCALE), {}, features.keys, features.descriptors);
+  cv::ORB::create(1500, 1.2F, 1)
+      ->detectAndCompute(
+          cv::imread(file, cv::IMREAD_GRAYSCALE), {}, features.keys, features.descriptors);
   return features;
 }
 
@@ -104,8 +110,10 @@ std::vector<int> matches_of(const Features& from, const Features& to) {
   std::vector<cv::DMatch> found;
   cv::BFMatcher(cv::NORM_HAMMING, true).match(from.descriptors, to.descriptors, found);
   std::vector<int> matches(from.keys.size(), -1);
-  for (const cv::DMatch& m : found)
-    if (m.distance < 50) matches[m.queryIdx] = m.trainIdx;
+  for (const cv::DMatch& m : found) {
+    const double way_px = cv::norm(from.keys[m.queryIdx].pt - to.keys[m.trainIdx].pt);
+    if (m.distance < 40 && way_px < 100) matches[m.queryIdx] = m.trainIdx;
+  }
   return matches;
 }
 
@@ -132,8 +140,10 @@ int main(int argc, char** argv) try {
     std::vector<cv::Point3f> points;
     std::vector<bool> triangulated;
     if (!reconstruction.Reconstruct(
-            first.keys, now.keys, matches_of(first, now), T21, points, triangulated))
+            first.keys, now.keys, matches_of(first, now), T21, points, triangulated)) {
+      std::cerr << "picture " << i << ": " << reconstruction.reason() << '\n';
       continue;
+    }
     int count = 0;
     for (const bool one : triangulated) count += one ? 1 : 0;
     std::cout << "initialized by picture " << i << ", points " << count << "\nT21\n" << T21 << '\n';
