@@ -16,10 +16,11 @@ jobs=${JOBS:-$(nproc)}
 unreported=$PWD/tests/sanitizers
 
 # What builds or starts something else than what is sanitized here: ./run.sh its own program, tests/fuzz
-# with sanitizers of its own, the engine alone.
-elsewhere='^(Fuzz|Readme|RunScript|Install|EngineAlone)\.'
-# What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them.
-threads='^View\.|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey'
+# with sanitizers of its own, the engine alone, the installed library.
+elsewhere='^(Fuzz|Readme|RunScript|Install|EngineAlone|Library)\.'
+# What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
+# the front door's live form.
+threads='^View\.|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 # In the preset: a quarantine below what the monkey may grow, and memory of threads that is not asked for where it lies:

@@ -2,14 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/error.h"
-
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 
@@ -35,6 +31,11 @@ bool is_choice(const std::string& key) {
   return false;
 }
 
+/// Throws SettingError that names the known ones.
+[[noreturn]] void refuse_choice(const char* name,
+                                const std::string& key,
+                                std::span<const char* const> known);
+
 /// The value called `key`. Throws SettingError that names the known ones.
 template <Choice E>
 E choice(const std::string& key) {
@@ -42,9 +43,7 @@ E choice(const std::string& key) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (key == keys[i]) return static_cast<E>(i);
   }
-  throw SettingError(
-      ChoiceKeys<E>::name,
-      fmt::format("unknown value '{}', expected one of {}", key, fmt::join(keys, ", ")));
+  refuse_choice(ChoiceKeys<E>::name, key, keys);
 }
 
 }  // namespace gpo

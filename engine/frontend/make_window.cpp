@@ -58,7 +58,13 @@ void keep_consistent(Window& window, double threshold_px) {
   window.inliers = Inliers::consistent;
 }
 
-WindowPlane plane_of(const Window& window, const std::vector<int>& tracks, double threshold_px) {
+/// A track of the plane that is matched wrongly in a frame, which matches of descriptors are where
+/// followed tracks are not, pulls that frame's homography away from all others.
+constexpr double kLeastAgreeing = 0.5;
+
+WindowPlane plane_of(const Window& window,
+                     const std::vector<int>& tracks,
+                     const RansacOptions& ransac) {
   const Eigen::Matrix3d none = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const int frames = window.frame_count();
   WindowPlane plane{tracks,
@@ -76,10 +82,18 @@ WindowPlane plane_of(const Window& window, const std::vector<int>& tracks, doubl
     const auto H = fit_homography(from, to);
     if (!H) continue;
     plane.H_i1[i] = refine_homography(*H, from, to);
+    std::size_t agreeing = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const double error_px = (transfer(plane.H_i1[i], from.col(k)) - to.col(k)).norm();
-      plane.inlier[i][seen[k]] = error_px <= threshold_px;
+      plane.inlier[i][seen[k]] = error_px <= ransac.threshold_px;
+      agreeing += plane.inlier[i][seen[k]] ? 1 : 0;
     }
+    if (static_cast<double>(agreeing) >= kLeastAgreeing * static_cast<double>(seen.size()))
+      continue;
+    const auto robust = homography_ransac(from, to, ransac);
+    if (!robust) continue;
+    plane.H_i1[i] = robust->H;
+    for (std::size_t k = 0; k < seen.size(); ++k) plane.inlier[i][seen[k]] = robust->inlier[k];
   }
   return plane;
 }
@@ -102,11 +116,11 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
   const TrackPlanes found = window_planes(window.points_px, options);
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
-    window.planes.push_back(plane_of(window, found.planes[k], ransac.threshold_px));
+    window.planes.push_back(plane_of(window, found.planes[k], ransac));
     window.planes.back().picture_share = picture_share(window, found.planes[k], camera);
     window.planes.back().stability = found.stability[k];
   }
-  if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac.threshold_px));
+  if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
   window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
   window.H_i1 = window.planes[window.leader].H_i1;
   window.inlier = window.planes[window.leader].inlier;

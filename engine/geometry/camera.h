@@ -21,7 +21,7 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  std::vector<double> coefficients;  ///< as `Lens` orders them; missing ones are zero
+  std::vector<double> coefficients = {};  ///< as `Lens` orders them; missing ones are zero
   /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty: nobody says.
   std::vector<double> sigmas = {};
 

@@ -3,9 +3,8 @@
 #include "engine/inspection/stages.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/make_window.h"
-#include "engine/initializers/certainty/growth.h"
+#include "engine/initialize/steps.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
@@ -28,20 +27,11 @@ Span covering(const std::optional<Span>& kept, const Span& wanted) {
   return covers ? *kept : wanted;
 }
 
-/// A method that needs no plane gets its start from the tracks on it even where it then uses all.
-RansacOptions ransac_options(const Settings& settings) {
-  RansacOptions options;
-  options.enabled = uses_ransac(settings) || !find_method(settings.method).needs_plane;
-  options.threshold_px = settings.ransac_threshold_px;
-  options.seed = settings.seed;
-  return options;
-}
-
 /// The settings that act until the stage; RANSAC as it is used here, alike for methods that take
 /// all tracks in the end and those that never do.
 Settings rejecting(SettingStage stage, const Settings& settings) {
   Settings acting = acting_until(stage, settings);
-  acting.ransac = ransac_options(settings).enabled;
+  acting.ransac = ransac_options(options_of(settings)).enabled;
   return acting;
 }
 
@@ -56,20 +46,6 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
                                          std::ranges::min(tracks.ids),
                                          std::ranges::max(tracks.ids)));
   }
-}
-
-std::vector<Verdict> verdicts_of(const std::vector<GrowthStep>& steps) {
-  std::vector<Verdict> verdicts;
-  verdicts.reserve(steps.size());
-  for (const GrowthStep& step : steps) verdicts.push_back(step.verdict);
-  return verdicts;
-}
-
-/// What rests on a guess of the lens may be wrong however well it fits.
-void demote(Verdict& verdict) {
-  if (verdict.readiness != Readiness::ready) return;
-  verdict.readiness = Readiness::weak;
-  verdict.reason = "the camera is a guess: calibrate it";
 }
 
 /// Tells people of an optimization, not more often than they can read it.
@@ -150,7 +126,7 @@ bool Stages::update_truth(const Settings& settings,
 
 bool Stages::update_window(const Settings& settings, const std::stop_token& stop) {
   check_excluded(*tracks.value, settings);
-  const RansacOptions ransac = ransac_options(settings);
+  const RansacOptions ransac = ransac_options(options_of(settings));
   const Inliers inliers = inliers_used(settings);
   outliers.update(rejecting(SettingStage::inliers, settings), [&]() {
     return std::optional(
@@ -167,7 +143,7 @@ bool Stages::update_window(const Settings& settings, const std::stop_token& stop
                                               *outliers.value,
                                               truth.value.get(),
                                               settings.rotations,
-                                              ransac_options(turning),
+                                              ransac_options(options_of(turning)),
                                               stop);
     return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
   });
@@ -180,12 +156,8 @@ void Stages::initialize(const Settings& settings,
   const Rotations& given = rotations.value.rotations;
   inspection.rotations_used = rotations.value.source;
   inspection.rotations_note = rotations.value.note;
-  Window window = *outliers.value;
-  window.all_tracks = !uses_ransac(settings);
-  window.rotations = given.model;
-  window.gyro = given.gyro;
+  Window window = with_rotations(*outliers.value, given, !uses_ransac(settings));
   if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
-  if (!given.R_wc.empty()) window.R_wc = given.R_wc;
   const auto begin = std::chrono::steady_clock::now();
   Initialization initialization =
       given.R_wc.empty()
@@ -202,23 +174,15 @@ void Stages::initialize(const Settings& settings,
   if (!given.R_wc.empty()) {
     // What was stopped is short, and no result.
     const bool grown = growth.update(*rotations.key, [&]() {
-      auto verdicts = verdicts_of(grow(window, stop));
+      auto verdicts = growing_verdicts(window, stop);
       return stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
     });
     if (!grown) return;
     inspection.growth = growth.value;
     inspection.motion = frame_motion(window);
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
-    if (!initialization.verdict && static_cast<int>(growth.value.size()) == settings.frames - 1)
-      initialization.verdict = growth.value.back();
   }
-  if (window.inliers == Inliers::planes && window.planes.empty()) {
-    Verdict verdict;
-    verdict.readiness = Readiness::no_plane;
-    verdict.reason = initialization.reason;
-    verdict.scene = SceneKind::no_plane;
-    initialization.verdict = std::move(verdict);
-  }
+  complete_verdict(window, inspection.growth, initialization);
   if (recording->camera_source == CameraSource::guess) {
     std::ranges::for_each(inspection.growth, demote);
     if (initialization.verdict) demote(*initialization.verdict);

@@ -58,6 +58,8 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   for (const char* page : {"README.md",
                            "assets/nine/README.md",
                            "engine/commands/README.md",
+                           "engine/examples/README.md",
+                           "engine/experiment/README.md",
                            "engine/recording/README.md",
                            "engine/synthesis/README.md",
                            "tests/benchmark/README.md",

@@ -21,6 +21,10 @@ void print_part_tables(const Results& results);
 void register_frontend_benchmarks();
 void print_frontend_tables(const Results& results);
 
+/// The front door's live form, frame by frame.
+void register_live_benchmarks();
+void print_live_tables(const Results& results);
+
 /// Views off-screen at 1280x720.
 void register_view_benchmarks();
 void print_view_tables(const Results& results);

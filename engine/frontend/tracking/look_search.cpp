@@ -20,7 +20,7 @@ using Eigen::Vector2d;
 using Eigen::Vector4d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-constexpr int kMostSteps = 20;  // of Gauss-Newton
+constexpr int kMostCorrections = 20;  // of Gauss-Newton
 /// What its last step moves a look's pixels by; the next one would be a tenth of it.
 constexpr double kConverged_px[] = {0.01, 0.1};  // by `Unknown`: a shift follows on what is affine
 constexpr double kNear_px = 0.2;                 // the last step before all unknowns are solved for
@@ -31,16 +31,16 @@ constexpr int kBrightness = 6;
 constexpr int kOne = 7;
 
 /// Least squares of (15a) over t, B, gain and offset; linear in gain times t and B.
-struct Step {
+struct Correction {
   Vector2d t = Vector2d::Zero();
   Matrix2d B = Matrix2d::Zero();
   double gain = 0;
   double correlation = 0;
 };
 
-Step solved(const LookSums& sums, const Sought& sought, Unknown unknown) {
+Correction solved(const LookSums& sums, const Sought& sought, Unknown unknown) {
   const Vector8d b = sums.products.cast<double>();
-  Step step;
+  Correction step;
   if (unknown == Unknown::shift) {
     const Vector4d solution = sought.shift.solve(Vector4d(b(kShiftColumns)));
     step.gain = solution(2);
@@ -74,11 +74,11 @@ bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
 
 /// Nothing where less than half of the look's pixels are in the picture, or where it is darker
 /// where it should be brighter.
-std::optional<Step> step_from(const cv::Mat& soft,
-                              const Sought& sought,
-                              const Warp& warp,
-                              Unknown unknown) {
-  Step step;
+std::optional<Correction> step_from(const cv::Mat& soft,
+                                    const Sought& sought,
+                                    const Warp& warp,
+                                    Unknown unknown) {
+  Correction step;
   if (is_inside(soft.size(), sought.look, warp)) {
     step = solved(look_sums(soft, sought.look, warp), sought, unknown);
   } else {
@@ -113,7 +113,7 @@ Found search(const cv::Mat& soft,
   const double converged_px = kConverged_px[static_cast<std::size_t>(unknown)];
   Warp warp = start;
   Unknown now = Unknown::shift;  // near enough, then all of it
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMostCorrections; ++k) {
     if (!holds(soft.size(), warp.center))
       return {.end = TrackEnd{.reason = LossReason::left_picture}};
     const auto step = step_from(soft, sought, warp, now);

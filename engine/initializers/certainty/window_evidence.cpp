@@ -19,9 +19,7 @@ constexpr double kDegenerateSigma_deg = 10;
 // The best rotations leave the noise where there is no parallax, twice to six times as much at low
 // parallax.
 constexpr double kDegenerateRotationToNoise = 1.3;
-// Largest |tau|: below 0.0065 without parallax, above 0.042 at low parallax, above 0.24 elsewhere.
 constexpr double kDegenerateTranslation = 0.015;
-constexpr double kWeakTranslation = 0.06;
 
 }  // namespace
 
@@ -68,7 +66,7 @@ Verdict judged(const WindowEvidence& evidence,
   } else if (largest_translation < kDegenerateTranslation) {
     verdict.reason = fmt::format("the camera moved by only {:.1f} % of its distance from the plane",
                                  100 * largest_translation);
-  } else if (largest_translation < kWeakTranslation) {
+  } else if (largest_translation < kReadyTranslation) {
     verdict.readiness = Readiness::weak;
     verdict.reason = fmt::format(
         "little parallax: the window tells the normal to {:.2f} deg, the camera moved by {:.1f} % "

@@ -9,6 +9,11 @@
 
 namespace gpo {
 
+/// Of a window that is ready: least |tau| of its farthest camera [plane distance]. Largest |tau| of
+/// simulated windows: below 0.0065 without parallax, above 0.042 at low parallax, above 0.24
+/// elsewhere.
+inline constexpr double kReadyTranslation = 0.06;
+
 /// What a verdict rests on beside the normal's uncertainty; grows frame by frame.
 class WindowEvidence {
  public:

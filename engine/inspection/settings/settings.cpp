@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/settings/settings.h"
 
-#include "engine/initializers/methods.h"
+#include "engine/initialize/steps.h"
 
 #include <utility>
 
@@ -41,12 +41,19 @@ std::optional<Preset> preset_of(const Settings& settings) {
   return std::nullopt;
 }
 
-bool uses_ransac(const Settings& settings) {
-  return settings.ransac.value_or(find_method(settings.method).needs_plane);
+InitializeOptions options_of(const Settings& settings) {
+  return {.method = settings.method,
+          .rotations = settings.rotations,
+          .ransac = settings.ransac,
+          .ransac_threshold_px = settings.ransac_threshold_px,
+          .inliers = settings.inliers,
+          .plane = settings.plane,
+          .seed = settings.seed,
+          .initializer = settings.initializer};
 }
 
-Inliers inliers_used(const Settings& settings) {
-  return settings.inliers.value_or(find_method(settings.method).inliers);
-}
+bool uses_ransac(const Settings& settings) { return uses_ransac(options_of(settings)); }
+
+Inliers inliers_used(const Settings& settings) { return inliers_used(options_of(settings)); }
 
 }  // namespace gpo

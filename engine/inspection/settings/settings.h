@@ -4,6 +4,7 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/frontend/tracking/tracking.h"
+#include "engine/initialize.h"
 #include "engine/initializers/common/initializer_options.h"
 #include "engine/window/window.h"
 
@@ -54,6 +55,9 @@ Settings with_preset(Settings settings, Preset preset);
 
 /// The preset that the settings are an instance of; nothing: modified.
 std::optional<Preset> preset_of(const Settings& settings);
+
+/// Those of them that initialize a window of tracks.
+InitializeOptions options_of(const Settings& settings);
 
 /// What `ransac` comes to. Chosen, or by default on for the methods that need a plane and off for
 /// those that use all tracks (ba, pnp_ba). Throws InputError for an unknown method.

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/evaluation/evaluation.h"
-#include "engine/frontend/homography_ransac.h"
-#include "engine/frontend/rotations.h"
+#include "engine/initialize/chosen_rotations.h"
 #include "engine/recording/recording.h"
+#include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
 #include <stop_token>
@@ -23,18 +22,9 @@ RotationSource rotation_source_used(const Recording& recording, RotationSource a
 /// What `automatic` may come to, for people: "gyro-calibrated", "five-point or averaging".
 std::string automatic_rotations(const Recording& recording);
 
-/// The rotations of a window and where they are from.
-struct ChosenRotations {
-  RotationSource source = RotationSource::gyro;  ///< never automatic
-  Rotations rotations = {};
-  std::string note = "";  ///< why what `automatic` tries first had none; what told them
-};
-
-/// The window's rotations from what is asked for. Of `automatic`, where pictures cannot calibrate
-/// the gyroscope it is taken as it is, and where five-point rotations are refused homographies are
-/// averaged. `ransac` has the threshold and the seed of all tracks' relative poses. `truth` may be
-/// null for all but the truth. Throws InputError where the recording lacks what is asked for, and
-/// where gyroscope or truth do not cover the window.
+/// `chosen_rotations` of a recording's window. `truth` may be null for all but the truth. Throws
+/// InputError where the recording lacks what is asked for, and where gyroscope or truth do not
+/// cover the window.
 ChosenRotations window_rotations(const Recording& recording,
                                  const Window& window,
                                  const WindowTruth* truth,

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/playing.h"
 #include "ui/workbench/undo.h"

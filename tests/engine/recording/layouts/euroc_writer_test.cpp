@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/euroc_writer.h"
 
+#include "engine/base/error.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"

@@ -1,0 +1,294 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "engine/geometry/pose.h"
+#include "engine/initialize.h"
+#include "engine/initialize/input_checks.h"
+#include "engine/initialize/steps.h"
+#include "engine/initialize/travel.h"
+#include "engine/initializers/certainty/window_evidence.h"
+#include "engine/initializers/methods.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// Below so much of what a ready window needs no window is solved. One homography tells the way
+/// with an error of few percent.
+constexpr double kTravelShare = 0.8;
+constexpr double kMostTurnSigmas = 4;  // of an answer, once it is ready
+constexpr double kLonger = 1.5;        // than the last one, of a window that may better an answer
+constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // of a gyroscope, before the window
+
+void check(const LiveOptions& options) {
+  const auto refuse = [](const char* name, auto value, const char* expected) {
+    throw SettingError(name, fmt::format("{}, expected {}", value, expected));
+  };
+  if (options.most_frames < 2) refuse("most_frames", options.most_frames, "at least 2");
+  if (options.least_tracks < 0) refuse("least_tracks", options.least_tracks, "at least 0");
+  if (!(options.least_share >= 0 && options.least_share <= 1))
+    refuse("least_share", options.least_share, "0 to 1");
+}
+
+/// Whether one homography's way bounds what the verdict is to be: of the plane with most tracks.
+bool travel_tells(const InitializeOptions& options) {
+  return options.plane == 1 && find_method(options.method).needs_plane;
+}
+
+std::string why_not_ready(const Initialized& result) {
+  const Initialization& initialization = result.initialization;
+  return initialization.verdict ? initialization.verdict->reason : initialization.reason;
+}
+
+}  // namespace
+
+struct Initializer::Impl {
+  Camera camera;
+  LiveOptions options;
+  // Of the thread that adds frames.
+  std::optional<Gyroscope> gyroscope;
+  std::optional<Travel> travel;
+  double farthest = 0;  ///< way from the reference frame [plane distance]
+  int added = 0;
+  // Shared with the one that solves.
+  std::mutex mutex;
+  std::condition_variable_any changed;
+  std::vector<std::shared_ptr<const Frame>> frames;
+  struct Task {
+    int frames;
+    std::shared_ptr<const Gyroscope> samples;
+  };
+  std::deque<Task> tasks;
+  bool solving = false;
+  std::exception_ptr thrown;
+  LiveStatus status;
+  std::shared_ptr<const Initialized> first;  ///< the answer that was ready first
+  std::jthread worker;                       ///< last: it ends before what it uses
+
+  Impl(const Camera& of, const LiveOptions& how, std::optional<Gyroscope> gyro)
+      : camera(of), options(how), gyroscope(std::move(gyro)) {
+    check_camera(camera);
+    check_options(options.initialize);
+    check(options);
+    if (gyroscope) check_gyroscope(*gyroscope);
+  }
+
+  void start_anew(const std::string& why) {
+    const std::lock_guard lock(mutex);
+    frames.clear();
+    tasks.clear();
+    first.reset();
+    status = {.reference = added, .started_anew = true, .reason = why};
+    travel.reset();
+    farthest = 0;
+  }
+
+  /// Why the frame cannot go on in this window; empty: it can.
+  std::string why_anew(int seen) {
+    const std::lock_guard lock(mutex);
+    if (status.ready || frames.empty() || !tasks.empty() || solving) return "";
+    const auto of = static_cast<double>(frames.front()->ids.size());
+    if (status.frames >= options.most_frames)
+      return fmt::format("{} frames, and not ready: {}", status.frames, status.reason);
+    if (seen < options.least_tracks || seen < options.least_share * of)
+      return fmt::format("{} of the first frame's {} tracks are left", seen, of);
+    return "";
+  }
+
+  /// Adds it to the window; whether the window may be ready now.
+  bool append(const Frame& frame) {
+    std::string anew;
+    Travel::Step step;
+    if (travel && !is_ready()) {
+      step = travel->to(frame);
+      anew = why_anew(step.seen);
+    }
+    if (!anew.empty()) start_anew(anew);
+    const bool is_first = !travel || !anew.empty();
+    if (is_first) {
+      travel.emplace(camera, ransac_options(options.initialize), frame);
+      drop_samples_before(frame.timestamp_ns);
+    }
+    farthest = is_first ? 0 : std::max(farthest, step.tau.value_or(0));
+    const bool far = farthest >= kTravelShare * kReadyTranslation;
+    const std::lock_guard lock(mutex);
+    ++added;
+    if (frames.size() < static_cast<std::size_t>(options.most_frames))
+      frames.push_back(std::make_shared<const Frame>(frame));
+    const bool grown = static_cast<int>(frames.size()) > status.frames;
+    status.frames = static_cast<int>(frames.size());
+    status.started_anew = !anew.empty();
+    if (is_first || !grown) return false;
+    if (far || status.ready || !travel_tells(options.initialize) || !step.tau) return true;
+    status.reason = fmt::format(
+        "the camera moved by about {:.1f} % of its distance from the plane, {:.0f} % are needed",
+        100 * farthest,
+        100 * kReadyTranslation);
+    return false;
+  }
+
+  /// Those that a window from then on does not need.
+  void drop_samples_before(std::int64_t frame_ns) {
+    if (!gyroscope) return;
+    auto& t = gyroscope->timestamps_ns;
+    const std::int64_t first_ns = frame_ns + gyroscope->time_offset_ns - kSamplesBefore_ns;
+    const auto old = std::ranges::lower_bound(t, first_ns) - t.begin();
+    t.erase(t.begin(), t.begin() + old);
+    auto& rates = gyroscope->rates_rad_s;
+    rates.erase(rates.begin(), rates.begin() + old);
+    gyroscope->lines.clear();
+  }
+
+  std::shared_ptr<const Gyroscope> samples_now() const {
+    return gyroscope ? std::make_shared<const Gyroscope>(*gyroscope) : nullptr;
+  }
+
+  bool is_ready() {
+    const std::lock_guard lock(mutex);
+    return status.ready;
+  }
+
+  bool worth_solving(int length) const {
+    return !status.ready || length >= kLonger * status.solved_frames;
+  }
+
+  void solve(const Task& task, const std::stop_token& stop) {
+    std::vector<Frame> window;
+    {
+      const std::lock_guard lock(mutex);
+      if (!worth_solving(task.frames)) return;
+      for (int i = 0; i < task.frames; ++i) window.push_back(*frames[i]);
+    }
+    auto result = std::make_shared<const Initialized>(
+        initialize(camera, window, task.samples.get(), options.initialize, stop));
+    if (result->initialization.stopped) return;
+    const std::lock_guard lock(mutex);
+    status.solved_frames = task.frames;
+    take(task.frames, std::move(result));
+  }
+
+  void take(int length, std::shared_ptr<const Initialized> result) {
+    if (!status.ready) {
+      status.reason = why_not_ready(*result);
+      if (!result->is_ready()) return;
+      status.ready = true;
+      status.ready_frames = length;
+      first = status.answer = std::move(result);
+      return;
+    }
+    status.reason = why_not_better(length, *result);
+    if (status.reason.empty()) status.answer = std::move(result);
+  }
+
+  /// Than the answer that was ready first.
+  std::string why_not_better(int length, const Initialized& result) const {
+    if (!result.is_ready())
+      return fmt::format("of {} frames it is not ready: {}", length, why_not_ready(result));
+    const double sigma_deg = first->initialization.verdict->normal_sigma_deg.value_or(0);
+    const double turn_deg =
+        angle_deg(first->initialization.plane.normal, result.initialization.plane.normal);
+    if (turn_deg <= kMostTurnSigmas * sigma_deg) return "";
+    return fmt::format(
+        "of {} frames its normal is {:.2f} deg from that of {}, {:.1f} standard deviations",
+        length,
+        turn_deg,
+        status.ready_frames,
+        turn_deg / sigma_deg);
+  }
+
+  void work(const std::stop_token& stop) {
+    std::unique_lock lock(mutex);
+    while (changed.wait(lock, stop, [&] { return !tasks.empty(); })) {
+      const Task task = std::move(tasks.front());
+      tasks.pop_front();
+      solving = true;
+      lock.unlock();
+      std::exception_ptr caught;
+      try {
+        solve(task, stop);
+      } catch (...) {
+        caught = std::current_exception();
+      }
+      lock.lock();
+      solving = false;
+      if (caught) thrown = caught;
+      changed.notify_all();
+    }
+  }
+
+  void solve_in_background(Task task) {
+    {
+      const std::lock_guard lock(mutex);
+      tasks.push_back(std::move(task));
+    }
+    if (!worker.joinable())
+      worker = std::jthread([this](const std::stop_token& stop) { work(stop); });
+    changed.notify_all();
+  }
+
+  LiveStatus told() {
+    const std::lock_guard lock(mutex);
+    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+    LiveStatus now = status;
+    now.pending = static_cast<int>(tasks.size()) + (solving ? 1 : 0);
+    return now;
+  }
+};
+
+Initializer::Initializer(const Camera& camera,
+                         const LiveOptions& options,
+                         std::optional<Gyroscope> gyroscope)
+    : impl_(std::make_unique<Impl>(camera, options, std::move(gyroscope))) {}
+
+Initializer::~Initializer() = default;
+Initializer::Initializer(Initializer&&) noexcept = default;
+Initializer& Initializer::operator=(Initializer&&) noexcept = default;
+
+void Initializer::add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s) {
+  if (!impl_->gyroscope) impl_->gyroscope.emplace();
+  Gyroscope& gyroscope = *impl_->gyroscope;
+  auto& t = gyroscope.timestamps_ns;
+  if (!t.empty() && timestamp_ns <= t.back()) {
+    throw InputError(
+        fmt::format("gyroscope: time stamp {} does not come after {}", timestamp_ns, t.back()));
+  }
+  if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is no number");
+  t.push_back(timestamp_ns);
+  gyroscope.rates_rad_s.push_back(rate_rad_s);
+}
+
+LiveStatus Initializer::add_frame(const Frame& frame) {
+  Impl& impl = *impl_;
+  const Frame* before = impl.frames.empty() ? nullptr : impl.frames.back().get();
+  check_frame(frame, impl.added, before);
+  if (impl.append(frame)) {
+    Impl::Task task{impl.status.frames, impl.samples_now()};
+    if (impl.options.background) {
+      impl.solve_in_background(std::move(task));
+    } else {
+      impl.solve(task, {});
+    }
+  }
+  return impl.told();
+}
+
+LiveStatus Initializer::status() const { return impl_->told(); }
+
+LiveStatus Initializer::wait() {
+  {
+    std::unique_lock lock(impl_->mutex);
+    impl_->changed.wait(lock, [&] { return impl_->tasks.empty() && !impl_->solving; });
+  }
+  return impl_->told();
+}
+
+}  // namespace gpo

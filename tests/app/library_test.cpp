@@ -1,0 +1,266 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The library as other programs meet it: installed, found by CMake, linked; and as a part of their
+// own build.
+#include "engine/geometry/pose.h"
+#include "engine/inspection/inspector.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/version.h"
+#include "tests/app/program.h"
+
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::shell;
+using ::testing::HasSubstr;
+using ::testing::IsSubsetOf;
+using ::testing::Not;
+
+constexpr int kDeskFrames = 30;
+
+std::string examples() { return GPO_SOURCE_DIR "/engine/examples"; }
+
+/// Whatever a link line has of libraries, by their names: ceres, opencv_core.
+std::set<std::string> libraries_of(const std::string& link_line) {
+  static const std::regex library(R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))");
+  std::set<std::string> names;
+  for (std::sregex_iterator it(link_line.begin(), link_line.end(), library), end; it != end; ++it)
+    names.insert((*it)[1]);
+  return names;
+}
+
+std::string link_line(const fs::path& build, const std::string& target) {
+  std::istringstream commands(
+      shell(fmt::format("ninja -C {} -t commands {}", build.string(), target)).out);
+  std::string last;
+  for (std::string line; std::getline(commands, line);) last = line;
+  return last;
+}
+
+/// A vector of three that a line of the output has after a word.
+Eigen::Vector3d vector_after(const std::string& word, const std::string& out) {
+  std::istringstream rest(out.substr(out.find(word) + word.size()));
+  Eigen::Vector3d v;
+  rest >> v.x() >> v.y() >> v.z();
+  return v;
+}
+
+/// What one folder has: the installed library, the examples built against it, and their input.
+class Installed {
+ public:
+  /// Installs, and builds the examples by nothing but what is installed.
+  void prepare() {
+    fs::copy(examples(), folder_ / "examples");
+    const std::string prefix = (folder_ / "prefix").string();
+    const Outcome installed =
+        shell(fmt::format("cmake --install '{}' --prefix '{}' --component development && cmake "
+                          "--install '{}' --prefix '{}' --component library",
+                          GPO_BINARY_DIR,
+                          prefix,
+                          GPO_BINARY_DIR,
+                          prefix));
+    ASSERT_EQ(installed.exit_code, 0) << installed.out << installed.err;
+    const Outcome built =
+        shell(fmt::format("cd '{}' && cmake -S examples -B build -G Ninja -DCMAKE_BUILD_TYPE=Debug "
+                          "-DCMAKE_PREFIX_PATH='{}' {} && cmake --build build",
+                          folder_.string(),
+                          prefix,
+                          "-DCMAKE_CXX_FLAGS='-O1 -Wall -Wextra -Werror'"));
+    ASSERT_EQ(built.exit_code, 0) << built.out << built.err;
+    make_input();
+  }
+
+  void from_tracks_to_a_pose() const {
+    const Outcome outcome = example("tracks_to_pose tracks.csv " + camera_);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("verdict the window tells the normal to"));
+    EXPECT_LT(off_deg(vector_after("\nnormal ", outcome.out)), 0.3);  // without the gyroscope
+    const Eigen::Vector3d center = vector_after("center ", outcome.out);
+    EXPECT_LT((center - inspection_->initialization->cameras.back().p_wc).norm(), 0.02);
+  }
+
+  void live_camera_shows_the_cube() const {
+    const Outcome outcome = example("live_camera_loop pictures " + camera_ + " --picture cube.png");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("ready with "));
+    const cv::Mat drawn = cv::imread((folder_ / "cube.png").string());
+    const cv::Mat before = cv::imread((folder_ / "pictures/029.png").string());
+    ASSERT_EQ(drawn.size(), before.size());
+    cv::Mat different;
+    cv::absdiff(drawn, before, different);
+    EXPECT_GT(cv::countNonZero(different.reshape(1) > 60), 500);  // the edges of the cube
+  }
+
+  void replaces_orb_slams_reconstruction() const {
+    const Outcome outcome = example("orb_style_initializer pictures " + camera_);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("initialized by picture "));
+  }
+
+  void mathematics_alone_work_by_hand() const {
+    const Outcome outcome = example("plane_of_points");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(fmt::format("gpo {}: off by", GPO_VERSION_MAJOR)));
+  }
+
+  void core_links_ceres_and_nothing_else() const {
+    test::write_file(folder_ / "ceres/CMakeLists.txt",
+                     "cmake_minimum_required(VERSION 3.22)\nproject(only C CXX)\n"
+                     "find_package(Ceres REQUIRED)\nfind_package(Threads REQUIRED)\n"
+                     "add_executable(only only.cpp)\n"
+                     "target_link_libraries(only PRIVATE Ceres::ceres Threads::Threads)\n");
+    test::write_file(folder_ / "ceres/only.cpp", "int main() {}\n");
+    const Outcome configured =
+        shell(fmt::format("cd '{}' && cmake -S ceres -B ceres/build -G Ninja", folder_.string()));
+    ASSERT_EQ(configured.exit_code, 0) << configured.err;
+    const auto of_ceres = libraries_of(link_line(folder_ / "ceres/build", "only"));
+    auto of_core = libraries_of(link_line(folder_ / "build", "plane_of_points"));
+    EXPECT_THAT(of_ceres, ::testing::Contains("ceres"));
+    EXPECT_EQ(of_core.erase("gpo_core"), 1U);
+    EXPECT_THAT(of_core, IsSubsetOf(of_ceres));
+    const std::string needed =
+        shell(fmt::format("objdump -p '{}/build/plane_of_points' | grep NEEDED", folder_.string()))
+            .out;
+    EXPECT_THAT(needed, HasSubstr("libglog"));  // Ceres itself is static here
+    for (const char* other :
+         {"opencv", "opengv", "fmt", "yaml", "avformat", "sqlite", "exiv2", "tinyxml"})
+      EXPECT_THAT(needed, Not(HasSubstr(other)));
+  }
+
+  void headers_name_each_other_as_they_lie() const {
+    int headers = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / "prefix/include")) {
+      if (entry.path().extension() != ".h") continue;
+      ++headers;
+      std::istringstream lines(test::read_file(entry.path()));
+      for (std::string line; std::getline(lines, line);) {
+        EXPECT_THAT(line, Not(::testing::StartsWith("#include \"engine/"))) << entry.path();
+        if (!line.starts_with("#include \"gpo/")) continue;
+        const std::string name = line.substr(10, line.rfind('"') - 10);
+        EXPECT_TRUE(fs::exists(folder_ / "prefix/include" / name)) << entry.path() << ": " << line;
+      }
+    }
+    EXPECT_GT(headers, 100);
+  }
+
+  void refuses_another_version_or_component() const {
+    const auto configured = [&](const std::string& wanted) {
+      test::write_file(folder_ / "wants/CMakeLists.txt",
+                       "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
+                           wanted + ")\n");
+      return shell(
+          fmt::format("cd '{}' && rm -rf wants/build && cmake -S wants -B wants/build "
+                      "-DCMAKE_PREFIX_PATH='{}/prefix'",
+                      folder_.string(),
+                      folder_.string()));
+    };
+    EXPECT_EQ(configured("gpo 1 REQUIRED COMPONENTS core").exit_code, 0);
+    EXPECT_NE(configured("gpo 2 REQUIRED COMPONENTS core").exit_code, 0);
+    const Outcome unknown = configured("gpo 1 REQUIRED COMPONENTS core window");
+    EXPECT_NE(unknown.exit_code, 0);
+    EXPECT_THAT(unknown.err, HasSubstr("window"));
+  }
+
+ private:
+  /// The desk's tracks and pictures as a pinhole camera would have them, which the examples expect.
+  void make_input() {
+    const auto recording = open_recording(test::desk());
+    Settings settings;
+    settings.frames = kDeskFrames;
+    inspection_ = Inspector(recording).inspect(settings);
+    const Camera& c = recording->camera;
+    std::string csv = "frame,track,x,y\n";
+    for (int i = 0; i < kDeskFrames; ++i) {
+      const auto& points = inspection_->window->points_px[i];
+      for (Eigen::Index j = 0; j < points.cols(); ++j)
+        if (points.col(j).allFinite())
+          csv += fmt::format(
+              "{},{},{:.6f},{:.6f}\n", i, inspection_->tracks->ids[j], points(0, j), points(1, j));
+    }
+    test::write_file(folder_ / "tracks.csv", csv);
+    const cv::Matx33d K(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+    fs::create_directories(folder_ / "pictures");
+    for (int i = 0; i < kDeskFrames; ++i) {
+      cv::Mat straight;
+      cv::undistort(recording->pictures->bgr(i), straight, K, c.coefficients);
+      cv::imwrite((folder_ / fmt::format("pictures/{:03}.png", i)).string(), straight);
+    }
+    camera_ = fmt::format("{} {} {} {}", c.fx, c.fy, c.cx, c.cy);
+  }
+
+  Outcome example(const std::string& line) const {
+    return shell(fmt::format("cd '{}' && build/{}", folder_.string(), line));
+  }
+  /// Between a normal and that of the program's own result [deg].
+  double off_deg(const Eigen::Vector3d& normal) const {
+    return angle_deg(normal, inspection_->initialization->plane.normal);
+  }
+
+  fs::path folder_ = test::fresh_folder();
+  std::string camera_;
+  std::shared_ptr<const Inspection> inspection_;
+};
+
+// One test, since each is a process of its own and would install and build everything.
+TEST(Library, ExamplesBuildAndRunAgainstWhatIsInstalled) {
+  Installed library;
+  library.prepare();
+  if (HasFatalFailure()) return;
+  library.from_tracks_to_a_pose();
+  library.live_camera_shows_the_cube();
+  library.replaces_orb_slams_reconstruction();
+  library.mathematics_alone_work_by_hand();
+  library.core_links_ceres_and_nothing_else();
+  library.headers_name_each_other_as_they_lie();
+  library.refuses_another_version_or_component();
+}
+
+// Configured only: what it compiles is what is installed.
+TEST(Library, AsAPartOfAnotherProjectLeavesThatAlone) {
+  const fs::path folder = test::fresh_folder();
+  test::write_file(folder / "main.cpp", "#include <gpo/version.h>\nint main() {}\n");
+  test::write_file(folder / "CMakeLists.txt",
+                   fmt::format(R"(cmake_minimum_required(VERSION 3.22)
+project(parent C CXX)
+set(GPO_COMPONENTS core CACHE STRING "")
+add_subdirectory({} gpo)
+foreach(mine CMAKE_CXX_STANDARD CMAKE_CXX_COMPILER_LAUNCHER CMAKE_EXPORT_COMPILE_COMMANDS CMAKE_CXX_FLAGS)
+  message("${{mine}}=<${{${{mine}}}}>")
+endforeach()
+get_directory_property(options COMPILE_OPTIONS)
+message("options=<${{options}}>")
+add_executable(parent main.cpp)
+target_link_libraries(parent PRIVATE gpo::core)
+)",
+                               GPO_SOURCE_DIR));
+  const Outcome outcome = shell(
+      fmt::format("env -u CXXFLAGS cmake -S '{0}' -B '{0}/build' -G Ninja "
+                  "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
+                  folder.string()));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* mine : {"CMAKE_CXX_STANDARD=<>",
+                           "CMAKE_CXX_COMPILER_LAUNCHER=<>",
+                           "CMAKE_EXPORT_COMPILE_COMMANDS=<>",
+                           "CMAKE_CXX_FLAGS=<>",
+                           "options=<>"})
+    EXPECT_THAT(outcome.err, HasSubstr(mine));
+  const std::string all =
+      shell(fmt::format("ninja -C '{}/build' -t query all", folder.string())).out;
+  EXPECT_THAT(all, HasSubstr("parent"));
+  EXPECT_THAT(all, Not(HasSubstr("gpo_")));  // nothing that nobody links
+  EXPECT_THAT(link_line(folder / "build", "parent"), HasSubstr("libgpo_core.a"));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,137 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The front door's live form against what `run` says of windows of every length.
+#include "engine/geometry/pose.h"
+#include "engine/initialize.h"
+#include "engine/inspection/inspector.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/synthesis/synthesized.h"
+#include "tests/app/program.h"
+#include "tests/engine/initialize/simulated_frames.h"
+
+#include <algorithm>
+#include <ctime>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostFrames = 40;
+
+std::shared_ptr<const Recording> recording_of(const std::string& name) {
+  const fs::path real = fs::path(GPO_SHARED_DIR) / "data" / name;
+  if (fs::exists(real)) return open_recording(real);
+  const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
+  if (!fs::exists(recipe)) return nullptr;
+  return open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]);
+}
+
+/// Frame i of a window's tracks.
+Frame frame_of(const Inspection& window, int i) {
+  const Tracks& tracks = *window.tracks;
+  Frame frame{
+      .timestamp_ns = window.recording->timestamps_ns[tracks.start + i], .ids = {}, .raw_px = {}};
+  std::vector<int> seen;
+  for (int j = 0; j < tracks.track_count(); ++j)
+    if (tracks.seen(i, j)) seen.push_back(j);
+  for (const int j : seen) frame.ids.push_back(tracks.ids[j]);
+  frame.raw_px = tracks.raw_px[i](Eigen::all, seen);
+  return frame;
+}
+
+std::shared_ptr<const Inspection> run(Inspector& inspector, int frames) {
+  Settings settings;
+  settings.frames = frames;
+  return inspector.inspect(settings);
+}
+
+bool is_ready(const Inspection& window) {
+  const Initialization& result = *window.initialization;
+  return result.ok && result.verdict && result.verdict->readiness == Readiness::ready;
+}
+
+struct Expected {
+  const char* name;
+  bool ready;
+  bool better = false;  ///< longer windows are ready, too, and agree
+};
+
+std::ostream& operator<<(std::ostream& stream, const Expected& expected) {
+  return stream << expected.name;
+}
+
+class LiveRecordings : public ::testing::TestWithParam<Expected> {};
+
+/// Of this thread's own work, whatever else the machine does.
+double thread_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
+  const auto recording = recording_of(GetParam().name);
+  if (!recording) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  const int most = std::min(kMostFrames, recording->frame_count());
+  Inspector inspector(recording);
+  const auto longest = run(inspector, most);
+  Initializer initializer(
+      recording->camera, {.background = false, .most_frames = most}, recording->gyroscope);
+  std::shared_ptr<const Initialized> first;
+  std::vector<double> ms;
+  for (int i = 0; i < most; ++i) {
+    const Frame frame = frame_of(*longest, i);
+    const double begin_ms = thread_ms();
+    const LiveStatus status = initializer.add_frame(frame);
+    ms.push_back(thread_ms() - begin_ms);
+    ASSERT_FALSE(status.started_anew) << status.reason;
+    if (!first && i > 0) {
+      const auto alone = run(inspector, i + 1);
+      ASSERT_EQ(status.ready, is_ready(*alone)) << i + 1 << " frames: " << status.reason;
+      if (status.ready) test::expect_same(*alone->initialization, status.answer->initialization);
+      if (status.ready) first = status.answer;
+    } else if (first) {
+      ASSERT_TRUE(status.ready);
+      const double turn_deg =
+          angle_deg(first->initialization.plane.normal, status.answer->initialization.plane.normal);
+      EXPECT_LE(turn_deg, 4 * *first->initialization.verdict->normal_sigma_deg) << i + 1;
+    }
+  }
+  const LiveStatus last = initializer.status();
+  EXPECT_EQ(last.ready, GetParam().ready);
+  EXPECT_EQ(last.answer && last.answer->window.frame_count() > 20, GetParam().better)
+      << last.reason;
+  fmt::print("{}: ready at {}, mean {:.2f} ms, worst {:.1f} ms; {}\n",
+             GetParam().name,
+             last.ready_frames,
+             std::accumulate(ms.begin(), ms.end(), 0.0) / most,
+             std::ranges::max(ms),
+             last.reason);
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         LiveRecordings,
+                         ::testing::Values(Expected{"sideways", true, true},
+                                           Expected{"orbit", true, true},
+                                           Expected{"approach", true, true},
+                                           Expected{"diagonal", true, true},
+                                           Expected{"up-down", true, true},
+                                           Expected{"wander", true, true},
+                                           Expected{"fast-arc", true, true},
+                                           Expected{"low-parallax", false},
+                                           Expected{"rotation-dominant", false},
+                                           // Of 27 frames the quarters of its floor disagree.
+                                           Expected{"euroc-room", true, false}),
+                         [](const auto& info) {
+                           std::string name = info.param.name;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace gpo

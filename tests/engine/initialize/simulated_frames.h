@@ -1,0 +1,20 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/initialize.h"
+#include "tests/engine/simulated_window.h"
+
+#include <vector>
+
+namespace gpo::test {
+
+/// What a front end would hand over of a window's undistorted tracks, which its camera does not
+/// bend.
+std::vector<Frame> frames_of(const Window& window);
+Camera camera_of(const Window& window);
+
+/// Fails where any bit of the cameras, planes, points, uncertainty or verdict differs.
+void expect_same(const Initialization& one, const Initialization& other);
+
+}  // namespace gpo::test
