@@ -135,7 +135,7 @@ TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
   const json summary = json::parse(read_file(folder / "out/experiment.json"));
   EXPECT_THAT(summary["commands"]["mine"].get<std::string>(), HasSubstr("mine.sh"));
   write_file(folder / "mine.sh", "while read w; do echo '{\"failed\": \"mended\"}'; done\n");
-  EXPECT_THAT(evaluate().err, HasSubstr("command of a method"));
+  EXPECT_THAT(evaluate().err, HasSubstr("command or files of a method"));
   EXPECT_THAT(read_file(folder / "out/results.csv"),
               AllOf(HasSubstr("mine: mended"), Not(HasSubstr("said so"))));
 }

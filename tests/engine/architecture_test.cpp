@@ -56,6 +56,7 @@ const std::vector<Room> kRooms = {
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/process", {}},
     {"engine/commands", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/initializers/plane", "engine/process"}},
+    {"engine/results", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/commands", "engine/recording/layouts"}},
     {"engine/inspection/window", {"engine/initializers/common", "engine/evaluation", "engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/frontend/", "engine/recording/"}},
     {"engine/inspection/settings", {"engine/files", "engine/base", "engine/geometry", "engine/window", "engine/initializers/", "engine/frontend/", "engine/recording/", "engine/inspection/window"}},
     {"engine/inspection", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection/window", "engine/inspection/settings"}},
