@@ -91,7 +91,8 @@ void add_property(const std::vector<std::string>& words, const Lines& lines, Hea
   if (words.size() != 3) lines.fail("a list", "vertices of single numbers");
   const auto kind = std::ranges::find_if(
       kKinds, [&](const Kind& one) { return words[1] == one.name || words[1] == one.other_name; });
-  if (kind == kKinds.end()) lines.fail(fmt::format("a property of kind {}", words[1]), "e.g. float");
+  if (kind == kKinds.end())
+    lines.fail(fmt::format("a property of kind {}", words[1]), "e.g. float");
   const auto axis = std::ranges::find(kNames, words[2]);
   if (axis != kNames.end()) header.xyz[axis - kNames.begin()] = std::ssize(header.properties);
   header.properties.push_back(&*kind);
@@ -133,7 +134,8 @@ Header read_header(Lines& lines) {
 /// Fewer than the header says would be told only after all had been kept.
 void check_count(const Lines& lines, const Header& header) {
   const std::size_t least = header.ascii ? 2 * header.properties.size() - 1 : header.vertex_bytes;
-  const auto most = static_cast<std::int64_t>((lines.rest().size() + 1) / least);
+  const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may have none
+  const auto most = static_cast<std::int64_t>((lines.rest().size() + last_end) / least);
   if (header.vertices > most)
     lines.fail(fmt::format("{} vertices in {} bytes", header.vertices, lines.rest().size()),
                "as many as there are");

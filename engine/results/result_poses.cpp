@@ -36,6 +36,13 @@ std::string_view first_row(std::string_view text) {
   return {};
 }
 
+std::string_view last_row(std::string_view text) {
+  const std::size_t end = text.find_last_not_of(" \t\r\n");
+  if (end == std::string_view::npos) return {};
+  const std::size_t before = text.rfind('\n', end);
+  return trimmed(text.substr(before == std::string_view::npos ? 0 : before + 1));
+}
+
 std::size_t words_in(std::string_view line) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < line.size(); ++count) {
@@ -45,21 +52,21 @@ std::size_t words_in(std::string_view line) {
   return count;
 }
 
-/// Seconds since 1970 have ten digits until 2286; ten seconds in nanoseconds have eleven.
-TimeUnit unit_of(std::string_view time) {
-  constexpr double kMostSeconds = 1e10;
-  const auto value = parse_number(time);
-  return value && *value > kMostSeconds ? TimeUnit::nanoseconds : TimeUnit::seconds;
+std::optional<double> time_in(std::string_view row) {
+  return parse_number(row.substr(0, row.find_first_of(", \t")));
 }
 
-/// The first cell of the last line.
-std::string_view last_time(std::string_view text) {
-  const std::size_t end = text.find_last_not_of(" \t\r\n");
-  if (end == std::string_view::npos) return {};
-  const std::size_t before = text.rfind('\n', end);
-  const std::string_view line =
-      trimmed(text.substr(before == std::string_view::npos ? 0 : before + 1));
-  return line.substr(0, line.find_first_of(", \t"));
+/// Frames are not hours apart, and not less than ten microseconds; a single one is told by its
+/// size: seconds since 1970 have ten digits until 2286.
+TimeUnit unit_of(std::string_view text) {
+  constexpr double kLargestStep_s = 1e4;
+  constexpr double kMostSeconds = 1e10;
+  const auto first = time_in(first_row(text));
+  const auto last = time_in(last_row(text));
+  if (!first || !last) return TimeUnit::seconds;
+  const auto lines = static_cast<double>(1 + std::ranges::count(text, '\n'));
+  const bool ns = *last > kMostSeconds || *last - *first > kLargestStep_s * lines;
+  return ns ? TimeUnit::nanoseconds : TimeUnit::seconds;
 }
 
 ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
@@ -73,7 +80,7 @@ ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
 
 /// Camera poses are what TUM's benchmark compares, and what ORB-SLAM3 writes without an IMU.
 ResultPoses read_tum(const fs::path& file, std::string_view text) {
-  const TimeUnit unit = unit_of(last_time(text));
+  const TimeUnit unit = unit_of(text);
   return by_time(unit == TimeUnit::seconds ? "TUM" : "TUM with nanoseconds",
                  PosedFrame::camera,
                  read_tum_path(file, unit));

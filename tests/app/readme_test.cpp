@@ -58,8 +58,11 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   for (const char* page : {"README.md",
                            "assets/nine/README.md",
                            "engine/commands/README.md",
+                           "engine/examples/peers/README.md",
                            "engine/recording/README.md",
+                           "engine/results/README.md",
                            "engine/synthesis/README.md",
+                           "tests/app/results/README.md",
                            "tests/benchmark/README.md",
                            "tests/fuzz/README.md"}) {
     const std::string text = test::read_file(top / page);
