@@ -95,6 +95,28 @@ TEST(Result, ItStandsInTheComparisonTheCurvesAndTheExperiment) {
       AllOf(HasSubstr("orb: has 0 of the window's 15 frames"), HasSubstr("colmap: has 0 of")));
 }
 
+// A file harms nobody: there is no question.
+TEST(Result, ASessionBringsIt) {
+  const fs::path folder = fresh_folder();
+  const fs::path session = folder / "session.json", script = folder / "script.txt";
+  write_file(script, "save-session " + session.string() + "\n");
+  ASSERT_EQ(
+      program(
+          fmt::format(
+              "snapshot {} --method orb {} --script {}", desk().string(), kOrb, script.string()))
+          .exit_code,
+      0);
+  EXPECT_EQ(json::parse(read_file(session))["results"],
+            json::array({"orb=" + kFolder + "/CameraTrajectory.txt"}));
+  const fs::path result = folder / "result.json";
+  write_file(script, fmt::format("open {}\nexport result {}\n", session.string(), result.string()));
+  const Outcome outcome = program("snapshot --script " + script.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json opened = json::parse(read_file(result));
+  EXPECT_EQ(opened["method"], "orb");
+  EXPECT_LT(opened["metrics"]["ate_m"], 1e-3);
+}
+
 TEST(Result, BadFilesAreRefusedBeforeAnythingIsDone) {
   const fs::path folder = fresh_folder(), bad = folder / "bad.txt", json = folder / "a.json";
   write_file(bad, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 0\n");
