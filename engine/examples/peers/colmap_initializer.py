@@ -23,6 +23,7 @@ import time
 
 FEATURES = 1000  # a picture
 OVERLAP = 8  # each picture is matched with so many next ones
+LEAST_ANGLE_DEG = 4  # to begin with two pictures; COLMAP's own 16 are not in windows this short
 
 
 class Failed(Exception):
@@ -115,7 +116,7 @@ def initialize(window):
         )
         colmap(
             "mapper", **both, output_path=models, Mapper__ba_refine_focal_length=0,
-            Mapper__ba_refine_extra_params=0,
+            Mapper__ba_refine_extra_params=0, Mapper__init_min_tri_angle=LEAST_ANGLE_DEG,
         )
         found = largest_model(models)
     if names[0] not in found:
