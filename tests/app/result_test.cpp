@@ -28,19 +28,20 @@ const std::string kFolder = GPO_SOURCE_DIR "/tests/app/results";
 const std::string kColmap = "--result colmap=" + kFolder + "/colmap";
 const std::string kOrb = "--result orb=" + kFolder + "/CameraTrajectory.txt";
 
-json result_of(const std::string& arguments) {
-  const fs::path file = fresh_folder() / "result.json";
+json result_of(const std::string& arguments, const fs::path& folder) {
+  const fs::path file = folder / "result.json";
   const Outcome outcome = program("run " + arguments + " --json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
 }
 
 TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
-  const json colmap = result_of(desk().string() + " --method colmap " + kColmap);
+  const fs::path folder = fresh_folder();
+  const json colmap = result_of(desk().string() + " --method colmap " + kColmap, folder);
   EXPECT_LT(colmap["metrics"]["pne_deg"], 2);
   EXPECT_LT(colmap["metrics"]["ate_m"], 1e-3);
   EXPECT_EQ(colmap["frames"].size(), 30U);
-  const json orb = result_of(desk().string() + " --method orb " + kOrb);
+  const json orb = result_of(desk().string() + " --method orb " + kOrb, folder);
   EXPECT_LT(orb["metrics"]["pne_deg"], 2);
   EXPECT_LT(orb["metrics"]["ate_m"], 1e-3);
   EXPECT_GT(orb["uncertainty"]["normal_sigma_deg"], 0);
@@ -66,11 +67,12 @@ TEST(Result, OurOwnTrajectoryComesBack) {
                                   points.string()))
                   .exit_code,
               0);
-    const json ours = result_of(desk().string() + " --frames 10");
+    const json ours = result_of(desk().string() + " --frames 10", folder);
     const json back = result_of(fmt::format("{} --frames 10 --method it --result it={},{}",
                                             desk().string(),
                                             file.string(),
-                                            points.string()));
+                                            points.string()),
+                                folder);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(back["plane"]["normal"][k], ours["plane"]["normal"][k], 1e-6) << format;
       EXPECT_NEAR(back["frames"][9]["p_wc"][k], ours["frames"][9]["p_wc"][k], 1e-6) << format;
