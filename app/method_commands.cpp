@@ -85,6 +85,22 @@ std::vector<std::string> take_new(const std::vector<std::string>& from,
   return fresh;
 }
 
+/// All that is asked about must be seen: nothing beyond the window, nothing behind line ends.
+void check_can_be_shown(const std::vector<std::string>& waiting) {
+  constexpr std::size_t kMostCommands = 20, kMostBytes = 2000;
+  std::size_t bytes = 0;
+  for (const std::string& one : waiting) bytes += legible(one, kMostBytes + 1).size();
+  if (waiting.size() > kMostCommands || bytes > kMostBytes)
+    throw InputError(
+        fmt::format("method_commands of a session: found {} with {} characters or more, expected "
+                    "at most {} with {}, which a "
+                    "question can show; --allow-commands takes all",
+                    waiting.size(),
+                    bytes,
+                    kMostCommands,
+                    kMostBytes));
+}
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -172,6 +188,8 @@ OwnMethods register_methods(int argc, const char* const* argv) {
   options.told = [log = own.log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };
+  if (!*own.allowed)
+    check_can_be_shown({all.commands.begin() + std::ptrdiff_t(given), all.commands.end()});
   std::vector<Method> methods;
   const auto number = [&] { return static_cast<int>(methods.size()); };
   for (std::size_t i = 0; i < all.commands.size(); ++i) {

@@ -61,8 +61,11 @@ struct Session {
 
   /// Whether the commands that only a session names may be started; before anything is opened.
   void ask_for_commands() {
+    constexpr std::size_t kAllOfIt = 4000;
+    std::vector<std::string> shown;
+    for (const std::string& one : own.waiting) shown.push_back(legible(one, kAllOfIt));
     const Question question{"This session starts commands of its own",
-                            own.waiting,
+                            shown,
                             "They can do what you can. Start them if you know who wrote the "
                             "session; else their methods are listed and fail.",
                             "Start them",

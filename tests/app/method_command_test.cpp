@@ -213,6 +213,18 @@ TEST(MethodCommand, ASessionsBadCommandsAreRefused) {
   }
 }
 
+TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
+  const fs::path folder = fresh_folder();
+  const fs::path session = session_with_command(folder), script = folder / "open.txt";
+  write_file(script, "open " + session.string() + "\n");
+  json saved = json::parse(read_file(session));
+  saved["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
+  write_file(session, saved.dump());
+  const Outcome outcome = program("snapshot --script " + script.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("which a question can show"));
+}
+
 TEST(MethodCommand, ShardsAreMergedWithoutIt) {
   const fs::path folder = fresh_folder();
   for (int k = 1; k <= 2; ++k) {
