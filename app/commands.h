@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "app/method_commands.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/settings/settings.h"
@@ -134,12 +135,13 @@ int convert_command(const ConvertArguments& arguments);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int run_command(const RunArguments& arguments);
-int snapshot_command(const SnapshotArguments& arguments);
+int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own);
 /// Runs the window's commands off-screen; `size`: of the window.
 int script_command(const std::filesystem::path& script,
                    const InspectArguments& arguments,
-                   cv::Size size);
+                   cv::Size size,
+                   const OwnMethods& own);
 int synthesize_command(const std::filesystem::path& recipe, const std::filesystem::path& output);
-int view_command(const ViewArguments& arguments);
+int view_command(const ViewArguments& arguments, const OwnMethods& own);
 
 }  // namespace gpo

@@ -296,18 +296,18 @@ void declare(CLI::App& app, AllArguments& arguments) {
       ->required();
 }
 
-int dispatch(const CLI::App& app, const AllArguments& arguments) {
+int dispatch(const CLI::App& app, const AllArguments& arguments, const OwnMethods& own) {
   if (app.got_subcommand("info")) return info_command(arguments.info);
   if (app.got_subcommand("convert")) return convert_command(arguments.convert);
   if (app.got_subcommand("run")) return run_command(arguments.run);
-  if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot);
+  if (app.got_subcommand("snapshot")) return snapshot_command(arguments.snapshot, own);
   if (app.got_subcommand("calibrate"))
     return arguments.calibrate.gyroscope ? calibrate_gyroscope_command(arguments.calibrate)
                                          : calibrate_command(arguments.calibrate);
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);
-  return view_command(arguments.view);
+  return view_command(arguments.view, own);
 }
 
 int complain(const std::string& message) {
@@ -352,11 +352,11 @@ int main_with_errors(int argc, char** argv) {
   AllArguments arguments;
   try {
     quiet_libraries();
-    register_method_commands(argc, argv);
+    const OwnMethods own = register_methods(argc, argv);
     declare(app, arguments);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
-    const int code = dispatch(app, arguments);
+    const int code = dispatch(app, arguments, own);
     if (std::fflush(stdout) == 0) return code;
     return complain(fmt::format("standard output: cannot be written: {}",
                                 std::generic_category().message(errno)));

@@ -9,6 +9,8 @@
 #include "ui/workbench/session/script.h"
 #include "ui/workbench_host.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace gpo {
@@ -20,6 +22,11 @@ void tell(const WorkbenchState& state, std::size_t from) {
     if (state.log[i].severity == Severity::error) throw InputError(state.log[i].text);
     fmt::print("{}\n", state.log[i].text);
   }
+}
+
+/// Has been on standard error already.
+void keep_in_log(WorkbenchState& state, MethodLog& log) {
+  for (std::string& line : log.take()) state.log.push_back({Severity::note, std::move(line)});
 }
 
 void run(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
@@ -35,8 +42,10 @@ void run(WorkbenchHost& host, OffscreenContext& context, const std::string& line
 
 int script_command(const std::filesystem::path& script,
                    const InspectArguments& arguments,
-                   cv::Size size) {
+                   cv::Size size,
+                   const OwnMethods& own) {
   const std::vector<ScriptLine> lines = read_script(script);
+  say_not_started(own);
   OffscreenContext context(size.width, size.height);
   Gui gui;
   WorkbenchHost host(gui,
@@ -51,6 +60,7 @@ int script_command(const std::filesystem::path& script,
   for (const ScriptLine& line : lines) {
     try {
       run(host, context, line.text);
+      keep_in_log(host.state, *own.log);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", script.string(), line.number, error.what()));
     }

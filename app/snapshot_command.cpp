@@ -169,11 +169,12 @@ void check_required(const SnapshotArguments& arguments) {
 
 }  // namespace
 
-int snapshot_command(const SnapshotArguments& arguments) {
+int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own) {
   const auto size =
       arguments.size ? std::optional(picture_size(*arguments.size, "--size")) : std::nullopt;
   if (arguments.script)
-    return script_command(*arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)));
+    return script_command(
+        *arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)), own);
   check_required(arguments);
   if (arguments.output.extension() != ".png") {
     throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",

@@ -7,6 +7,7 @@
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
+#include "ui/question.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -31,11 +33,13 @@ using Clock = std::chrono::steady_clock;
 /// Dear ImGui needs a frame to see what the mouse hovers, and another one to size what it opens.
 constexpr int kFramesAfterEvent = 3;
 constexpr double kIdle_s = 3600;
+constexpr double kBetweenQuestions_s = 0.1;
 constexpr const char* kTitle = "GPO Inspector";
 
 /// Everything between opening the window and closing it.
 struct Session {
   const ViewArguments& arguments;
+  const OwnMethods& own;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
@@ -48,7 +52,41 @@ struct Session {
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
 
-  explicit Session(const ViewArguments& from) : arguments(from) {}
+  Session(const ViewArguments& from, const OwnMethods& methods) : arguments(from), own(methods) {
+    own.log->on_change([] { glfwPostEmptyEvent(); });
+  }
+  ~Session() { own.log->on_change({}); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Whether the commands that only a session names may be started; before anything is opened.
+  void ask_for_commands() {
+    constexpr std::size_t kAllOfIt = 4000;
+    std::vector<std::string> shown;
+    for (const std::string& one : own.waiting) shown.push_back(legible(one, kAllOfIt));
+    const Question question{"This session starts commands of its own",
+                            shown,
+                            "They can do what you can. Start them if you know who wrote the "
+                            "session; else their methods are listed and fail.",
+                            "Start them",
+                            "Do not start them"};
+    std::optional<bool> answer;
+    while (!answer && !window.should_close()) {
+      const cv::Size size = window.size();
+      window.bind();
+      if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
+      window.swap();
+      if (!answer) window.wait(kBetweenQuestions_s);
+    }
+    input.take();  // what was typed meanwhile was meant for nobody
+    *own.allowed = answer.value_or(false);
+    if (!*own.allowed) say_not_started(own);
+  }
+
+  void tell_what_methods_say() {
+    for (std::string& line : own.log->take())
+      host.state.log.push_back({Severity::note, std::move(line)});
+  }
 
   void draw() {
     host.size = window.size();
@@ -98,6 +136,7 @@ struct Session {
   void run() {
     for (int frames = kFramesAfterEvent; !window.should_close() && !host.state.wishes.quit;) {
       host.synchronize();
+      tell_what_methods_say();
       go_on_with_script();
       update_title();
       draw();
@@ -123,7 +162,7 @@ std::filesystem::path example_recording() {
   return example;
 }
 
-int view_command(const ViewArguments& arguments) {
+int view_command(const ViewArguments& arguments, const OwnMethods& own) {
   const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =
       arguments;
   if (recording && !std::filesystem::exists(*recording)) {
@@ -133,7 +172,7 @@ int view_command(const ViewArguments& arguments) {
   if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
   if (session_file) read_session(*session_file);  // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session(arguments);
+  Session session(arguments, own);
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.link.calibrates = calibrate == "auto";
@@ -146,6 +185,7 @@ int view_command(const ViewArguments& arguments) {
     glfwSetWindowSize(
         session.window.glfw(), static_cast<int>(1280 * scale), static_cast<int>(720 * scale));
   }
+  if (!own.waiting.empty()) session.ask_for_commands();
   session.run();
   save_last_session(session.host.state);
   return kDone;

@@ -3,13 +3,12 @@
 #include "engine/commands/answer.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/nearest_rotation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -106,11 +105,9 @@ Matrix3d rotation_in(const Json& json, const std::string& where, const char* key
   numbers(member(json, where, key), name, kExpected, values);
   if (values.size() != 9) refuse(name, kExpected);
   const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
-  const double skew = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(skew <= kMostSkew) || R.determinant() < 0) refuse(name, "a rotation matrix, row by row");
-  if (skew <= kRounding) return R;
-  const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const auto rotation = nearest_rotation(R, kMostSkew);
+  if (!rotation) refuse(name, "a rotation matrix, row by row");
+  return *rotation;
 }
 
 int index_in(const Json& json, const std::string& where, const char* key, int count) {

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/commands/answered.h"
 
-#include "engine/geometry/camera_resection.h"
+#include "engine/commands/completion.h"
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/triangulation.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/delivery.h"
 
@@ -21,9 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// PnP needs four points; with fewer than these it is a guess.
-constexpr int kLeastSeenPoints = 6;
-
 /// All in the axes of the reference camera.
 Answer seen_from_reference(Answer answer) {
   const Pose reference = *answer.cameras.front();
@@ -37,25 +33,6 @@ Answer seen_from_reference(Answer answer) {
   for (MapPoint& point : answer.points) point.position = to_camera(reference, point.position);
   std::erase_if(answer.points, [](const MapPoint& point) { return !(point.position.z() > 0); });
   return answer;
-}
-
-std::vector<MapPoint> triangulated(const Window& window, const Answer& answer) {
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  std::vector<MapPoint> points;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.inlier[0][j]) continue;
-    std::vector<Pose> cameras;
-    Eigen::Matrix3Xd rays(3, window.frame_count());
-    for (int i = 0; i < window.frame_count(); ++i) {
-      if (!answer.cameras[i] || !window.inlier[i][j]) continue;
-      rays.col(std::ssize(cameras)) = K_inverse * window.points_px[i].col(j).homogeneous();
-      cameras.push_back(*answer.cameras[i]);
-    }
-    if (cameras.size() < 2) continue;
-    const auto point = triangulate(cameras, rays.leftCols(std::ssize(cameras)));
-    if (point) points.push_back({j, *point});
-  }
-  return points;
 }
 
 std::optional<Plane> plane_of_inliers(const Window& window, const std::vector<MapPoint>& points) {
@@ -76,20 +53,6 @@ std::vector<MapPoint> on_plane(const Window& window, const Plane& plane) {
     if (point) points.push_back({j, *point});
   }
   return points;
-}
-
-std::optional<Pose> resected(const Window& window, const std::vector<MapPoint>& points, int frame) {
-  Eigen::Matrix3Xd positions(3, std::ssize(points));
-  Eigen::Matrix2Xd pixels(2, std::ssize(points));
-  int count = 0;
-  for (const MapPoint& point : points) {
-    if (!window.points_px[frame].col(point.track).allFinite()) continue;
-    positions.col(count) = point.position;
-    pixels.col(count++) = window.points_px[frame].col(point.track);
-  }
-  if (count < kLeastSeenPoints) return std::nullopt;
-  const auto found = resect_camera(positions.leftCols(count), pixels.leftCols(count), window.K);
-  return found ? std::optional(found->pose) : std::nullopt;
 }
 
 /// In the gauge of its plane; nothing where numbers run over.
@@ -133,7 +96,7 @@ Initialization initialization_of(const Window& window, const Answer& given) {
   if (!answer.plane && leading != answer.planes.end()) answer.plane = leading->plane;
   const bool over_plane = answer.plane && answer.points.empty();
   if (!answer.plane) {
-    if (answer.points.empty()) answer.points = triangulated(window, answer);
+    if (answer.points.empty()) answer.points = triangulated(window, answer.cameras);
     answer.plane = plane_of_inliers(window, answer.points);
     if (!answer.plane) return failed("no plane was given, and none goes through its points");
   }

@@ -4,26 +4,19 @@
 
 #include "engine/base/error.h"
 #include "engine/commands/answered.h"
+#include "engine/commands/own_method.h"
 #include "engine/commands/window_json.h"
 #include "engine/files/json_text.h"
 #include "engine/process/child_process.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
 namespace gpo {
 namespace {
@@ -54,6 +47,9 @@ class Program {
       : command_(std::move(command)), options_(std::move(options)) {}
 
   Initialization initialize(const Window& window, const Sources& sources, const Watch& watch) {
+    if (options_.allowed && !*options_.allowed)
+      return failed(command_.name +
+                    ": not started: the command is a session's; --allow-commands starts it");
     try {
       return answered(window, sources, watch);
     } catch (const std::exception& error) {
@@ -181,74 +177,28 @@ std::string identity_of(const std::string& command) {
   std::istringstream words(command);
   for (std::string word; words >> word;) {
     std::erase_if(word, [](char c) { return c == '"' || c == '\''; });
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(word, none)) continue;
-    std::ifstream file(word, std::ios::binary);
-    std::array<char, 65'536> buffer{};
-    uLong sum = crc32(0, nullptr, 0);
-    while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
-      sum = crc32(sum,
-                  reinterpret_cast<const Bytef*>(buffer.data()),  // NOLINT(*-reinterpret-cast)
-                  static_cast<uInt>(file.gcount()));
-    identity += fmt::format(" {:08x}", sum);
+    const std::string sum = checksum_of(word);
+    if (!sum.empty()) identity += " " + sum;
   }
   return identity;
-}
-
-/// Unlike ours and each other.
-std::uint32_t color_of_own(int number) {
-  constexpr std::array<std::uint32_t, 6> kColors{
-      0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
-  return kColors[static_cast<std::size_t>(number) % kColors.size()];
 }
 
 }  // namespace
 
 MethodCommand parse_method_command(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
-  constexpr std::size_t kLongest = 40;
-  const bool fits =
-      !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '_' || c == '-';
-      });
-  const bool has_command =
-      equals != std::string::npos && text.find_first_not_of(" \t", equals + 1) != std::string::npos;
-  if (!fits || !has_command || name == "all") {
-    throw InputError(fmt::format(
-        "--method-command: '{}', expected NAME='COMMAND', the name of letters, digits, _ and -",
-        text));
-  }
-  return {name, text.substr(equals + 1)};
+  auto [name, command] = parse_named(text, "--method-command", "NAME='COMMAND'");
+  return {std::move(name), std::move(command)};
 }
 
 Method command_method(const MethodCommand& command, const CommandOptions& options, int number) {
   const auto program = std::make_shared<Program>(command, options);
-  Method method{};
-  method.key = method.title = command.name;
-  method.rgb = color_of_own(number);
-  method.family = MethodFamily::optimization;
-  method.needs_plane = false;
-  method.inliers = Inliers::planes;
-  method.rotations = RotationModel::free;
-  method.initialize_from = [program](
-                               const Window& window, const Sources& sources, const Watch& watch) {
-    return program->initialize(window, sources, watch);
-  };
-  method.initialize =
-      [program](const Window& window, const InitializerOptions& /*options*/, const Watch& watch) {
-        return program->initialize(window, {}, watch);
-      };
-  method.identity = identity_of(command.command);
-  return method;
-}
-
-std::vector<Method> command_methods(std::span<const MethodCommand> commands,
-                                    const CommandOptions& options) {
-  std::vector<Method> methods;
-  for (const MethodCommand& command : commands)
-    methods.push_back(command_method(command, options, static_cast<int>(methods.size())));
-  return methods;
+  return own_method(
+      command.name,
+      number,
+      [program](const Window& window, const Sources& sources, const Watch& watch) {
+        return program->initialize(window, sources, watch);
+      },
+      identity_of(command.command));
 }
 
 }  // namespace gpo

@@ -4,12 +4,11 @@
 
 #include "engine/initializers/methods.h"
 
+#include <atomic>
 #include <chrono>
 #include <functional>
-#include <span>
+#include <memory>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace gpo {
 
@@ -28,15 +27,13 @@ struct CommandOptions {
   /// Told each line that a command writes on its standard error, on the thread that asks; bounded a
   /// window.
   std::function<void(const std::string& name, const std::string& line)> told = {};
+  /// Nothing is started while it is false; null: the user has spelled the command.
+  std::shared_ptr<const std::atomic<bool>> allowed = {};
 };
 
 /// The method, which starts processes when it is asked, as many as threads ask it at once, and
 /// keeps them for further windows until the last copy of it is gone. Whatever a command does is a
 /// failure of that window, with a reason in one line. `number`: of the user's own, for its color.
 Method command_method(const MethodCommand& command, const CommandOptions& options, int number);
-
-/// All of them.
-std::vector<Method> command_methods(std::span<const MethodCommand> commands,
-                                    const CommandOptions& options);
 
 }  // namespace gpo

@@ -76,7 +76,7 @@ ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
   if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
   if (a.seed != b.seed) found.plan.emplace_back("seed");
   if (a.program != b.program) found.content.emplace_back("version of the program");
-  if (a.commands != b.commands) found.content.emplace_back("command of a method");
+  if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
   if (!same_names(a, b)) {
     found.plan.emplace_back("recordings");
     return found;

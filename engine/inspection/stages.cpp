@@ -67,6 +67,7 @@ Sources sources_of(const Recording& recording, const Window& window) {
   Sources sources;
   sources.camera = &recording.camera;
   sources.gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  sources.T_body_camera = recording.T_body_camera;
   const auto& files = recording.picture_files;
   if (std::ssize(files) == recording.frame_count()) {
     sources.pictures.assign(files.begin() + window.start,

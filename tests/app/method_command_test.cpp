@@ -135,7 +135,7 @@ TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
   const json summary = json::parse(read_file(folder / "out/experiment.json"));
   EXPECT_THAT(summary["commands"]["mine"].get<std::string>(), HasSubstr("mine.sh"));
   write_file(folder / "mine.sh", "while read w; do echo '{\"failed\": \"mended\"}'; done\n");
-  EXPECT_THAT(evaluate().err, HasSubstr("command of a method"));
+  EXPECT_THAT(evaluate().err, HasSubstr("command or files of a method"));
   EXPECT_THAT(read_file(folder / "out/results.csv"),
               AllOf(HasSubstr("mine: mended"), Not(HasSubstr("said so"))));
 }
@@ -159,24 +159,87 @@ TEST(MethodCommand, ItStandsInTheComparisonAndTheCurves) {
   }
 }
 
-// Sessions and scripts come from others, too: they name methods, and never say what to start.
-TEST(MethodCommand, ASessionStartsNone) {
-  const fs::path folder = fresh_folder();
-  const fs::path session = folder / "session.json", script = folder / "script.txt";
+/// A session that was saved with a method of its own, which leaves a file where it is started.
+fs::path session_with_command(const fs::path& folder) {
+  const fs::path session = folder / "session.json", script = folder / "save.txt";
   write_file(script, "save-session " + session.string() + "\n");
-  ASSERT_EQ(
-      program("snapshot " + desk().string() + " --frames 10 --script " + script.string()).exit_code,
-      0);
-  json saved = json::parse(read_file(session));
-  saved["settings"]["method"] = "mine";
-  saved["method_commands"] = {{"mine", "touch " + (folder / "started").string()}};
-  saved["settings"]["method_command"] = "mine=touch " + (folder / "started").string();
-  write_file(session, saved.dump());
+  const Outcome outcome = program(fmt::format(
+      "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; cat\"",
+      desk().string(),
+      script.string(),
+      (folder / "started").string()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(fs::remove(folder / "started"));
+  return session;
+}
+
+// Sessions and scripts come from others, too.
+TEST(MethodCommand, ASessionStartsNoneUnlessThatIsAllowed) {
+  const fs::path folder = fresh_folder();
+  const fs::path session = session_with_command(folder), script = folder / "open.txt";
+  const json saved = json::parse(read_file(session));
+  ASSERT_EQ(saved["method_commands"].size(), 1U);
+  EXPECT_THAT(saved["method_commands"][0].get<std::string>(), testing::StartsWith("mine=touch "));
   write_file(script, "open " + session.string() + "\n");
-  const Outcome outcome = program("snapshot --script " + script.string());
-  EXPECT_NE(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("method"));
+  const Outcome without = program("snapshot --script " + script.string());
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_THAT(without.err,
+              AllOf(HasSubstr("mine: not started: only a session names its command (touch "),
+                    HasSubstr("--allow-commands starts it")));
   EXPECT_FALSE(fs::exists(folder / "started"));
+  EXPECT_EQ(program("snapshot --allow-commands --script " + script.string()).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder / "started"));
+  EXPECT_TRUE(fs::remove(folder / "started"));
+  const Outcome other = program("snapshot --method-command mine=cat --script " + script.string());
+  EXPECT_EQ(other.err, "") << "what the command line says of a name is what counts";
+  EXPECT_FALSE(fs::exists(folder / "started"));
+}
+
+TEST(MethodCommand, ASessionsBadCommandsAreRefused) {
+  const fs::path folder = fresh_folder();
+  const fs::path session = session_with_command(folder), script = folder / "open.txt";
+  write_file(script, "open " + session.string() + "\n");
+  const json good = json::parse(read_file(session));
+  for (const auto& [commands, message] : std::vector<std::pair<json, std::string>>{
+           {json::object({{"mine", "touch it"}}), "method_commands: expected a list of texts"},
+           {json::array({"mine"}), "'mine', expected NAME='COMMAND'"},
+           {json::array({"gpo=cat"}), "there already is a method 'gpo'"}}) {
+    json bad = good;
+    bad["method_commands"] = commands;
+    write_file(session, bad.dump());
+    const Outcome outcome = program("snapshot --allow-commands --script " + script.string());
+    EXPECT_EQ(outcome.exit_code, 2) << commands;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
+}
+
+TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
+  const fs::path folder = fresh_folder();
+  const fs::path session = session_with_command(folder), script = folder / "open.txt";
+  write_file(script, "open " + session.string() + "\n");
+  json saved = json::parse(read_file(session));
+  saved["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
+  write_file(session, saved.dump());
+  const Outcome outcome = program("snapshot --script " + script.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("which a question can show"));
+}
+
+TEST(MethodCommand, ShardsAreMergedWithoutIt) {
+  const fs::path folder = fresh_folder();
+  for (int k = 1; k <= 2; ++k) {
+    const Outcome shard = program(fmt::format(
+        "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
+        "--method-command mine='read w; echo no >&2'",
+        desk().string(),
+        k,
+        (folder / "shards").string()));
+    EXPECT_EQ(shard.exit_code, 0) << shard.err;
+  }
+  const Outcome merged = program(fmt::format(
+      "evaluate --merge {} --output {}", (folder / "shards").string(), (folder / "out").string()));
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
 }
 
 std::string opencv_command() {

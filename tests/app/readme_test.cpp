@@ -60,8 +60,11 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
                            "engine/commands/README.md",
                            "engine/examples/README.md",
                            "engine/experiment/README.md",
+                           "engine/examples/peers/README.md",
                            "engine/recording/README.md",
+                           "engine/results/README.md",
                            "engine/synthesis/README.md",
+                           "tests/app/results/README.md",
                            "tests/benchmark/README.md",
                            "tests/fuzz/README.md"}) {
     const std::string text = test::read_file(top / page);

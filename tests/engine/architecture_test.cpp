@@ -58,6 +58,7 @@ const std::vector<Room> kRooms = {
     {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
     {"engine/process", {}},
     {"engine/commands", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/initializers/plane", "engine/process"}},
+    {"engine/results", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/commands", "engine/recording/layouts"}},
     {"engine/inspection/window", {"engine", "engine/initialize", "engine/initializers/common", "engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/frontend/", "engine/recording/"}},
     {"engine/inspection/settings", {"engine", "engine/initialize", "engine/files", "engine/base", "engine/geometry", "engine/window", "engine/initializers/", "engine/frontend/", "engine/recording/", "engine/inspection/window"}},
     {"engine/inspection", {"engine", "engine/initialize", "engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection/window", "engine/inspection/settings"}},
@@ -85,6 +86,7 @@ const std::vector<Room> kRooms = {
     {"ui/panels/frame", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts", "ui/panels/panes"}},
     {"ui", {"engine/", "ui/"}},
     {"app", {"engine/", "ui/"}},
+    {"app/python", {"app", "engine/", "ui/"}},
 };
 // clang-format on
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
 #include "engine/window/gyroscope.h"
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace gpo {
@@ -13,8 +15,9 @@ namespace gpo {
 /// What a window was made of. No method of ours asks for it; a user's own may. Null or empty: there
 /// is none.
 struct Sources {
-  const Camera* camera = nullptr;        ///< of the raw pictures
-  const Gyroscope* gyroscope = nullptr;  ///< of the whole recording
+  const Camera* camera = nullptr;          ///< of the raw pictures
+  const Gyroscope* gyroscope = nullptr;    ///< of the whole recording
+  std::optional<Pose> T_body_camera = {};  ///< body: the axes of the IMU; where it is told
   /// A video of the whole recording, or one picture a frame of the window.
   std::vector<std::filesystem::path> pictures = {};
 };

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/recording/bags/bag.h"
-#include "engine/recording/bags/byte_cursor.h"
+#include "engine/files/byte_cursor.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 #include "engine/recording/bags/ros1_bag.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/byte_cursor.h"
+#include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/chunk_reader.h"
 #include "engine/recording/bags/ros1_record.h"
 #include "engine/recording/bags/topic_list.h"

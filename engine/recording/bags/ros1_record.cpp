@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/ros1_record.h"
 
-#include "engine/recording/bags/byte_cursor.h"
+#include "engine/files/byte_cursor.h"
 
 namespace gpo {
 namespace {

@@ -72,12 +72,12 @@ PosePath read_euroc_path(const std::filesystem::path& file) {
   return path;
 }
 
-PosePath read_tum_path(const std::filesystem::path& file) {
+PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file,
                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"},
                                   CsvColumns::exactly,
                                   Separator::blanks);
-  return path_of(table, TimeUnit::seconds, {7, 4, 5, 6});
+  return path_of(table, unit, {7, 4, 5, 6});
 }
 
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns) {

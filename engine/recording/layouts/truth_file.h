@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/csv_table.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 
@@ -27,8 +28,9 @@ struct PosePath {
 /// InputError.
 PosePath read_euroc_path(const std::filesystem::path& file);
 
-/// TUM's groundtruth.txt: seconds, p, q_xyzw, separated by blanks. Throws InputError.
-PosePath read_tum_path(const std::filesystem::path& file);
+/// TUM's groundtruth.txt: seconds, p, q_xyzw, separated by blanks; others have another unit. Throws
+/// InputError.
+PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
 
 /// The pose at a time, slerp and linear between the two samples around it; nothing where these are
 /// further apart than the longest gap, or the time is outside of the path.

@@ -3,8 +3,10 @@
 #include "ui/workbench/session/session_file.h"
 
 #include "engine/base/error.h"
+#include "engine/commands/spelled_methods.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
+#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/session/session_fields.h"
 #include "ui/workbench/window_span.h"
@@ -12,6 +14,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -22,11 +25,44 @@ using Json = SessionJson;
 constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
 
+/// The user's own methods, for whoever opens the session to start them or not.
+void write_own_methods(Json& json) {
+  const SpelledMethods& own = spelled_methods();
+  if (!own.commands.empty()) json["method_commands"] = own.commands;
+  std::vector<std::string> results;
+  for (const std::string& one : own.results) results.push_back(with_whole_paths(one));
+  if (!results.empty()) json["results"] = results;
+}
+
+/// Those that were not there when the program began, after which the table of methods is fixed.
+std::vector<std::string> unknown_methods(const fs::path& file) {
+  std::vector<std::string> unknown = names_of(methods_in_session(file));
+  std::erase_if(unknown, [](const std::string& name) {
+    return std::ranges::find(methods(), name, &Method::key) != methods().end();
+  });
+  return unknown;
+}
+
+void read_fields(const SessionReader& read, const fs::path& file, WorkbenchState& state) {
+  const std::vector<std::string> unknown = unknown_methods(file);
+  try {
+    for (const SessionField& field : session_fields())
+      if (read.has(field.key)) field.read(read, state);
+  } catch (const InputError&) {
+    if (unknown.empty()) throw;
+    throw InputError(fmt::format("{}: has methods of its own ({}): start with --session {}",
+                                 file.string(),
+                                 fmt::join(unknown, ", "),
+                                 file.string()));
+  }
+}
+
 }  // namespace
 
 std::string session_text(const WorkbenchState& state) {
   Json json = {{"kind", kKind}, {"version", kVersion}};
   json["recording"] = state.recording ? Json(fs::absolute(state.recording->path).string()) : Json();
+  write_own_methods(json);
   for (const SessionField& field : session_fields()) json[field.key] = field.write(state);
   return json_text(json, 2);
 }
@@ -46,8 +82,7 @@ SavedSession read_session(const fs::path& file) {
     throw InputError(fmt::format("{}: version: {}, expected {}", file.string(), version, kVersion));
   SavedSession session;
   auto state = std::make_shared<WorkbenchState>();
-  for (const SessionField& field : session_fields())
-    if (read.has(field.key)) field.read(read, *state);
+  read_fields(read, file, *state);
   session.state = state;
   session.recording = recording;
   std::error_code none;

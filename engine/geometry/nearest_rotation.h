@@ -1,0 +1,16 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// The rotation nearest to a matrix that is meant to be one, written with few digits: as it is
+/// where it is one but for rounding; nothing where an entry of M M^T is off by more than
+/// `most_skew`, or where M mirrors.
+std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& M, double most_skew);
+
+}  // namespace gpo

@@ -1,0 +1,237 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/results/colmap_model.h"
+
+#include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
+#include "engine/files/text_file.h"
+#include "engine/results/result_poses.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// Names the line or the entry that an InputError is about.
+struct Place {
+  const fs::path& file;
+  std::string where;  ///< ":3", ": image 2, byte 80"
+
+  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+    throw InputError(
+        fmt::format("{}{}: found {}, expected {}", file.string(), where, found, expected));
+  }
+};
+
+/// COLMAP's x_camera = R(q) x_world + t, the other way round. `numbers`: q_wxyz, t.
+Pose camera_of(const std::array<double, 7>& numbers, const Place& place) {
+  constexpr double kMostOff = 1e-2;
+  const Eigen::Quaterniond q(numbers[0], numbers[1], numbers[2], numbers[3]);
+  if (!(std::abs(q.norm() - 1) <= kMostOff))
+    place.fail(fmt::format("a quaternion of norm {:g}", q.norm()), "a unit quaternion");
+  const Vector3d t(numbers[4], numbers[5], numbers[6]);
+  if (!t.allFinite()) place.fail("a translation that is not finite", "three finite numbers");
+  return inverse({q.normalized().toRotationMatrix(), t});
+}
+
+void check_point(const Vector3d& point, const Place& place) {
+  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > kLargestCoordinate)
+    place.fail(fmt::format("({:g} {:g} {:g})", point.x(), point.y(), point.z()),
+               fmt::format("three numbers up to {:g}", kLargestCoordinate));
+}
+
+Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
+  Eigen::Matrix3Xd matrix(3, std::ssize(points));
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) matrix.col(j) = points[j];
+  return matrix;
+}
+
+/// Lines with their numbers.
+class Lines {
+ public:
+  Lines(const fs::path& file, std::string_view text) : file_(file), rest_(text) {}
+
+  /// The next one without blanks at its ends; nothing at the end of the file.
+  std::optional<std::string_view> next() {
+    if (rest_.empty()) return std::nullopt;
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    const std::string_view line = trimmed(rest_.substr(0, end));
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++number_;
+    return line;
+  }
+  /// The next one that is neither empty nor a remark.
+  std::optional<std::string_view> next_entry() {
+    auto line = next();
+    while (line && (line->empty() || line->front() == '#')) line = next();
+    return line;
+  }
+  Place place() const { return {file_, fmt::format(":{}", number_)}; }
+
+ private:
+  const fs::path& file_;
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+std::string_view take_word(std::string_view& rest) {
+  constexpr std::string_view kBlanks = " \t";
+  const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
+  const std::string_view word = rest.substr(0, end);
+  rest.remove_prefix(end);
+  rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  return word;
+}
+
+double take_number(std::string_view& rest, const Place& place, const char* columns) {
+  const std::string_view word = take_word(rest);
+  const auto value = parse_number(word);
+  if (!value)
+    place.fail(word.empty() ? "the end of the line" : fmt::format("\"{}\"", word.substr(0, 40)),
+               fmt::format("a finite number ({})", columns));
+  return *value;
+}
+
+std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view text) {
+  constexpr const char* kColumns = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
+  std::vector<ColmapImage> images;
+  Lines lines(file, text);
+  while (auto line = lines.next_entry()) {
+    const Place place = lines.place();
+    take_number(*line, place, kColumns);
+    std::array<double, 7> numbers{};
+    for (double& number : numbers) number = take_number(*line, place, kColumns);
+    take_number(*line, place, kColumns);
+    if (line->empty()) place.fail("no name of a picture", kColumns);
+    images.push_back({std::string(*line), camera_of(numbers, place)});
+    lines.next();  // its keypoints; may be empty
+  }
+  return images;
+}
+
+Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
+  constexpr const char* kColumns = "POINT3D_ID X Y Z R G B ERROR TRACK[]";
+  std::vector<Vector3d> points;
+  Lines lines(file, text);
+  while (auto line = lines.next_entry()) {
+    const Place place = lines.place();
+    take_number(*line, place, kColumns);
+    Vector3d point;
+    for (double& number : point) number = take_number(*line, place, kColumns);
+    check_point(point, place);
+    points.push_back(point);
+  }
+  return columns(points);
+}
+
+/// Entries of a binary file, whose count stands at its beginning.
+class Entries {
+ public:
+  Entries(const fs::path& file, std::string_view bytes, const char* kind)
+      : file_(file), bytes_(bytes), kind_(kind), cursor_(bytes) {
+    count_ = cursor_.number<std::uint64_t>();
+    if (!cursor_.ok()) Place{file_, ""}.fail("fewer than 8 bytes", "the number of entries");
+  }
+
+  /// Goes to the next entry; false after the last, where the file must end.
+  bool next() {
+    if (number_ == count_) {
+      if (cursor_.more())
+        Place{file_, ""}.fail(
+            fmt::format(
+                "{} bytes after the last of {} entries", bytes_.size() - cursor_.place(), count_),
+            "its end");
+      return false;
+    }
+    ++number_;
+    begin_ = cursor_.place();
+    return true;
+  }
+  ByteCursor& cursor() { return cursor_; }
+  std::size_t left() const { return bytes_.size() - cursor_.place(); }
+  Place place() const { return {file_, fmt::format(": {} {}, byte {}", kind_, number_, begin_)}; }
+  /// To be asked before what was read is used.
+  void check() const {
+    if (!cursor_.ok()) place().fail("the end of the file", fmt::format("{} of them", count_));
+  }
+  /// Of an entry's own list, whose count comes next. So many bytes each.
+  void skip_list(std::uint64_t size) {
+    const auto count = cursor_.number<std::uint64_t>();
+    if (cursor_.ok() && count > left() / size)
+      place().fail(fmt::format("a list of {} in {} bytes", count, left()), "one that fits");
+    cursor_.take(count * size);
+  }
+
+ private:
+  const fs::path& file_;
+  std::string_view bytes_;
+  const char* kind_;
+  ByteCursor cursor_;
+  std::uint64_t count_ = 0;
+  std::uint64_t number_ = 0;
+  std::size_t begin_ = 0;
+};
+
+std::vector<ColmapImage> images_in_binary(const fs::path& file, std::string_view bytes) {
+  std::vector<ColmapImage> images;
+  Entries entries(file, bytes, "image");
+  while (entries.next()) {
+    ByteCursor& cursor = entries.cursor();
+    cursor.number<std::uint32_t>();  // its number
+    std::array<double, 7> numbers{};
+    for (double& number : numbers) number = cursor.number<double>();
+    cursor.number<std::uint32_t>();  // its camera's
+    const std::size_t length = bytes.substr(cursor.place()).find('\0');
+    const std::string_view name = cursor.take(length);
+    cursor.take(1);
+    entries.check();
+    if (name.empty()) entries.place().fail("no name of a picture", "one");
+    images.push_back({std::string(name), camera_of(numbers, entries.place())});
+    entries.skip_list(24);  // keypoints: x, y, the point's number
+    entries.check();
+  }
+  return images;
+}
+
+Eigen::Matrix3Xd points_in_binary(const fs::path& file, std::string_view bytes) {
+  std::vector<Vector3d> points;
+  Entries entries(file, bytes, "point");
+  while (entries.next()) {
+    ByteCursor& cursor = entries.cursor();
+    cursor.number<std::uint64_t>();  // its number
+    Vector3d point;
+    for (double& number : point) number = cursor.number<double>();
+    cursor.take(3 + sizeof(double));  // color, error
+    entries.skip_list(8);             // who sees it
+    entries.check();
+    check_point(point, entries.place());
+    points.push_back(point);
+  }
+  return columns(points);
+}
+
+bool is_binary(const fs::path& file) { return file.extension() == ".bin"; }
+
+}  // namespace
+
+std::vector<ColmapImage> read_colmap_images(const fs::path& file, std::string_view bytes) {
+  auto images = is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
+  if (images.empty()) Place{file, ""}.fail("no image", "a model of COLMAP with some");
+  return images;
+}
+
+Eigen::Matrix3Xd read_colmap_points(const fs::path& file, std::string_view bytes) {
+  return is_binary(file) ? points_in_binary(file, bytes) : points_in_text(file, bytes);
+}
+
+}  // namespace gpo

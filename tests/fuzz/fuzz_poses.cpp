@@ -1,0 +1,34 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Other programs' results. The first byte chooses what the rest is read as.
+#include "engine/results/colmap_model.h"
+#include "engine/results/ply_points.h"
+#include "engine/results/result_poses.h"
+#include "tests/fuzz/fuzzed_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string_view bytes = gpo::fuzz::bytes_of(data + 1, size - 1);
+  gpo::fuzz::parse([&] {
+    switch (data[0]) {
+      case 'b':
+        gpo::read_colmap_images("images.bin", bytes);
+        break;
+      case 't':
+        gpo::read_colmap_images("images.txt", bytes);
+        break;
+      case 'p':
+        gpo::read_colmap_points("points3D.bin", bytes);
+        break;
+      case 'q':
+        gpo::read_colmap_points("points3D.txt", bytes);
+        break;
+      case 'y':
+        gpo::read_ply_points("points.ply", bytes);
+        break;
+      default:
+        gpo::read_result_poses(gpo::fuzz::file_of(bytes));
+    }
+  });
+  return 0;
+}

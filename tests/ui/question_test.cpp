@@ -1,0 +1,65 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/question.h"
+
+#include "tests/ui/gl_test.h"
+#include "ui/context/offscreen_context.h"
+
+#include <set>
+
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+const Question kQuestion{"This session starts commands of its own",
+                         {"mine=python3 mine.py --with %s and a lot of arguments that go on and on "
+                          "so that they do not fit into one line of the window",
+                          "other=rm -r everything"},
+                         "Start them if you know who wrote the session.",
+                         "Start them",
+                         "Do not start them"};
+
+class AQuestion : public DrawingTest {
+ protected:
+  std::optional<bool> draw() {
+    context_.bind();
+    return ask(gui_, {1280, 720}, kQuestion);
+  }
+
+  OffscreenContext context_{1280, 720};
+  Gui gui_;
+};
+
+TEST_F(AQuestion, WaitsForOneOfItsButtons) {
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(draw());
+  std::set<bool> answers;
+  bool first = true;
+  for (int y = 300; y < 500; y += 10) {
+    for (int x = 340; x < 940; x += 60) {
+      ImGui::GetIO().MousePos = {static_cast<float>(x), static_cast<float>(y)};
+      draw();
+      ImGui::GetIO().MouseDown[0] = true;
+      draw();
+      ImGui::GetIO().MouseDown[0] = false;
+      const auto answer = draw();
+      if (answer && first) EXPECT_FALSE(*answer) << "the one on the left is no";
+      if (answer) first = false;
+      if (answer) answers.insert(*answer);
+    }
+  }
+  EXPECT_EQ(answers, (std::set<bool>{false, true}));
+}
+
+TEST_F(AQuestion, ShowsWhatItIsAbout) {
+  for (int i = 0; i < 3; ++i) draw();
+  const cv::Mat picture = context_.read_bgr();
+  keep("question", picture);
+  cv::Mat gray, different;
+  cv::extractChannel(picture, gray, 1);
+  cv::compare(gray, gray.at<std::uint8_t>(0, 0), different, cv::CMP_NE);
+  EXPECT_GT(cv::countNonZero(different), 20'000);
+}
+
+}  // namespace
+}  // namespace gpo
