@@ -5,6 +5,7 @@
 #include "app/method_commands.h"
 #include "app/pages.h"
 #include "app/setting_options.h"
+#include "app/snapshots.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 
@@ -116,7 +117,7 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   CLI::Option* script = command->add_option(
       "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->check(CLI::IsMember({"image", "scene", "normals", "compare", "curves", "window"}))
+      ->check(CLI::IsMember(view_names()))
       ->excludes(script);
   command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(

@@ -10,8 +10,8 @@ namespace gpo {
 /// (share/gpo-inspector).
 std::filesystem::path example_recording();
 
-/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the program
-/// was installed.
+/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the
+/// program was installed.
 std::filesystem::path made_recordings_folder();
 
 }  // namespace gpo
