@@ -8,6 +8,7 @@ build_packages=(
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libexiv2-dev
+  python3-dev pybind11-dev python3-numpy
 )
 test_packages=(
   libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps ccache
@@ -15,6 +16,8 @@ test_packages=(
   # bags that we did not write
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
   python3-opencv python3-jsonschema  # an initializer that we did not compile
+  python3-pytest
+  groff-base bsdextrautils zsh  # the manual page, completions
 )
 benchmark_packages=(libbenchmark-dev)
 

@@ -125,10 +125,6 @@ struct ConvertArguments {
   std::filesystem::path output;  ///< folder, or of a bag the file
 };
 
-/// The recording that comes with the program: beside the sources it was built from, else beside the
-/// executable or where it is run.
-std::filesystem::path example_recording();
-
 int calibrate_command(const CalibrateArguments& arguments);
 int calibrate_gyroscope_command(const CalibrateArguments& arguments);
 int convert_command(const ConvertArguments& arguments);

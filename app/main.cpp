@@ -3,7 +3,9 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/method_commands.h"
+#include "app/pages.h"
 #include "app/setting_options.h"
+#include "app/snapshots.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 
@@ -115,7 +117,7 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   CLI::Option* script = command->add_option(
       "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->check(CLI::IsMember({"image", "scene", "normals", "compare", "curves", "window"}))
+      ->check(CLI::IsMember(view_names()))
       ->excludes(script);
   command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(
@@ -268,6 +270,7 @@ struct AllArguments {
   std::filesystem::path recipe;
   std::filesystem::path synthesize_output;
   ViewArguments view;
+  Page page = Page::man;
 };
 
 void declare(CLI::App& app, AllArguments& arguments) {
@@ -294,6 +297,7 @@ void declare(CLI::App& app, AllArguments& arguments) {
   synthesize->add_option("recipe", arguments.recipe, "Recipe, a YAML file")->required();
   synthesize->add_option("--output", arguments.synthesize_output, "Folder to write, EuRoC layout")
       ->required();
+  add_pages(app, arguments.page);
 }
 
 int dispatch(const CLI::App& app, const AllArguments& arguments, const OwnMethods& own) {
@@ -307,18 +311,16 @@ int dispatch(const CLI::App& app, const AllArguments& arguments, const OwnMethod
   if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);
+  if (app.got_subcommand("pages")) {
+    fmt::print("{}", page_of(app, arguments.page, GPO_VERSION));
+    return kDone;
+  }
   return view_command(arguments.view, own);
 }
 
 int complain(const std::string& message) {
   fmt::print(stderr, "gpo-inspector: {}\n", message);
   return kBadInput;
-}
-
-std::string names_of_commands(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// In one line, and where there is more to read.
@@ -332,7 +334,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     help += " " + commands.front()->get_name();
   } else if (!words.empty() && !words.front().starts_with('-')) {
     message = fmt::format(
-        "unknown command '{}', expected one of {}", words.front(), names_of_commands(app));
+        "unknown command '{}', expected one of {}", words.front(), names_of_commands(app, ", "));
   }
   return InputError(fmt::format("{}; see {} --help", message, help)).what();
 }

@@ -5,6 +5,7 @@
 #include "app/found_camera.h"
 #include "app/interrupt.h"
 #include "app/known_files.h"
+#include "app/own_files.h"
 #include "app/progress_bar.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
@@ -41,7 +42,7 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
 
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   if (recipes.empty()) return {};
-  const fs::path cache = GPO_RECORDINGS_DIR;
+  const fs::path cache = made_recordings_folder();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
   const Interrupt interrupt;
   const auto check = [&] { interrupt.check("of what was being synthesized nothing is left"); };

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/own_files.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "ui/context/offscreen_context.h"

@@ -1,18 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
-#include "app/comparison.h"
 #include "app/output.h"
 #include "app/setting_options.h"
+#include "app/snapshots.h"
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
-#include "ui/views/charts/figure_view.h"
 #include "ui/views/picture_compare.h"
-#include "ui/views/snapshot.h"
 #include "ui/workbench/session/picture_size.h"
-#include "ui/workbench_window.h"
 
 #include <array>
 #include <cstdio>
@@ -25,32 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A picture, and whether what it shows could be computed.
-struct Drawn {
-  cv::Mat picture;
-  bool ok = false;  ///< of several: at least one
-};
-
-void tell_failure(const std::string& what, const std::string& reason) {
-  fmt::print(stderr, "{}: initialization failed: {}\n", what, reason);
-}
-
-/// The frame that is asked for, or the window's last.
-int frame_to_draw(const SnapshotArguments& arguments, const Recording& recording) {
-  const Settings& settings = arguments.inspect.settings;
-  const int frame = arguments.frame.value_or(settings.start + settings.frames - 1);
-  if (frame < 0 || frame >= recording.frame_count()) {
-    throw InputError(fmt::format("--frame: {} is not in the recording, which has frames 0 to {}",
-                                 frame,
-                                 recording.frame_count() - 1));
-  }
-  return frame;
-}
-
-ComparisonRequest request_of(const SnapshotArguments& arguments) {
-  return {arguments.methods, arguments.lengths, arguments.inspect.settings};
-}
-
 /// Of what only some views heed.
 void tell_unused_by_view(const SnapshotArguments& arguments) {
   const bool curves = arguments.view == "curves";
@@ -62,48 +32,18 @@ void tell_unused_by_view(const SnapshotArguments& arguments) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-Drawn draw_compare(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
-  const auto recording = open(arguments.inspect);
-  const ComparisonRequest request = request_of(arguments);
-  const auto inspections = inspect_each(recording, request);
-  tell_unused(arguments.inspect.given, configurations_of(request), inspections);
-  const int frame = frame_to_draw(arguments, *recording);
-  Drawn drawn{snapshot_compare(inspections, frame, size)};
-  for (const auto& inspection : inspections) {
-    const Initialization& result = *inspection->initialization;
-    drawn.ok |= result.ok;
-    if (!result.ok) tell_failure(key_of(configuration_of(inspection->settings)), result.reason);
-  }
+/// Draws, and says what was not used and what failed.
+DrawnView draw(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+  const ComparisonRequest compared{
+      arguments.methods, arguments.lengths, arguments.inspect.settings};
+  const ViewRequest request{arguments.view, arguments.frame, size, compared};
+  DrawnView drawn = draw_view(open(arguments.inspect), request);
+  if (arguments.view == "compare" || arguments.view == "curves")
+    tell_unused(arguments.inspect.given, configurations_of(compared), drawn.inspections);
+  else
+    tell_unused(arguments.inspect.given, *drawn.inspections.front());
+  for (const std::string& failure : drawn.failures) fmt::print(stderr, "{}\n", failure);
   return drawn;
-}
-
-Drawn draw_curves(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
-  const ComparisonRequest request = request_of(arguments);
-  const LengthCurves curves = curves_over_length(open(arguments.inspect), request);
-  tell_unused(arguments.inspect.given, configurations_of(request), curves.longest);
-  for (const std::string& failure : curves.failures) fmt::print(stderr, "{}\n", failure);
-  const cv::Size pixels = size.value_or(default_figure_size(curves.figure));
-  return {draw_figure(curves.figure, pixels), curves.any_ok};
-}
-
-Drawn draw_one(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
-  const auto inspection = inspect(arguments.inspect);
-  tell_unused(arguments.inspect.given, *inspection);
-  const int frame = frame_to_draw(arguments, *inspection->recording);
-  const Initialization& result = *inspection->initialization;
-  if (!result.ok) tell_failure(inspection->settings.method, result.reason);
-  if (arguments.view == "image") return {snapshot_image(*inspection, frame, size), result.ok};
-  if (arguments.view == "scene")
-    return {snapshot_scene(*inspection, frame, size.value_or(cv::Size(960, 720))), result.ok};
-  if (arguments.view == "normals")
-    return {snapshot_normals(inspection, frame, size.value_or(cv::Size(720, 760))), result.ok};
-  return {snapshot_window(inspection, frame, size.value_or(cv::Size(1280, 720))), result.ok};
-}
-
-Drawn draw(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
-  if (arguments.view == "compare") return draw_compare(arguments, size);
-  if (arguments.view == "curves") return draw_curves(arguments, size);
-  return draw_one(arguments, size);
 }
 
 cv::Mat read_baseline(const fs::path& file) {
@@ -183,10 +123,11 @@ int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own) 
   check_files(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   tell_unused_by_view(arguments);
-  const auto [picture, ok] = draw(arguments, size);
+  const DrawnView drawn = draw(arguments, size);
+  const cv::Mat& picture = drawn.picture;
   make_folder(folder_of(fs::absolute(arguments.output)));
   write_picture(arguments.output, picture);
-  if (!ok) return kFailed;
+  if (!drawn.ok) return kFailed;
   fmt::print("{}: {}x{}\n", arguments.output.string(), picture.cols, picture.rows);
   return arguments.baseline ? compare(picture, baseline, arguments) : kDone;
 }

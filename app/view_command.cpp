@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands.h"
+#include "app/own_files.h"
 #include "app/recordings.h"
 #include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
@@ -148,19 +149,6 @@ struct Session {
 };
 
 }  // namespace
-
-std::filesystem::path example_recording() {
-  std::error_code none;
-  const auto executable = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
-  std::filesystem::path example = std::filesystem::path("sequences") / "desk";
-  for (const auto& root : {std::filesystem::path(GPO_SOURCE_DIR),
-                           executable,
-                           executable.parent_path(),
-                           std::filesystem::current_path(none)}) {
-    if (std::filesystem::exists(root / example, none)) return root / example;
-  }
-  return example;
-}
 
 int view_command(const ViewArguments& arguments, const OwnMethods& own) {
   const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =

@@ -7,7 +7,7 @@ include(CMakePackageConfigHelpers)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/gpo SYMBOLIC)
 set(GPO_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/gpo)
-set(GPO_MODULES ${PROJECT_SOURCE_DIR}/cmake)
+set(GPO_MODULES ${CMAKE_CURRENT_SOURCE_DIR}/cmake)
 
 # gpo_component(NAME ROOMS room... HEADERS more... PUBLIC link... PRIVATE link...): headers are those of its rooms.
 function(gpo_component name)

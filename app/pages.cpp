@@ -1,0 +1,225 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/pages.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+constexpr const char* kShellName = "_gpo_inspector";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> named;
+  for (const CLI::Option* option : command.get_options({}))
+    if (option->nonpositional()) named.push_back(option);
+  return named;
+}
+
+/// "--help", and "-h" where there is one.
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  return names;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream stream(replaced(list, ",", " "));
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// The keys that an option takes: in braces behind its type, or at the end of its help, as in
+/// ": best, paper".
+std::vector<std::string> keys_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t brace = type.find('{');
+  if (brace != std::string::npos) return split(type.substr(brace + 1, type.find('}') - brace - 1));
+  const std::string help = option.get_description();
+  const std::size_t colon = help.rfind(": ");
+  if (colon == std::string::npos) return {};
+  const std::string list = help.substr(colon + 2);
+  auto words = split(list);
+  const bool listed = words.size() > 1 && std::ranges::count(list, ',') + 1 == std::ssize(words) &&
+                      list.find('=') == std::string::npos;
+  return listed ? words : std::vector<std::string>{};
+}
+
+std::string roff(const std::string& text) {
+  std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  if (escaped.starts_with('.') || escaped.starts_with('\'')) escaped.insert(0, "\\&");
+  return escaped;
+}
+
+std::string man_options(const CLI::App& command) {
+  std::string text;
+  for (const CLI::Option* option : command.get_options({})) {
+    const bool named = option->nonpositional();
+    const std::string name =
+        named ? fmt::format("{}", fmt::join(names_of(*option), ", ")) : option->get_name();
+    const std::string normal = option->get_default_str();
+    text += fmt::format(".TP\n\\fB{}\\fR{}\n{}{}\n",
+                        roff(name),
+                        named && option->get_expected_max() > 0
+                            ? fmt::format(" \\fI{}\\fR", roff(option->get_type_name()))
+                            : "",
+                        roff(option->get_description()),
+                        normal.empty() ? "" : roff(fmt::format(" (default: {})", normal)));
+  }
+  return text;
+}
+
+std::string man_page(const CLI::App& app, const std::string& version) {
+  std::string text = fmt::format(
+      ".TH GPO\\-INSPECTOR 1 \"\" \"gpo\\-inspector {}\" \"User Commands\"\n"
+      ".SH NAME\ngpo\\-inspector \\- inspects monocular initialization on planar scenes\n"
+      ".SH SYNOPSIS\n.B gpo\\-inspector\n[\\fICOMMAND\\fR] [\\fIOPTIONS\\fR] [\\fIRECORDING\\fR]\n"
+      ".SH DESCRIPTION\nOpens a recorded sequence, follows points through a window of frames, "
+      "initializes, and draws the estimated cameras, the plane and a virtual cube over the picture "
+      "and in 3\\-D, beside the truth where there is one. Everything that it draws it also draws "
+      "without a display. Without a command it opens the window.\n",
+      version);
+  text += ".SH OPTIONS\n" + man_options(app) + ".SH COMMANDS\n";
+  for (const CLI::App* command : commands_of(app))
+    text += fmt::format(".SS {}\n{}\n{}",
+                        roff(command->get_name()),
+                        roff(command->get_description()),
+                        man_options(*command));
+  return text +
+         ".SH EXIT STATUS\n0: done; 1: no initialization, no calibration, or a picture differs; "
+         "2: bad input or usage.\n";
+}
+
+std::string shell_words(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : options_of(command))
+    for (std::string& name : names_of(*option)) words.push_back(std::move(name));
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string bash_completion(const CLI::App& app) {
+  std::string keys;
+  std::string words;
+  for (const CLI::App* command : commands_of(app)) {
+    words += fmt::format("    {}) words='{}' ;;\n", command->get_name(), shell_words(*command));
+    for (const CLI::Option* option : options_of(*command))
+      if (const auto all = keys_of(*option); !all.empty())
+        keys += fmt::format("    {}:{}) words='{}' ;;\n",
+                            command->get_name(),
+                            names_of(*option).front(),
+                            fmt::join(all, " "));
+  }
+  const std::string names = names_of_commands(app, " ");
+  return fmt::format(
+      "{0}() {{\n"
+      "  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= word "
+      "words=\n"
+      "  for word in \"${{COMP_WORDS[@]:1:COMP_CWORD-1}}\"; do\n"
+      "    case $word in {1}) command=$word; break ;; esac\n"
+      "  done\n"
+      "  case $command:$prev in\n{2}  esac\n"
+      "  if [[ -z $words && $cur == -* ]]; then\n    case $command in\n    '') words='{3}' ;;\n{4}"
+      "    esac\n  elif [[ -z $words && -z $command ]]; then\n    words='{5}'\n  fi\n"
+      "  COMPREPLY=($(compgen -W \"$words\" -- \"$cur\"))\n"
+      "  [[ ${{#COMPREPLY[@]}} -gt 0 || $cur == -* ]] && return\n"
+      "  compopt -o filenames 2>/dev/null\n"
+      "  COMPREPLY=($(compgen -f -- \"$cur\"))\n"
+      "}}\ncomplete -F {0} gpo-inspector\n",
+      kShellName,
+      names_of_commands(app, "|"),
+      keys,
+      shell_words(app),
+      words,
+      names);
+}
+
+/// Of what stands in one of zsh's specifications, in single quotes.
+std::string zsh_text(std::string text) {
+  for (const char* special : {"\\", "[", "]", ":"})
+    text = replaced(std::move(text), special, std::string("\\") + special);
+  return replaced(std::move(text), "'", "'\\''");
+}
+
+std::string zsh_completion(const CLI::App& app) {
+  std::string commands;
+  std::string cases;
+  for (const CLI::App* command : commands_of(app)) {
+    commands +=
+        fmt::format("    '{}:{}'\n", command->get_name(), zsh_text(command->get_description()));
+    cases += fmt::format("    {}) _arguments", command->get_name());
+    for (const CLI::Option* option : options_of(*command)) {
+      const auto keys = keys_of(*option);
+      const std::string values = option->get_expected_max() == 0 ? ""
+                                 : keys.empty()                  ? ":value:_files"
+                                                : fmt::format(":value:({})", fmt::join(keys, " "));
+      cases += fmt::format(" \\\n      '*{}[{}]{}'",
+                           names_of(*option).front(),
+                           zsh_text(option->get_description()),
+                           values);
+    }
+    cases += " \\\n      '*:file:_files' ;;\n";
+  }
+  return fmt::format(
+      "#compdef gpo-inspector\n{}() {{\n  local context state state_descr line\n  local -a "
+      "commands=(\n{}  )\n"
+      "  _arguments -C '1: :->command' '*:: :->rest'\n"
+      "  case $state in\n  command) _describe command commands; _files ;;\n"
+      "  rest) case $words[1] in\n{}    *) _files ;;\n  esac ;;\n  esac\n}}\n"
+      "{} \"$@\"\n",
+      kShellName,
+      commands,
+      cases,
+      kShellName);
+}
+
+}  // namespace
+
+void add_pages(CLI::App& app, Page& page) {
+  CLI::App* command = app.add_subcommand("pages", "Manual page and completion scripts");
+  command->group("");
+  command
+      ->add_option_function<std::string>(
+          "page",
+          [&page](const std::string& key) { page = choice<Page>(key); },
+          fmt::format("{}", fmt::join(ChoiceKeys<Page>::keys, ", ")))
+      ->required();
+}
+
+std::string names_of_commands(const CLI::App& app, const char* separator) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, separator));
+}
+
+std::string page_of(const CLI::App& app, Page page, const std::string& version) {
+  switch (page) {
+    case Page::man:
+      return man_page(app, version);
+    case Page::bash:
+      return bash_completion(app);
+    case Page::zsh:
+      return zsh_completion(app);
+  }
+  return "";
+}
+
+}  // namespace gpo

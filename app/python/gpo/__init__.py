@@ -1,0 +1,13 @@
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Monocular initialization on planar scenes: GPO, its baselines, and what they are inspected with.
+
+    import gpo
+    result = gpo.run("sequences/desk", frames=30)
+    print(result.normal, result.metrics)
+
+World: the reference camera of the window; unit: the distance of the leading plane.
+"""
+from ._gpo import InputError, Recording, Result, __version__, evaluate, open, run, snapshot
+
+__all__ = ["InputError", "Recording", "Result", "evaluate", "open", "run", "snapshot"]

@@ -1,0 +1,144 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/python/arrays.h"
+#include "app/python/bindings.h"
+#include "app/python/interruptible.h"
+#include "app/recordings.h"
+#include "engine/base/error.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+namespace gpo {
+namespace {
+
+namespace py = pybind11;
+
+py::array frame_of(const OpenRecording& open, int frame) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->pictures) throw InputError(recording->name + " has no pictures");
+  const int count = recording->frame_count();
+  if (frame < 0 || frame >= count)
+    throw py::index_error(
+        fmt::format("frame {} of {}, which has {}", frame, recording->name, count));
+  return picture_array(interruptible([&](const auto&) { return recording->pictures->bgr(frame); }));
+}
+
+py::object gyroscope_of(const OpenRecording& open) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->gyroscope) return py::none();
+  const Gyroscope& gyro = *recording->gyroscope;
+  const auto vectors = [&](const std::vector<Eigen::Vector3d>& all) -> py::object {
+    if (all.empty()) return py::none();
+    return seen_by_numpy(all.front().data(),
+                         {std::ssize(all), 3},
+                         {sizeof(Eigen::Vector3d), sizeof(double)},
+                         recording);
+  };
+  py::dict result;
+  result["timestamps_ns"] = seen_by_numpy(gyro.timestamps_ns.data(),
+                                          {std::ssize(gyro.timestamps_ns)},
+                                          {sizeof(std::int64_t)},
+                                          recording);
+  result["rates_rad_s"] = vectors(gyro.rates_rad_s);
+  result["accelerations_m_s2"] = vectors(gyro.accelerations_m_s2);
+  result["R_gyro_camera"] = gyro.R_gyro_camera;
+  result["time_offset_ns"] = gyro.time_offset_ns;
+  result["bias_rad_s"] = gyro.bias_rad_s;
+  return result;
+}
+
+/// Frames without a pose have NaN.
+py::object truth_of(const OpenRecording& open) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->truth) return py::none();
+  auto poses = std::make_shared<std::vector<Pose>>();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& pose : recording->truth->poses)
+    poses->push_back(
+        pose.value_or(Pose{Eigen::Matrix3d::Constant(nan), Eigen::Vector3d::Constant(nan)}));
+  py::dict result;
+  result["R_wc"] = rotations_of(*poses, poses);
+  result["p_wc"] = centers_of(*poses, poses);
+  if (recording->plane) {
+    result["normal"] = recording->plane->normal;
+    result["distance"] = recording->plane->distance;
+  }
+  return result;
+}
+
+Eigen::Matrix3d intrinsics_of(const OpenRecording& open) {
+  const Camera& camera = open.shared->camera;
+  Eigen::Matrix3d K;
+  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+  return K;
+}
+
+}  // namespace
+
+SharedRecording opened(const RecordingOrPath& recording) {
+  if (const auto* open = std::get_if<OpenRecording>(&recording)) return open->shared;
+  const std::string& path = std::get<std::string>(recording);
+  return interruptible([&](const auto&) { return open_given(path); });
+}
+
+void bind_recording(py::module_& module) {
+  using Open = OpenRecording;
+  py::class_<Open>(
+      module, "Recording", "A recorded sequence. Arrays look at its memory, read-only.")
+      .def_property_readonly("name", [](const Open& r) { return r.shared->name; })
+      .def_property_readonly("layout", [](const Open& r) { return r.shared->layout; })
+      .def_property_readonly("path", [](const Open& r) { return r.shared->path.string(); })
+      .def_property_readonly("notes", [](const Open& r) { return r.shared->notes; })
+      .def("__len__", [](const Open& r) { return r.shared->frame_count(); })
+      .def_property_readonly(
+          "timestamps_ns",
+          [](const Open& r) {
+            const auto& all = r.shared->timestamps_ns;
+            return seen_by_numpy(all.data(), {std::ssize(all)}, {sizeof(std::int64_t)}, r.shared);
+          },
+          "(N,) int64 [ns]")
+      .def_property_readonly("K", &intrinsics_of, "(3, 3) [px]; pixel centers at integers")
+      .def_property_readonly(
+          "distortion",
+          [](const Open& r) { return py::array(py::cast(r.shared->camera.coefficients)); },
+          "OpenCV's order: k1 k2 p1 p2 (k3 ...); of a fisheye k1 to k4")
+      .def_property_readonly(
+          "size",
+          [](const Open& r) {
+            const Camera& camera = r.shared->camera;
+            return py::make_tuple(camera.width, camera.height);
+          },
+          "(width, height) [px]")
+      .def_property_readonly(
+          "camera_source",
+          [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
+          "file, self-calibrated or guess")
+      .def("frame", &frame_of, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
+      .def_property_readonly(
+          "gyroscope",
+          &gyroscope_of,
+          "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
+          "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s (3,)}")
+      .def_property_readonly(
+          "truth",
+          &truth_of,
+          "None, or {R_wc (N, 3, 3), p_wc (N, 3) [m], normal (3,), distance [m]}; "
+          "NaN where a frame has no pose")
+      .def("__repr__", [](const Open& r) {
+        return fmt::format("<gpo.Recording {}: {}, {} frames>",
+                           r.shared->name,
+                           r.shared->layout,
+                           r.shared->frame_count());
+      });
+  module.def(
+      "open",
+      [](const std::string& path) { return OpenRecording{opened(path)}; },
+      py::arg("path"),
+      "Opens a recording, or the one of a recipe: what the command line takes. Raises InputError.");
+}
+
+}  // namespace gpo

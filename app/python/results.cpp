@@ -1,0 +1,223 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/python/arrays.h"
+#include "app/python/bindings.h"
+#include "app/python/interruptible.h"
+#include "app/snapshots.h"
+#include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
+#include "engine/experiment/row.h"
+#include "engine/experiment/runner.h"
+#include "engine/experiment/window_files.h"
+#include "engine/files/json_text.h"
+#include "engine/inspection/inspector.h"
+#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/report/result_text.h"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <thread>
+
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+#include <unistd.h>
+
+namespace gpo {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+
+/// Python's Result.
+struct Result {
+  std::shared_ptr<const Inspection> shared;
+  const Initialization& initialization() const { return *shared->initialization; }
+};
+
+Result run(const RecordingOrPath& recording, const py::kwargs& given) {
+  const SharedRecording open = opened(recording);
+  const Settings settings = settings_of(given);
+  return {interruptible(
+      [&](const std::stop_token& stop) { return Inspector(open).inspect(settings, stop); })};
+}
+
+py::object metrics_of(const Result& result) {
+  if (!result.shared->evaluation) return py::none();
+  return py::module_::import("json").attr("loads")(to_json(*result.shared).at("metrics").dump());
+}
+
+py::array points_of(const Result& result) {
+  static const MapPoint none{};
+  const auto& points = result.initialization().points;
+  return seen_by_numpy(points.empty() ? none.position.data() : points.front().position.data(),
+                       {std::ssize(points), 3},
+                       {sizeof(MapPoint), sizeof(double)},
+                       result.shared);
+}
+
+py::list planes_of(const Result& result) {
+  const Initialization& initialization = result.initialization();
+  py::list planes;
+  for (const PlaneEstimate& estimate : initialization.planes) {
+    py::dict plane;
+    plane["number"] = estimate.number + 1;
+    plane["normal"] = estimate.plane.normal;
+    plane["distance"] = estimate.plane.distance;
+    plane["normal_covariance_rad2"] = estimate.normal_covariance;
+    planes.append(std::move(plane));
+  }
+  return planes;
+}
+
+py::object json_of(const Result& result) {
+  return py::module_::import("json").attr("loads")(json_text(to_json(*result.shared), 0));
+}
+
+template <class T>
+constexpr bool kIsNumber =
+    std::is_same_v<T, std::optional<int>> || std::is_same_v<T, std::optional<double>>;
+
+/// A structured array, one row a window and configuration: numbers as float64 (NaN: unknown), all
+/// else as text.
+py::object table_of(const std::vector<Row>& rows) {
+  py::list types;
+  visit_row(rows.front(), [&]<class T>(const char* name, const T&) {
+    types.append(py::make_tuple(name, kIsNumber<T> ? "f8" : "O"));
+  });
+  py::list lines;
+  for (const Row& row : rows) {
+    py::list line;
+    visit_row(row, [&]<class T>(const char*, const T& value) {
+      if constexpr (kIsNumber<T>)
+        line.append(value ? static_cast<double>(*value) : std::numeric_limits<double>::quiet_NaN());
+      else if constexpr (OfASetting<T>)
+        line.append(setting_cell(value.settings, value.setting));
+      else
+        line.append(value);
+    });
+    lines.append(py::tuple(line));
+  }
+  return py::module_::import("numpy").attr("array")(lines, py::arg("dtype") = types);
+}
+
+/// A folder that is gone when this is.
+struct Scratch {
+  fs::path folder;
+  Scratch() {
+    std::string name = (fs::temp_directory_path() / "gpo-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be made");
+    folder = name;
+  }
+  ~Scratch() {
+    std::error_code none;
+    fs::remove_all(folder, none);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+};
+
+py::object evaluated(const std::vector<RecordingOrPath>& recordings,
+                    const std::string& methods,
+                    const std::string& lengths,
+                    const std::string& starts,
+                    std::uint64_t seed,
+                    int jobs) {
+  std::vector<SharedRecording> all;
+  for (const RecordingOrPath& recording : recordings) all.push_back(opened(recording));
+  if (all.empty()) throw InputError("evaluate: expected recordings");
+  const Experiment experiment = plan_experiment(all,
+                                                {parse_configurations(methods),
+                                                 parse_ranges(lengths, "lengths"),
+                                                 parse_ranges(starts, "starts"),
+                                                 seed});
+  const Scratch scratch;
+  const auto rows = interruptible([&](const std::stop_token& stop) {
+    RunOptions options;
+    options.jobs = jobs > 0 ? jobs : static_cast<int>(std::thread::hardware_concurrency());
+    options.stop = stop;
+    return run_experiment(experiment, all, scratch.folder, options)
+               ? collect_rows(experiment, std::span(&scratch.folder, 1))
+               : std::vector<Row>{};
+  });
+  return table_of(rows);
+}
+
+py::array snapshot(const RecordingOrPath& recording,
+                   const std::string& view,
+                   std::optional<int> frame,
+                   std::optional<std::pair<int, int>> size,
+                   const std::optional<std::string>& methods,
+                   const py::kwargs& given) {
+  ViewRequest request{view, frame, {}, {methods, std::nullopt, settings_of(given)}};
+  if (size) request.size = cv::Size(size->first, size->second);
+  const SharedRecording open = opened(recording);
+  return picture_array(interruptible(
+      [&](const std::stop_token& stop) { return draw_view(open, request, stop).picture; }));
+}
+
+}  // namespace
+
+void bind_results(py::module_& module) {
+  py::class_<Result>(module,
+                     "Result",
+                     "One initialization. World: the reference camera; unit: the distance of the "
+                     "leading plane. Arrays look at its memory, read-only.")
+      .def_property_readonly("ok", [](const Result& r) { return r.initialization().ok; })
+      .def_property_readonly("reason", [](const Result& r) { return r.initialization().reason; })
+      .def_property_readonly("method", [](const Result& r) { return r.shared->settings.method; })
+      .def_property_readonly(
+          "R_wc",
+          [](const Result& r) { return rotations_of(r.initialization().cameras, r.shared); },
+          "(N, 3, 3), camera to world, one a frame of the window")
+      .def_property_readonly(
+          "p_wc",
+          [](const Result& r) { return centers_of(r.initialization().cameras, r.shared); },
+          "(N, 3) camera centers [plane distances]")
+      .def_property_readonly("points", &points_of, "(M, 3) [plane distances]")
+      .def_property_readonly(
+          "normal",
+          [](const Result& r) { return r.initialization().plane.normal; },
+          "(3,) of the leading plane, in the reference camera: normal . x + distance = 0")
+      .def_property_readonly(
+          "planes", &planes_of, "[{number, normal (3,), distance, normal_covariance_rad2 (3, 3)}]")
+      .def_property_readonly("metrics", &metrics_of, "None without truth; else as in the JSON")
+      .def_property_readonly("json", &json_of, "what `run --json` writes, as a dict")
+      .def("__str__", [](const Result& r) { return to_text(*r.shared); })
+      .def("__repr__", [](const Result& r) {
+        return fmt::format("<gpo.Result {} on {}: {}>",
+                           r.shared->settings.method,
+                           r.shared->recording->name,
+                           r.initialization().ok ? "ok" : r.initialization().reason);
+      });
+  module.def("run",
+             &run,
+             py::arg("recording"),
+             "One initialization, as `gpo-inspector run`. Settings are those of the command line, "
+             "with _: start, frames, method, rotations, planes, preset, ... Raises InputError; a "
+             "window that cannot be initialized is a Result that is not ok, with the reason.");
+  module.def("evaluate",
+             &evaluated,
+             py::arg("recordings"),
+             py::arg("methods") = "all",
+             py::arg("lengths") = "10:60:10",
+             py::arg("starts") = "0:end:10",
+             py::arg("seed") = 1,
+             py::arg("jobs") = 0,
+             "Methods on many windows, as `gpo-inspector evaluate`: a structured array with the "
+             "columns of results.csv; numbers are float64, NaN where unknown. jobs=0: as many as "
+             "there are processors.");
+  module.def("snapshot",
+             &snapshot,
+             py::arg("recording"),
+             py::arg("view") = "image",
+             py::arg("frame") = py::none(),
+             py::arg("size") = py::none(),
+             py::arg("methods") = py::none(),
+             "(H, W, 3) uint8, BGR: one view without a display, as `gpo-inspector snapshot`; view: "
+             "image, scene, normals, compare, curves or window.");
+}
+
+}  // namespace gpo

@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What packages install beside the program: the manual page and the shells' completions.
+#include "tests/app/program.h"
+
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::Outcome;
+using test::program;
+using test::shell;
+
+fs::path page(const std::string& name) {
+  fs::path file = test::fresh_folder() / name;
+  const Outcome outcome = program("pages " + name);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  test::write_file(file, outcome.out);
+  return file;
+}
+
+std::set<std::string> options_in(const std::string& text) {
+  const std::regex option("--[a-z][a-z-]+");
+  std::set<std::string> options;
+  for (std::sregex_iterator at(text.begin(), text.end(), option), end; at != end; ++at)
+    options.insert(at->str());
+  return options;
+}
+
+/// What bash offers for the last of the words.
+std::set<std::string> offered_by_bash(const std::string& words) {
+  const fs::path script = page("bash");
+  const Outcome outcome = shell(
+      fmt::format("bash -c 'source {}; COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); "
+                  "_gpo_inspector; printf \"%s\\n\" \"${{COMPREPLY[@]}}\"'",
+                  script.string(),
+                  words));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  std::set<std::string> offered;
+  for (std::string line; std::getline(lines, line);) offered.insert(line);
+  return offered;
+}
+
+TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
+  const fs::path file = page("man");
+  const Outcome rendered = shell(fmt::format("groff -man -Tutf8 -ww {} | col -bx", file.string()));
+  EXPECT_EQ(rendered.err, "");
+  const auto told = options_in(rendered.out);
+  for (const char* command :
+       {"view", "info", "run", "snapshot", "evaluate", "calibrate", "convert", "synthesize"}) {
+    const auto options = options_in(program(fmt::format("{} --help", command)).out);
+    EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;
+    for (const std::string& option : options)
+      EXPECT_THAT(told, testing::Contains(option)) << command;
+  }
+}
+
+TEST(Pages, BashCompletesCommandsOptionsKeysAndFiles) {
+  using testing::Contains;
+  using testing::ElementsAre;
+  EXPECT_THAT(offered_by_bash("gpo-inspector sn"), ElementsAre("snapshot"));
+  EXPECT_THAT(offered_by_bash("gpo-inspector run --method"),
+              ElementsAre("--method", "--method-command", "--method-timeout"));
+  EXPECT_THAT(offered_by_bash("gpo-inspector run --method pn"), ElementsAre("pnp", "pnp_ba"));
+  EXPECT_THAT(offered_by_bash("gpo-inspector snapshot desk --view sc"), ElementsAre("scene"));
+  EXPECT_THAT(offered_by_bash("gpo-inspector run sequences/des"), Contains("sequences/desk.yaml"));
+}
+
+TEST(Pages, ZshReadsItsCompletion) {
+  if (shell("zsh --version").exit_code != 0) GTEST_SKIP() << "there is no zsh";
+  const Outcome outcome = shell(fmt::format("zsh -n {}", page("zsh").string()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+}  // namespace
+}  // namespace gpo
