@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
+#include "engine/calibration/report_row.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {
 
 namespace {
-
-std::string row(const std::string& name, const std::string& value) {
-  return fmt::format("{:<12}{}\n", name, value);
-}
 
 /// "[1, 2]", rounded to `digits` significant ones.
 std::string list(const std::vector<double>& values, int digits) {

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kMostOffset_s = 1;
 constexpr double kOffsetStep_s = 0.005;
-constexpr double kKnee = 2;  // of Huber's loss, in medians
+constexpr double kKneeInMedians = 2;  // of Huber's loss, in medians
 
 /// Wahba's problem by singular values (Markley 1988), reweighted.
 Alignment align(const Pairs& pairs) {
@@ -48,7 +48,7 @@ Alignment align(const Pairs& pairs) {
     for (std::size_t k = 0; k < n; ++k)
       result.errors_rad_s[k] =
           (pairs.gyroscope[k] - result.R * pairs.pictures[k] - result.bias).norm();
-    const double knee = std::max(1e-6, kKnee * median(result.errors_rad_s));
+    const double knee = std::max(1e-6, kKneeInMedians * median(result.errors_rad_s));
     result.cost = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const double e = result.errors_rad_s[k];

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 constexpr double kLongEnoughForDrift_s = 60;
 constexpr int kMostIterations = 30;
 /// Where Huber's loss has its knee, in robust standard deviations.
-constexpr double kKnee = 2;
+constexpr double kKneeInSigmas = 2;
 /// A window counts as one whose pictures disagree where its frames' median is so many times that of
 /// all.
 constexpr double kDisagrees = 4;
@@ -177,7 +177,7 @@ std::optional<Refined> refine(const std::vector<Observed>& windows, State state,
   Refined result{state, errors, {}, 0};
   double damping = 1e-6;
   for (int round = 0; round < kMostIterations; ++round) {
-    const double knee = kKnee * robust_sigma(errors);
+    const double knee = kKneeInSigmas * robust_sigma(errors);
     errors = errors_of(windows, state, knee);
     Eigen::Matrix<double, 8, 8> A = Eigen::Matrix<double, 8, 8>::Zero();
     Parameters g = Parameters::Zero();

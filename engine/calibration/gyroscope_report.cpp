@@ -3,6 +3,7 @@
 #include "engine/calibration/gyroscope_report.h"
 
 #include "engine/calibration/camera_parameters.h"
+#include "engine/calibration/report_row.h"
 #include "engine/geometry/pose.h"
 
 #include <array>
@@ -16,10 +17,6 @@ namespace gpo {
 namespace {
 
 using Eigen::Vector3d;
-
-std::string row(const std::string& name, const std::string& value) {
-  return fmt::format("{:<12}{}\n", name, value);
-}
 
 /// "R_gyro_camera" by the camera's axes, where each is near one of the gyroscope's: "x -> -y".
 std::string axes(const Eigen::Matrix3d& R_gyro_camera) {

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/report_row.h"
 #include "engine/calibration/self_calibration.h"
 
 #include <fmt/format.h>
@@ -35,10 +36,6 @@ std::vector<std::string> warnings(const SelfCalibration& calibration) {
     all.push_back(fmt::format("left out, as they disagree with the others: frames {}",
                               fmt::join(lens.left_out, ", ")));
   return all;
-}
-
-std::string row(const std::string& name, const std::string& value) {
-  return fmt::format("{:<12}{}\n", name, value);
 }
 
 }  // namespace

@@ -12,41 +12,41 @@
 namespace gpo {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 /// Null where it is not a number.
-Json vector_json(const Eigen::VectorXd& vector) {
+Ordered vector_json(const Eigen::VectorXd& vector) {
   if (!vector.allFinite()) return nullptr;
   return std::vector<double>(vector.begin(), vector.end());
 }
 
-Json matrix_json(const Eigen::Matrix3d& matrix) {
+Ordered matrix_json(const Eigen::Matrix3d& matrix) {
   if (!matrix.allFinite()) return nullptr;
-  Json rows = Json::array();
+  Ordered rows = Ordered::array();
   for (int i = 0; i < 3; ++i) rows.push_back(vector_json(matrix.row(i).transpose()));
   return rows;
 }
 
-Json list_json(const auto& values, auto json_of) {
-  Json list = Json::array();
+Ordered list_json(const auto& values, auto json_of) {
+  Ordered list = Ordered::array();
   for (const auto& value : values) list.push_back(json_of(value));
   return list;
 }
 
-Json columns_json(const Eigen::Matrix2Xd& columns) {
-  Json list = Json::array();
+Ordered columns_json(const Eigen::Matrix2Xd& columns) {
+  Ordered list = Ordered::array();
   for (const auto& column : columns.colwise()) list.push_back(vector_json(column));
   return list;
 }
 
-Json plane_json(const WindowPlane& plane) {
+Ordered plane_json(const WindowPlane& plane) {
   return {{"tracks", plane.tracks},
           {"picture_share", plane.picture_share},
           {"homographies", list_json(plane.H_i1, matrix_json)}};
 }
 
 /// The samples within the window, and one more to either side.
-Json gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
+Ordered gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
   const auto& times = gyroscope.timestamps_ns;
   const auto after =
       std::ranges::upper_bound(times, window.timestamps_ns.front() + gyroscope.time_offset_ns);
@@ -54,7 +54,7 @@ Json gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
       std::ranges::lower_bound(times, window.timestamps_ns.back() + gyroscope.time_offset_ns);
   const auto first = std::max<std::ptrdiff_t>(0, after - times.begin() - 1);
   const auto end = std::min(std::ssize(times), beyond - times.begin() + 1);
-  Json json = {{"timestamps_ns", Json::array()}, {"rates_rad_s", Json::array()}};
+  Ordered json = {{"timestamps_ns", Ordered::array()}, {"rates_rad_s", Ordered::array()}};
   for (auto i = first; i < end; ++i) {
     json["timestamps_ns"].push_back(times[i]);
     json["rates_rad_s"].push_back(vector_json(gyroscope.rates_rad_s[i]));
@@ -65,7 +65,7 @@ Json gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
   return json;
 }
 
-Json camera_json(const Camera& camera) {
+Ordered camera_json(const Camera& camera) {
   constexpr std::array kModels{"none", "radial-tangential", "equidistant"};
   return {{"width", camera.width},
           {"height", camera.height},
@@ -74,7 +74,7 @@ Json camera_json(const Camera& camera) {
           {"coefficients", camera.coefficients}};
 }
 
-void add_pictures(const Sources& sources, const Window& window, Json& json) {
+void add_pictures(const Sources& sources, const Window& window, Ordered& json) {
   const auto name = [](const std::filesystem::path& file) {
     std::error_code none;
     return std::filesystem::absolute(file, none).string();
@@ -87,19 +87,19 @@ void add_pictures(const Sources& sources, const Window& window, Json& json) {
 
 }  // namespace
 
-Json window_json(const Window& window, const Sources& sources) {
-  const auto same = [](const auto& value) { return Json(value); };
-  Json json = {{"start", window.start},
-               {"K", matrix_json(window.K)},
-               {"timestamps_ns", window.timestamps_ns},
-               {"tracks", list_json(window.points_px, columns_json)},
-               {"inliers", list_json(window.inlier, same)},
-               {"all_tracks", window.all_tracks},
-               {"homographies", list_json(window.H_i1, matrix_json)},
-               {"planes", list_json(window.planes, plane_json)},
-               {"leading_plane", window.leader},
-               {"rotations", list_json(window.R_wc, matrix_json)},
-               {"rotations_are", to_string(window.rotations)}};
+Ordered window_json(const Window& window, const Sources& sources) {
+  const auto same = [](const auto& value) { return Ordered(value); };
+  Ordered json = {{"start", window.start},
+                  {"K", matrix_json(window.K)},
+                  {"timestamps_ns", window.timestamps_ns},
+                  {"tracks", list_json(window.points_px, columns_json)},
+                  {"inliers", list_json(window.inlier, same)},
+                  {"all_tracks", window.all_tracks},
+                  {"homographies", list_json(window.H_i1, matrix_json)},
+                  {"planes", list_json(window.planes, plane_json)},
+                  {"leading_plane", window.leader},
+                  {"rotations", list_json(window.R_wc, matrix_json)},
+                  {"rotations_are", to_string(window.rotations)}};
   if (sources.gyroscope != nullptr) json["gyroscope"] = gyroscope_json(*sources.gyroscope, window);
   if (sources.camera != nullptr) json["camera"] = camera_json(*sources.camera);
   add_pictures(sources, window, json);

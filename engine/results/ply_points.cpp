@@ -52,9 +52,9 @@ struct Header {
 };
 
 /// Walks through the lines of a file, of which the rest may be binary.
-class Lines {
+class HeaderLines {
  public:
-  Lines(const fs::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
+  HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
 
   bool more() const { return place_ < bytes_.size(); }
   std::vector<std::string> words() {
@@ -86,7 +86,7 @@ class Lines {
   int number_ = 0;
 };
 
-void add_property(const std::vector<std::string>& words, const Lines& lines, Header& header) {
+void add_property(const std::vector<std::string>& words, const HeaderLines& lines, Header& header) {
   constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
   if (words.size() != 3) lines.fail("a list", "vertices of single numbers");
   const auto kind = std::ranges::find_if(
@@ -100,7 +100,7 @@ void add_property(const std::vector<std::string>& words, const Lines& lines, Hea
 }
 
 /// What follows the vertices need not be read.
-Header read_header(Lines& lines) {
+Header read_header(HeaderLines& lines) {
   Header header;
   lines.words();  // "ply"
   std::string element;
@@ -132,7 +132,7 @@ Header read_header(Lines& lines) {
 }
 
 /// Fewer than the header says would be told only after all had been kept.
-void check_count(const Lines& lines, const Header& header) {
+void check_count(const HeaderLines& lines, const Header& header) {
   const std::size_t least = header.ascii ? 2 * header.properties.size() - 1 : header.vertex_bytes;
   const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may have none
   const auto most = static_cast<std::int64_t>((lines.rest().size() + last_end) / least);
@@ -152,7 +152,7 @@ void check_point(const Eigen::Vector3d& point, std::int64_t number, const fs::pa
                                kLargestCoordinate));
 }
 
-Eigen::Vector3d ascii_vertex(Lines& lines, const Header& header) {
+Eigen::Vector3d ascii_vertex(HeaderLines& lines, const Header& header) {
   const auto words = lines.words();
   if (words.size() != header.properties.size())
     lines.fail(fmt::format("{} numbers", words.size()),
@@ -179,7 +179,7 @@ Eigen::Vector3d binary_vertex(ByteCursor& cursor, const Header& header) {
 }  // namespace
 
 Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes) {
-  Lines lines(file, bytes);
+  HeaderLines lines(file, bytes);
   const Header header = read_header(lines);
   check_count(lines, header);
   Eigen::Matrix3Xd points(3, header.vertices);

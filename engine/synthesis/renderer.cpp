@@ -179,7 +179,7 @@ std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
   return eyes;
 }
 
-constexpr int kBlock = 16;  ///< pixels of a row that share their candidates
+constexpr int kSpan = 16;  ///< pixels of a row that share their candidates
 
 Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
   return Eigen::Vector3d(slope.x(), slope.y(), 1).normalized();
@@ -226,8 +226,8 @@ void render_row(
   const auto* ray = map.rays.data() + per_pixel * map.width * row;
   std::vector<Candidates> candidates;
   for (int col = 0; col < map.width; ++col) {
-    if (col % kBlock == 0) {
-      const int pixels = std::min(kBlock, map.width - col);
+    if (col % kSpan == 0) {
+      const int pixels = std::min(kSpan, map.width - col);
       candidates = find_candidates(eyes, {ray, pixels * per_pixel});
     }
     cv::Vec3f sum(0, 0, 0);

@@ -13,7 +13,7 @@
 namespace gpo {
 namespace {
 
-constexpr int kBlock = 144;  ///< texels along an edge of the block of stone
+constexpr int kStone = 144;  ///< texels along an edge of the block of stone
 constexpr int kCuts = 9;
 
 Eigen::Vector3d pick_direction(Random& random) {
@@ -66,12 +66,12 @@ double brightness(const Eigen::Vector3d& p) {
 }  // namespace
 
 cv::Mat make_stone(int threads) {
-  const std::array<int, 3> sizes = {kBlock, kBlock, kBlock};
+  const std::array<int, 3> sizes = {kStone, kStone, kStone};
   cv::Mat stone(3, sizes.data(), CV_8UC1);
-  in_parallel(kBlock, threads, [&](int i) {
-    for (int j = 0; j < kBlock; ++j) {
-      for (int k = 0; k < kBlock; ++k) {
-        const Eigen::Vector3d place = Eigen::Vector3d(i, j, k) * (2.0 / (kBlock - 1));
+  in_parallel(kStone, threads, [&](int i) {
+    for (int j = 0; j < kStone; ++j) {
+      for (int k = 0; k < kStone; ++k) {
+        const Eigen::Vector3d place = Eigen::Vector3d(i, j, k) * (2.0 / (kStone - 1));
         stone.at<uchar>(i, j, k) = cv::saturate_cast<uchar>(255 * brightness(place));
       }
     }
@@ -89,13 +89,13 @@ float sample_stone(const cv::Mat& stone, const Eigen::Vector3d& place) {
   std::array<int, 3> at{};
   std::array<float, 3> part{};
   for (int k = 0; k < 3; ++k) {
-    const double x = std::clamp((place[k] + 1) / 2 * (kBlock - 1), 0.0, kBlock - 1.001);
+    const double x = std::clamp((place[k] + 1) / 2 * (kStone - 1), 0.0, kStone - 1.001);
     at[static_cast<std::size_t>(k)] = static_cast<int>(x);
     part[static_cast<std::size_t>(k)] = static_cast<float>(x - static_cast<int>(x));
   }
   const uchar* corner = stone.ptr<uchar>(at[0], at[1]) + at[2];
   const auto along = [&](int i, int j) {
-    const uchar* p = corner + (i * kBlock + j) * kBlock;
+    const uchar* p = corner + (i * kStone + j) * kStone;
     return static_cast<float>(p[0]) * (1 - part[2]) + static_cast<float>(p[1]) * part[2];
   };
   const float near = along(0, 0) * (1 - part[1]) + along(0, 1) * part[1];

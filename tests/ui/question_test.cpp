@@ -43,9 +43,12 @@ TEST_F(AQuestion, WaitsForOneOfItsButtons) {
       draw();
       ImGui::GetIO().MouseDown[0] = false;
       const auto answer = draw();
-      if (answer && first) EXPECT_FALSE(*answer) << "the one on the left is no";
-      if (answer) first = false;
-      if (answer) answers.insert(*answer);
+      if (!answer) continue;
+      if (first) {
+        EXPECT_FALSE(*answer) << "the one on the left is no";
+      }
+      first = false;
+      answers.insert(*answer);
     }
   }
   EXPECT_EQ(answers, (std::set<bool>{false, true}));

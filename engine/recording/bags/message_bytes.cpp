@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace gpo {
 namespace {
 
@@ -192,8 +194,10 @@ MessageType message_type(const std::string& name, MessageEncoding encoding) {
   if (!ros1) parts.emplace_back("builtin_interfaces/Time");
   for (const std::string& part : parts) {
     const bool time = part == "builtin_interfaces/Time";
-    type.definition += std::string(80, '=') + "\nMSG: " + part + "\n" +
-                       (time ? "int32 sec\nuint32 nanosec\n" : fields_of(part, ros1));
+    type.definition += fmt::format("{:=<80}\nMSG: {}\n{}",
+                                   "",
+                                   part,
+                                   time ? "int32 sec\nuint32 nanosec\n" : fields_of(part, ros1));
   }
   return type;
 }
