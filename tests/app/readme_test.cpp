@@ -56,6 +56,7 @@ std::vector<std::string> links_of(const std::string& page) {
 TEST(Readme, EveryLinkLeadsSomewhere) {
   const fs::path top = GPO_SOURCE_DIR;
   for (const char* page : {"README.md",
+                           "app/python/README.md",
                            "assets/nine/README.md",
                            "engine/commands/README.md",
                            "engine/examples/README.md",
