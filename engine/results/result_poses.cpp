@@ -9,6 +9,7 @@
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/layouts/truth_file.h"
 #include "engine/results/colmap_model.h"
+#include "engine/results/largest_coordinate.h"
 #include "engine/results/ply_points.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "engine/base/choice.h"
 #include "engine/geometry/pose.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -35,9 +36,6 @@ struct ResultPoses {
   std::vector<std::string> names;           ///< by name: one a pose, of its picture, with '/'
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
-
-/// Beyond this, coordinates are no result.
-inline constexpr double kLargestCoordinate = 1e12;
 
 /// Reads a trajectory: TUM's, also as ORB-SLAM3 writes it with nanoseconds (8 numbers with blanks),
 /// EuRoC's, also VINS-Mono's (8 or more with commas), KITTI's (12 with blanks); or COLMAP's poses,
