@@ -12,6 +12,7 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

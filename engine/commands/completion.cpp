@@ -5,6 +5,7 @@
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/triangulation.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
