@@ -120,11 +120,11 @@ struct Scratch {
 };
 
 py::object evaluated(const std::vector<RecordingOrPath>& recordings,
-                    const std::string& methods,
-                    const std::string& lengths,
-                    const std::string& starts,
-                    std::uint64_t seed,
-                    int jobs) {
+                     const std::string& methods,
+                     const std::string& lengths,
+                     const std::string& starts,
+                     std::uint64_t seed,
+                     int jobs) {
   std::vector<SharedRecording> all;
   for (const RecordingOrPath& recording : recordings) all.push_back(opened(recording));
   if (all.empty()) throw InputError("evaluate: expected recordings");

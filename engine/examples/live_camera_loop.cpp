@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <gpo/initialize.h>
 #include <Eigen/Geometry>
+#include <gpo/initialize.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>

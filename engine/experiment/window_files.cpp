@@ -39,7 +39,8 @@ std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ordered_json& window) {
   std::vector<std::string> differs;
   if (window.at("program") != experiment.program) differs.emplace_back("version of the program");
-  if (commands_in(window) != experiment.commands) differs.emplace_back("command or files of a method");
+  if (commands_in(window) != experiment.commands)
+    differs.emplace_back("command or files of a method");
   const auto content = window.at("content").get<RecordingContent>();
   for (const std::string& part : differing_parts(content, recording.content))
     differs.push_back(fmt::format("{} of {}", part, recording.name));

@@ -9,8 +9,9 @@
 
 namespace gpo {
 
-/// Walks through bytes as bags and other binary files have them, little-endian. Once something lies beyond the end all
-/// that is read is 0 or empty, and `ok` is false: who reads many fields asks once.
+/// Walks through bytes as bags and other binary files have them, little-endian. Once something lies
+/// beyond the end all that is read is 0 or empty, and `ok` is false: who reads many fields asks
+/// once.
 class ByteCursor {
  public:
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}

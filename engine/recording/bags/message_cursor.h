@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/bag.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/bag.h"
 
 #include <cstdint>
 #include <string>
