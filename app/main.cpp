@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/method_commands.h"
+#include "app/commands/commands.h"
+#include "app/commands/setting_options.h"
+#include "app/methods/method_commands.h"
 #include "app/pages.h"
-#include "app/setting_options.h"
-#include "app/snapshots.h"
+#include "app/pictures/snapshots.h"
+#include "app/terminal/interrupt.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 

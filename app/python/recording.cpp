@@ -3,7 +3,7 @@
 #include "app/python/arrays.h"
 #include "app/python/bindings.h"
 #include "app/python/interruptible.h"
-#include "app/recordings.h"
+#include "app/recordings/recordings.h"
 #include "engine/base/error.h"
 
 #include <limits>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "app/pictures/snapshots.h"
 #include "app/python/arrays.h"
 #include "app/python/bindings.h"
 #include "app/python/interruptible.h"
-#include "app/snapshots.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/experiment/experiment.h"

@@ -7,7 +7,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
-#include "engine/recording/layouts/truth_file.h"
+#include "engine/recording/companions/truth_file.h"
 #include "engine/results/colmap_model.h"
 #include "engine/results/largest_coordinate.h"
 #include "engine/results/ply_points.h"

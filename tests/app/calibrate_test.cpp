@@ -3,7 +3,7 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/companions/calibration_file.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The first byte chooses what the rest is read as.
-#include "engine/recording/layouts/gyroscope_file.h"
+#include "engine/recording/companions/gyroscope_file.h"
+#include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
-#include "engine/recording/layouts/truth_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;

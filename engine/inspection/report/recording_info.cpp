@@ -3,7 +3,7 @@
 #include "engine/inspection/report/recording_info.h"
 
 #include "engine/recording/board/board_truth.h"
-#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/companions/calibration_file.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/bag.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <string>
 #include <string_view>

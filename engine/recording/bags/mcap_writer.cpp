@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/recording/bags/bag_writer.h"
-#include "engine/recording/bags/byte_stream.h"
-#include "engine/recording/bags/mcap.h"
-#include "engine/recording/bags/mcap_record.h"
+#include "engine/recording/bags/containers/byte_stream.h"
+#include "engine/recording/bags/containers/mcap.h"
+#include "engine/recording/bags/containers/mcap_record.h"
 #include "engine/recording/bags/message_bytes.h"
 
 #include <algorithm>

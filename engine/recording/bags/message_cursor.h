@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/bags/bag.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <cstdint>
 #include <string>

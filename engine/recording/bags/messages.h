@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/geometry/pose.h"
-#include "engine/recording/bags/bag.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <array>
 #include <cstdint>

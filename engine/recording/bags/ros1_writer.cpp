@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/bag_writer.h"
-#include "engine/recording/bags/byte_stream.h"
+#include "engine/recording/bags/containers/byte_stream.h"
+#include "engine/recording/bags/containers/ros1_bag.h"
+#include "engine/recording/bags/containers/ros1_record.h"
 #include "engine/recording/bags/message_bytes.h"
-#include "engine/recording/bags/ros1_bag.h"
-#include "engine/recording/bags/ros1_record.h"
 
 #include <algorithm>
 #include <map>

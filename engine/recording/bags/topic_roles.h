@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/choice.h"
-#include "engine/recording/bags/bag.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <array>
 #include <map>

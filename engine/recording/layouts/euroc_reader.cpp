@@ -6,11 +6,11 @@
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/layouts/calibration_file.h"
-#include "engine/recording/layouts/gyroscope_file.h"
-#include "engine/recording/layouts/imu_file.h"
+#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/gyroscope_file.h"
+#include "engine/recording/companions/imu_file.h"
+#include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
-#include "engine/recording/layouts/truth_file.h"
 #include "engine/recording/pictures/picture_files.h"
 
 #include <algorithm>

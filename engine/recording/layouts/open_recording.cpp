@@ -4,10 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/open_bag.h"
+#include "engine/recording/bags/containers/open_bag.h"
 #include "engine/recording/board/board_pose.h"
+#include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/layouts.h"
-#include "engine/recording/layouts/sidecar_files.h"
 #include "engine/recording/pictures/video_file.h"
 #include "engine/recording/rest.h"
 

@@ -4,9 +4,9 @@
 
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
-#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/tracks_reader.h"
-#include "engine/recording/layouts/truth_file.h"
 #include "engine/recording/pictures/picture_files.h"
 
 #include <utility>

@@ -4,7 +4,7 @@
 
 #include "engine/calibration/calibration_report.h"
 #include "engine/recording/board/board_pose.h"
-#include "engine/recording/layouts/calibration_file.h"
+#include "engine/recording/companions/calibration_file.h"
 #include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"

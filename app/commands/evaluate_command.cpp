@@ -1,0 +1,194 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands/commands.h"
+#include "app/recordings/recordings.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress_bar.h"
+#include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
+#include "engine/experiment/figures.h"
+#include "engine/experiment/runner.h"
+#include "engine/experiment/summary_json.h"
+#include "engine/experiment/tables.h"
+#include "engine/experiment/window_files.h"
+#include "engine/files/json_text.h"
+#include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
+#include "ui/views/charts/figure_view.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = Pace::Clock;
+using Recordings = std::vector<std::shared_ptr<const Recording>>;
+
+/// No more recordings than jobs are in work at once; the others keep no pictures.
+std::size_t cache_bytes(const EvaluateArguments& arguments) {
+  const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
+  return (arguments.cache_mib << 20) /
+         std::clamp<std::size_t>(jobs, 1, arguments.recordings.size());
+}
+
+Recordings open_all(const EvaluateArguments& arguments) {
+  resolve_recordings(arguments.recordings);  // all recipes at once
+  Recordings recordings;
+  for (const fs::path& path : arguments.recordings) {
+    recordings.push_back(open_given(
+        path, {.tracks = {}, .cache_bytes = cache_bytes(arguments), .topics = arguments.topics}));
+    const Recording& recording = *recordings.back();
+    for (const std::string& note : recording.notes) {
+      fmt::print(stderr, "{}: {}\n", recording.name, note);
+    }
+  }
+  return recordings;
+}
+
+/// "evaluating 132/432 windows, 3:10 left", on a terminal in one line that changes, else a line
+/// every ten seconds.
+class ProgressLine {
+ public:
+  void operator()(const ExperimentProgress& progress) {
+    const auto now = Clock::now();
+    const bool last = progress.done == progress.of;
+    const bool first = std::exchange(first_, false);
+    if (!terminal_ && !first && !last && !pace_.due(now)) return;
+    fmt::print(stderr,
+               "{}evaluating {}/{} windows{}{}",
+               terminal_ ? "\r" : "",
+               progress.done,
+               progress.of,
+               last ? "" : left(progress.share, now - begin_),
+               terminal_ && !last ? "    " : "\n");
+  }
+
+ private:
+  static std::string left(double share, Clock::duration spent) {
+    if (share <= 0) return "";  // nothing to judge by yet
+    const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
+    const std::int64_t whole = std::lround(seconds);
+    return fmt::format(", {}:{:02} left", whole / 60, whole % 60);
+  }
+
+  const bool terminal_ = progress_is_watched();
+  const Clock::time_point begin_ = Clock::now();
+  Pace pace_{begin_};
+  bool first_ = true;
+};
+
+/// "85mm" [mm]. Throws InputError.
+std::optional<double> parse_width(const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  constexpr double kNarrowest_mm = 50, kWidest_mm = 400;
+  const bool has_unit = text->ends_with("mm");
+  const auto width =
+      has_unit ? parse_number(std::string_view(*text).substr(0, text->size() - 2)) : std::nullopt;
+  if (width && *width >= kNarrowest_mm && *width <= kWidest_mm) return width;
+  throw InputError(fmt::format(
+      "--figure-width: '{}', expected {}mm to {}mm, e.g. 85mm", *text, kNarrowest_mm, kWidest_mm));
+}
+
+void write_figure(const fs::path& folder,
+                  const Figure& figure,
+                  const std::optional<double>& width_mm) {
+  constexpr double kPrint_dpi = 300;
+  const Drawing drawing = width_mm ? printed_figure(figure, *width_mm)
+                                   : figure_drawing(figure, default_figure_size(figure));
+  const double px_per_unit = width_mm ? drawing.unit_mm / 25.4 * kPrint_dpi : 1;
+  write_picture(folder / (figure.name + ".png"), picture_of(drawing, px_per_unit));
+  write_file(folder / (figure.name + ".svg"), figure_svg(figure, drawing));
+  write_file(folder / (figure.name + ".pdf"), pdf_of(drawing));
+}
+
+/// Everything that is made of the finished windows.
+void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
+  const fs::path& folder = arguments.output;
+  const std::optional<double> width_mm = parse_width(arguments.figure_width);
+  const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
+  const Table times = running_time_table(rows);
+  const Table errors = overview_table(rows);
+  write_file(folder / "results.csv", to_csv(rows));
+  write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));
+  write_file(folder / "errors.md", to_markdown(errors));
+  write_file(folder / "errors.csv", to_csv(overview_numbers(rows)));
+  write_file(folder / "running_time.md", to_markdown(times));
+  write_file(folder / "running_time.csv", to_csv(times));
+  fmt::print("{}", to_text(errors));
+  make_folder(folder / "figures");
+  for (const Figure& figure : figures(rows, experiment.configurations)) {
+    write_figure(folder / "figures", figure, width_mm);
+  }
+  fmt::print(
+      "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, "
+      "running_time.md, figures\n",
+      folder.string(),
+      rows.size() / experiment.configurations.size(),
+      experiment.configurations.size());
+}
+
+void check_usage(const EvaluateArguments& arguments) {
+  if (arguments.recordings.empty() == arguments.merge.empty()) {
+    throw InputError("evaluate: expected either recordings or --merge DIR...");
+  }
+  if (arguments.shard && !arguments.merge.empty()) {
+    throw InputError("evaluate: expected either --shard or --merge");
+  }
+  parse_width(arguments.figure_width);
+  check_experiment_folder(arguments.output);
+}
+
+int run(const EvaluateArguments& arguments) {
+  const ExperimentRequest request{parse_configurations(arguments.methods),
+                                  parse_ranges(arguments.lengths, "lengths"),
+                                  parse_ranges(arguments.starts, "starts"),
+                                  arguments.seed};
+  const Shard shard = arguments.shard ? parse_shard(*arguments.shard) : Shard{};
+  cv::setNumThreads(1);  // the times are those of one thread, whatever the jobs
+  const Recordings recordings = open_all(arguments);
+  const Experiment experiment = plan_experiment(recordings, request);
+  for (const std::string& note : notes_of(experiment)) fmt::print(stderr, "{}\n", note);
+  const std::string output = arguments.output.string();
+  ProgressLine line;
+  const Interrupt interrupt;
+  const RunOptions options{arguments.jobs,
+                           arguments.timing_jobs,
+                           shard,
+                           interrupt.token(),
+                           std::ref(line),
+                           [](const std::string& note) { fmt::print(stderr, "{}\n", note); }};
+  if (!run_experiment(experiment, recordings, arguments.output, options)) {
+    fmt::print(stderr, "\nstopped; the same command goes on from there ({})\n", output);
+    return kFailed;
+  }
+  if (!arguments.shard) {
+    write_results(arguments, experiment);
+    return kDone;
+  }
+  fmt::print("{}: shard {} is finished; when all are: evaluate --merge {} ... --output DIR\n",
+             output,
+             *arguments.shard,
+             output);
+  return kDone;
+}
+
+}  // namespace
+
+int evaluate_command(const EvaluateArguments& arguments) {
+  check_usage(arguments);
+  if (arguments.merge.empty()) return run(arguments);
+  write_results(arguments, merge_experiments(arguments.merge, arguments.output));
+  return kDone;
+}
+
+}  // namespace gpo

@@ -1,0 +1,182 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/commands/commands.h"
+#include "app/recordings/own_files.h"
+#include "app/recordings/recordings.h"
+#include "engine/base/error.h"
+#include "engine/experiment/results_file.h"
+#include "engine/inspection/inspector.h"
+#include "ui/context/gui.h"
+#include "ui/context/window_context.h"
+#include "ui/question.h"
+#include "ui/window_input.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/playing.h"
+#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/script.h"
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench_host.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+
+namespace gpo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Dear ImGui needs a frame to see what the mouse hovers, and another one to size what it opens.
+constexpr int kFramesAfterEvent = 3;
+constexpr double kIdle_s = 3600;
+constexpr double kBetweenQuestions_s = 0.1;
+constexpr const char* kTitle = "GPO Inspector";
+
+/// Everything between opening the window and closing it.
+struct Session {
+  const ViewArguments& arguments;
+  const OwnMethods& own;
+  std::string title = kTitle;
+  WindowContext window{title, 1280, 720};
+  WindowInput input{window.glfw()};
+  Gui gui{window};
+  WorkbenchHost host{gui,
+                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
+                     example_recording(),
+                     [] { glfwPostEmptyEvent(); }};
+  std::deque<ScriptLine> script;
+  Clock::time_point last = Clock::now();
+  double seconds = 0;  ///< between the last two turns of the loop
+
+  Session(const ViewArguments& from, const OwnMethods& methods) : arguments(from), own(methods) {
+    own.log->on_change([] { glfwPostEmptyEvent(); });
+  }
+  ~Session() { own.log->on_change({}); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Whether the commands that only a session names may be started; before anything is opened.
+  void ask_for_commands() {
+    constexpr std::size_t kAllOfIt = 4000;
+    std::vector<std::string> shown;
+    for (const std::string& one : own.waiting) shown.push_back(legible(one, kAllOfIt));
+    const Question question{"This session starts commands of its own",
+                            shown,
+                            "They can do what you can. Start them if you know who wrote the "
+                            "session; else their methods are listed and fail.",
+                            "Start them",
+                            "Do not start them"};
+    std::optional<bool> answer;
+    while (!answer && !window.should_close()) {
+      const cv::Size size = window.size();
+      window.bind();
+      if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
+      window.swap();
+      if (!answer) window.wait(kBetweenQuestions_s);
+    }
+    input.take();  // what was typed meanwhile was meant for nobody
+    *own.allowed = answer.value_or(false);
+    if (!*own.allowed) say_not_started(own);
+  }
+
+  void tell_what_methods_say() {
+    for (std::string& line : own.log->take())
+      host.state.log.push_back({Severity::note, std::move(line)});
+  }
+
+  void draw() {
+    host.size = window.size();
+    if (host.size.width < 1 || host.size.height < 1) return;  // minimized
+    window.bind();
+    const Commands commands = host.draw(seconds);
+    window.swap();
+    for (const Command& command : commands) apply(host.state, command);
+  }
+
+  /// Tells the desktop, and who drives the window, what is open and whether it is being computed.
+  void update_title() {
+    const WorkbenchState& state = host.state;
+    std::string now = state.recording ? state.recording->name + " \u2013 " : "";
+    if (state.recording && state.recording->camera_source == CameraSource::guess)
+      now += "the camera is a guess \u2013 ";
+    if (host.link.worker.busy) now += "computing \u2013 ";
+    now += kTitle;
+    if (now == title) return;
+    title = now;
+    glfwSetWindowTitle(window.glfw(), title.c_str());
+  }
+
+  /// Sleeps until something happens or the next frame is due. Time goes on before the keys are
+  /// heeded: what begins to play now has not slept.
+  void wait(bool settled) {
+    const auto due = seconds_to_next_frame(host.state);
+    if ((due || settled) && !host.writing()) {
+      window.wait(std::max(0.001, due.value_or(kIdle_s)));
+    } else {
+      window.poll();
+    }
+    const auto now = Clock::now();
+    seconds = std::chrono::duration<double>(now - std::exchange(last, now)).count();
+    advance(host.state, seconds);
+    for (const Command& command : input.take()) apply(host.state, command);
+  }
+
+  /// One command at a time, each when what the last one asked for is computed.
+  void go_on_with_script() {
+    if (script.empty() || host.busy()) return;
+    run_action(host.state, script.front().text);
+    script.pop_front();
+    glfwPostEmptyEvent();
+  }
+
+  void run() {
+    for (int frames = kFramesAfterEvent; !window.should_close() && !host.state.wishes.quit;) {
+      host.synchronize();
+      tell_what_methods_say();
+      go_on_with_script();
+      update_title();
+      draw();
+      --frames;
+      wait(frames <= 0);
+      if (frames <= 0) frames = kFramesAfterEvent;
+    }
+  }
+};
+
+}  // namespace
+
+int view_command(const ViewArguments& arguments, const OwnMethods& own) {
+  const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =
+      arguments;
+  if (recording && !std::filesystem::exists(*recording)) {
+    throw InputError(recording->string() + ": no such file or folder; expected a recording");
+  }
+  const bool shown = recording && (is_session(*recording) || is_results(*recording));
+  if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
+  if (session_file) read_session(*session_file);  // an error is said before there is a window
+  const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
+  Session session(arguments, own);
+  session.script.assign(lines.begin(), lines.end());
+  session.host.link.remembers_files = true;
+  session.host.link.calibrates = calibrate == "auto";
+  session.host.state.recent = recent_files();
+  session.host.state.has_last_session = std::filesystem::exists(last_session_file());
+  session.host.state.settings = settings;
+  session.host.state.wishes.open = session_file ? session_file : recording;
+  const float scale = session.gui.scale();
+  if (scale > 1) {
+    glfwSetWindowSize(
+        session.window.glfw(), static_cast<int>(1280 * scale), static_cast<int>(720 * scale));
+  }
+  if (!own.waiting.empty()) session.ask_for_commands();
+  session.run();
+  save_last_session(session.host.state);
+  return kDone;
+}
+
+}  // namespace gpo

@@ -1,0 +1,104 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/recordings/recordings.h"
+
+#include "app/recordings/found_camera.h"
+#include "app/recordings/known_files.h"
+#include "app/recordings/own_files.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress_bar.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/synthesis/synthesized.h"
+#include "ui/workbench/session/user_folders.h"
+
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
+
+bool is_recipe(const fs::path& path) {
+  const fs::path extension = path.extension();
+  return (extension == ".yaml" || extension == ".yml") && fs::is_regular_file(path);
+}
+
+/// Those that are about to be made: "orbit, approach", or their number where that is too long.
+std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
+  std::vector<std::string> names;
+  for (const fs::path& recipe : recipes) {
+    const fs::path folder = synthesized_folder(recipe, cache);
+    if (!fs::exists(folder)) names.push_back(folder.filename().string());
+  }
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  return all.size() <= kNamesLength ? all : fmt::format("{} recordings", names.size());
+}
+
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+  if (recipes.empty()) return {};
+  const fs::path cache = made_recordings_folder();
+  const int threads = static_cast<int>(std::thread::hardware_concurrency());
+  const Interrupt interrupt;
+  const auto check = [&] { interrupt.check("of what was being synthesized nothing is left"); };
+  ProgressBar bar("synthesizing " + names_of_missing(recipes, cache));
+  auto made = synthesized_recordings(recipes, cache, threads, [&](int done, int of) {
+    bar.show(done, of);
+    check();
+  });
+  check();
+  return made;
+}
+
+Worker::Opened opened_for_window(std::shared_ptr<const Recording> recording) {
+  Worker::Opened opened = Worker::with_inspector(recording);
+  opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
+    auto calibrated = self_calibrated(*recording, stop, progress);
+    return calibrated ? opened_for_window(std::move(calibrated)) : Worker::Opened{};
+  };
+  return opened;
+}
+
+}  // namespace
+
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> recipes;
+  for (const fs::path& path : paths) {
+    refuse_known_file(path);
+    if (is_recipe(path)) recipes.push_back(path);
+  }
+  const std::vector<fs::path> made = make_recordings(recipes);
+  auto next = made.begin();
+  std::vector<fs::path> resolved = paths;
+  for (fs::path& path : resolved) {
+    if (is_recipe(path)) path = *next++;
+  }
+  return resolved;
+}
+
+std::shared_ptr<const Recording> open_given(const fs::path& path,
+                                            const OpenOptions& options,
+                                            bool calibrates) {
+  OpenOptions with_cache = options;
+  with_cache.cache_folder = user_cache_folder();
+  Recording recording = *open_recording(resolve_recordings({path}).front(), with_cache);
+  recording.path = path;
+  if (recording.camera_source == CameraSource::guess) use_found_camera(recording, calibrates);
+  return std::make_shared<const Recording>(std::move(recording));
+}
+
+std::function<Worker::Opened(const fs::path&)> opener_for_window(
+    std::size_t cache_mib, const std::optional<fs::path>& recording, const TopicChoices& topics) {
+  return [=](const fs::path& path) {
+    OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
+    if (path == recording) options.topics = topics;
+    return opened_for_window(open_given(path, options));
+  };
+}
+
+}  // namespace gpo

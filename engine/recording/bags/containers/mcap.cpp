@@ -1,0 +1,283 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/bags/containers/mcap.h"
+
+#include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/containers/chunk_reader.h"
+#include "engine/recording/bags/containers/mcap_record.h"
+#include "engine/recording/bags/containers/topic_list.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+namespace gpo {
+namespace mcap {
+namespace {
+
+constexpr std::uint64_t kFooterBytes = 20;
+constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two times
+
+/// What the summary says of a chunk.
+struct ChunkEntry {
+  std::uint64_t place = 0;
+  std::uint64_t length = 0;        ///< of the record, all of it
+  std::uint64_t index_length = 0;  ///< of the records of its index, which follow it
+};
+
+struct Summary {
+  std::vector<ChunkEntry> chunks;
+  std::optional<std::uint64_t> messages;  ///< in the whole file
+};
+
+/// While its index is made.
+struct Opening {
+  explicit Opening(const std::shared_ptr<const FileBytes>& from)
+      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
+    bag.file = from->path();
+    chunks->add({0, from->size(), from->size()});  // messages may lie outside of all chunks
+  }
+
+  std::shared_ptr<const FileBytes> file;
+  std::shared_ptr<ChunkReader> chunks;
+  Bag bag;
+  TopicList topics;
+  std::map<std::uint16_t, std::string> schemas;  ///< their names
+};
+
+MessageEncoding encoding_named(std::string_view name) {
+  if (name == "cdr") return MessageEncoding::cdr;
+  return name == "ros1" ? MessageEncoding::ros1 : MessageEncoding::unknown;
+}
+
+void add_schema(Opening& opening, std::string_view content) {
+  ByteCursor cursor(content);
+  const auto id = cursor.number<std::uint16_t>();
+  const std::string_view name = cursor.text();
+  if (cursor.ok() && id != 0) opening.schemas.emplace(id, name);
+}
+
+void add_channel(Opening& opening, std::string_view content) {
+  ByteCursor cursor(content);
+  const auto id = cursor.number<std::uint16_t>();
+  const auto schema = opening.schemas.find(cursor.number<std::uint16_t>());
+  const std::string_view topic = cursor.text();
+  const std::string_view encoding = cursor.text();
+  if (!cursor.ok()) return;
+  const std::string type = schema == opening.schemas.end() ? "" : schema->second;
+  opening.topics.add(id, topic, type, encoding_named(encoding));
+}
+
+ChunkEntry chunk_entry(std::string_view content) {
+  ByteCursor cursor(content);
+  cursor.take(16);  // times
+  ChunkEntry entry;
+  entry.place = cursor.number<std::uint64_t>();
+  entry.length = cursor.number<std::uint64_t>();
+  cursor.text();  // where each channel's index is
+  entry.index_length = cursor.number<std::uint64_t>();
+  return cursor.ok() ? entry : ChunkEntry{};
+}
+
+/// Where the summary lies, or nothing: there is no footer, or no summary.
+std::optional<std::string> summary_bytes(const FileBytes& file) {
+  const std::uint64_t tail = kMcapRecordHead + kFooterBytes + kMcapMagic.size();
+  if (file.size() < kMcapMagic.size() + tail) return std::nullopt;
+  const std::uint64_t footer = file.size() - tail;
+  const std::string end = file.read(footer, tail);
+  ByteCursor cursor(end);
+  const bool is_footer = cursor.number<std::uint8_t>() == static_cast<int>(McapOp::footer) &&
+                         cursor.number<std::uint64_t>() == kFooterBytes &&
+                         end.ends_with(kMcapMagic);
+  const auto start = cursor.number<std::uint64_t>();
+  cursor.number<std::uint64_t>();
+  const auto expected_sum = cursor.number<std::uint32_t>();
+  if (!is_footer || start == 0 || start > footer || footer - start > kMostSummaryBytes)
+    return std::nullopt;
+  // The sum is of all from the summary's beginning up to itself.
+  std::string bytes = file.read(start, file.size() - kMcapMagic.size() - 4 - start);
+  const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  if (expected_sum != 0 && sum != expected_sum) return std::nullopt;
+  bytes.resize(footer - start);
+  return bytes;
+}
+
+Summary read_summary(Opening& opening, const std::string& bytes) {
+  Summary summary;
+  for_each_mcap_record(bytes, [&](McapOp op, std::string_view content) {
+    if (op == McapOp::schema) add_schema(opening, content);
+    if (op == McapOp::channel) add_channel(opening, content);
+    if (op == McapOp::chunk_index) summary.chunks.push_back(chunk_entry(content));
+    if (op == McapOp::statistics) summary.messages = ByteCursor(content).number<std::uint64_t>();
+  });
+  return summary;
+}
+
+/// The head of a chunk's record; nothing where it is cut.
+std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) {
+  const std::string head =
+      opening.file->read(record.place, std::min<std::uint64_t>(record.size, 256));
+  ByteCursor cursor(head);
+  cursor.take(16);  // times
+  Chunk chunk;
+  chunk.size = cursor.number<std::uint64_t>();
+  chunk.crc32 = cursor.number<std::uint32_t>();
+  const std::string_view name = cursor.text();
+  chunk.stored = cursor.number<std::uint64_t>();
+  chunk.place = record.place + cursor.place();
+  if (!cursor.ok() || chunk.stored > record.size) return std::nullopt;
+  const auto compression = compression_named(name);
+  if (!compression || *compression == Compression::bz2) {
+    throw InputError(fmt::format("{}: found the compression \"{}\", expected none, lz4 or zstd",
+                                 opening.bag.file.string(),
+                                 name));
+  }
+  chunk.compression = *compression;
+  return chunk;
+}
+
+/// False where a part of it is broken.
+bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records) {
+  bool whole = true;
+  const bool read = for_each_mcap_record(records, [&](McapOp op, std::string_view content) {
+    if (op != McapOp::message_index) return;
+    ByteCursor cursor(content);
+    const auto channel = cursor.number<std::uint16_t>();
+    ByteCursor entries(cursor.text());
+    while (entries.more()) {
+      const auto time = entries.number<std::int64_t>();
+      const auto place = entries.number<std::uint64_t>();
+      if (entries.ok()) opening.topics.add_message(channel, time, chunk, place);
+    }
+    whole = whole && cursor.ok() && entries.ok();
+  });
+  return read && whole;
+}
+
+/// False where there is none, or one that does not fit what the file has.
+bool read_index(Opening& opening) {
+  const auto bytes = summary_bytes(*opening.file);
+  if (!bytes) return false;
+  Summary summary = read_summary(opening, *bytes);
+  std::ranges::sort(summary.chunks, {}, &ChunkEntry::place);
+  std::uint64_t free = kMcapMagic.size();  // each byte once, or few would stand for very many
+  for (const ChunkEntry& entry : summary.chunks) {
+    const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
+    if (entry.place < free || entry.length > left || entry.index_length > left - entry.length)
+      return false;
+    const auto record = mcap_record(*opening.file, entry.place);
+    if (!record || record->op != McapOp::chunk || record->end() != entry.place + entry.length)
+      return false;
+    const auto chunk = chunk_at(opening, *record);
+    const std::string index = opening.file->read(record->end(), entry.index_length);
+    if (!chunk || !add_index(opening, opening.chunks->add(*chunk), index)) return false;
+    free = record->end() + entry.index_length;
+  }
+  if (!summary.messages) return !summary.chunks.empty();
+  return *summary.messages == opening.bag.messages.size();
+}
+
+void add_message(Opening& opening,
+                 std::string_view head,
+                 std::uint32_t chunk,
+                 std::uint64_t place) {
+  ByteCursor cursor(head);
+  const auto channel = cursor.number<std::uint16_t>();
+  cursor.number<std::uint32_t>();
+  const auto time = cursor.number<std::int64_t>();
+  if (cursor.ok()) opening.topics.add_message(channel, time, chunk, place);
+}
+
+/// Goes through what a chunk has; false where it is cut or broken.
+bool scan_chunk(Opening& opening, const Chunk& chunk) {
+  const std::uint32_t number = opening.chunks->add(chunk);
+  const Decompressed made = opening.chunks->contents(number);
+  if (!made.whole) opening.chunks->allow_cut(number);
+  const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
+    if (op == McapOp::schema) add_schema(opening, content);
+    if (op == McapOp::channel) add_channel(opening, content);
+    if (op != McapOp::message) return;
+    const std::uint64_t place = content.data() - made.bytes.data() - kMcapRecordHead;
+    add_message(opening, content, number, place);
+  });
+  return read && made.whole;
+}
+
+/// One record outside of chunks; false where it is cut or broken.
+bool scan_record(Opening& opening, const McapRecord& record) {
+  if (record.op == McapOp::chunk) {
+    const auto chunk = chunk_at(opening, record);
+    if (!chunk || !scan_chunk(opening, *chunk)) return false;
+  }
+  if (record.end() > opening.file->size()) return false;
+  const bool definition = record.op == McapOp::schema || record.op == McapOp::channel;
+  const std::uint64_t wanted = definition ? kMostDefinitionBytes : kLongestMessageHead;
+  if (!definition && record.op != McapOp::message) return true;
+  const std::string content = opening.file->read(record.place, std::min(record.size, wanted));
+  if (record.op == McapOp::schema) add_schema(opening, content);
+  if (record.op == McapOp::channel) add_channel(opening, content);
+  if (record.op == McapOp::message)
+    add_message(opening, content, 0, record.place - kMcapRecordHead);
+  return true;
+}
+
+/// Reads the whole file, where there is no index.
+void scan(Opening& opening) {
+  std::uint64_t place = kMcapMagic.size();
+  bool ended = false;
+  while (!ended) {
+    const auto record = mcap_record(*opening.file, place);
+    if (!record || !scan_record(opening, *record)) break;
+    ended = record->op == McapOp::data_end || record->op == McapOp::footer;
+    place = record->end();
+  }
+  opening.bag.notes.push_back(
+      ended ? "the bag has no index of all messages: it was read from its beginning to its end"
+            : cut_note(*opening.file, place));
+}
+
+std::string read_message(const ChunkReader& chunks,
+                         const BagMessage& message,
+                         std::uint64_t most_bytes) {
+  const bool all = most_bytes == kWholeMessage;
+  const std::uint64_t before = kMcapRecordHead + kLongestMessageHead;
+  const std::string head = chunks.read(message.chunk, message.place, before, all);
+  ByteCursor cursor(head);
+  const bool is_message = cursor.number<std::uint8_t>() == static_cast<int>(McapOp::message);
+  const auto length = cursor.number<std::uint64_t>();
+  std::string bytes;
+  const bool fits = length > kLongestMessageHead && length <= kMostMessageBytes;
+  const std::uint64_t size = fits ? length - kLongestMessageHead : 0;
+  if (is_message && fits)
+    bytes = chunks.read(message.chunk, message.place + before, std::min(size, most_bytes), all);
+  if (bytes.empty() || (all && bytes.size() < size))
+    chunks.fail_message(message.chunk, message.place);
+  return bytes;
+}
+
+}  // namespace
+}  // namespace mcap
+
+Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
+  using namespace mcap;
+  Opening opening(file);
+  if (!read_index(opening)) {
+    opening.topics.clear_messages();
+    scan(opening);
+  }
+  opening.topics.finish();
+  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
+                         const BagMessage& message, std::uint64_t most_bytes) {
+    return read_message(*chunks, message, most_bytes);
+  };
+  return std::move(opening.bag);
+}
+
+}  // namespace gpo

@@ -1,0 +1,206 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/bags/containers/ros1_bag.h"
+
+#include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/containers/chunk_reader.h"
+#include "engine/recording/bags/containers/ros1_record.h"
+#include "engine/recording/bags/containers/topic_list.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace ros1 {
+namespace {
+
+constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
+
+/// While its index is made.
+struct Opening {
+  explicit Opening(const std::shared_ptr<const FileBytes>& from)
+      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
+    bag.file = from->path();
+  }
+
+  ReadBytes reader() const {
+    return [&file = *file](auto place, auto count) { return file.read(place, count); };
+  }
+  [[noreturn]] void fail(std::uint64_t place, const std::string& expected) const {
+    throw InputError(fmt::format(
+        "{}: found something else at byte {}, expected {}", bag.file.string(), place, expected));
+  }
+
+  std::shared_ptr<const FileBytes> file;
+  std::shared_ptr<ChunkReader> chunks;
+  Bag bag;
+  TopicList topics;
+};
+
+void add_connection(Opening& opening, const Ros1Record& record, const ReadBytes& read) {
+  const std::int64_t id = record.number("conn");
+  if (record.data_size > kMostDefinitionBytes || opening.topics.knows(id)) return;
+  const std::string about = read(record.data_place, record.data_size);
+  const auto type = ros1_field(about, "type");
+  // Where a topic was remapped, the record's own field has the name under which it was recorded.
+  const auto name = record.field("topic");
+  if (type && name) opening.topics.add(id, *name, *type, MessageEncoding::ros1);
+}
+
+Chunk chunk_of(const Opening& opening, const Ros1Record& record) {
+  Chunk chunk{record.data_place, record.data_size, record.number("size")};
+  const auto name = record.field("compression").value_or("none");
+  const auto compression = compression_named(name);
+  if (!compression) {
+    throw InputError(fmt::format("{}: found the compression \"{}\", expected none, bz2 or lz4",
+                                 opening.bag.file.string(),
+                                 name));
+  }
+  chunk.compression = *compression;
+  return chunk;
+}
+
+/// The records of an index, which follow their chunk, up to `end`; false where they are broken.
+bool add_index(Opening& opening, std::uint32_t chunk, std::uint64_t place, std::uint64_t end) {
+  while (place < end) {
+    const auto record = ros1_record(opening.reader(), place);
+    if (!record || record->end() > end) return false;
+    if (!record->is(Ros1Op::index)) return true;
+    const std::int64_t connection = record->number("conn");
+    const std::string entries = opening.file->read(record->data_place, record->data_size);
+    ByteCursor cursor(entries);
+    while (cursor.more()) {
+      const auto seconds = cursor.number<std::uint32_t>();
+      const auto nanoseconds = cursor.number<std::uint32_t>();
+      const auto offset = cursor.number<std::uint32_t>();
+      if (!cursor.ok()) return false;
+      opening.topics.add_message(connection, ros1_time_ns(seconds, nanoseconds), chunk, offset);
+    }
+    place = record->end();
+  }
+  return true;
+}
+
+/// Connections and the places of all chunks, from the end of the file; false where they are cut.
+bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64_t>& chunk_places) {
+  const ReadBytes read = opening.reader();
+  while (place < opening.file->size()) {
+    const auto record = ros1_record(read, place);
+    if (!record || record->end() > opening.file->size()) return false;
+    if (record->is(Ros1Op::connection)) add_connection(opening, *record, read);
+    if (record->is(Ros1Op::chunk_info)) chunk_places.push_back(record->position("chunk_pos"));
+    place = record->end();
+  }
+  // Each chunk once, or a few bytes would stand for very many messages.
+  std::ranges::sort(chunk_places);
+  return std::ranges::adjacent_find(chunk_places) == chunk_places.end();
+}
+
+/// False where the file has no index, or one that does not fit what it has.
+bool read_index(Opening& opening, const Ros1Record& header) {
+  const std::uint64_t index = header.position("index_pos");
+  if (index < header.end() || index > opening.file->size()) return false;
+  std::vector<std::uint64_t> places;
+  if (!read_summary(opening, index, places) || places.size() != header.number("chunk_count"))
+    return false;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::uint64_t end = i + 1 < places.size() ? places[i + 1] : index;
+    const auto record = ros1_record(opening.reader(), places[i]);
+    if (!record || !record->is(Ros1Op::chunk) || record->end() > end) return false;
+    const std::uint32_t chunk = opening.chunks->add(chunk_of(opening, *record));
+    if (!add_index(opening, chunk, record->end(), end)) return false;
+  }
+  return true;
+}
+
+/// Goes through the messages of a chunk; false where it is cut or broken.
+bool scan_chunk(Opening& opening, std::uint32_t number) {
+  const Chunk chunk = opening.chunks->chunk(number);
+  Decompressed made;
+  ReadBytes read = [&](auto place, auto count) {
+    return place < made.bytes.size() ? made.bytes.substr(place, count) : std::string();
+  };
+  std::uint64_t size = std::min(chunk.stored, opening.file->size() - chunk.place);
+  bool whole = size == chunk.stored;
+  if (chunk.compression == Compression::none) {
+    read = [&](auto place, auto count) { return opening.chunks->read(number, place, count); };
+  } else {
+    made = opening.chunks->contents(number);
+    size = made.bytes.size();
+    whole = made.whole;
+    if (!whole) opening.chunks->allow_cut(number);
+  }
+  std::uint64_t place = 0;
+  while (place < size) {
+    const auto record = ros1_record(read, place);
+    if (!record || record->end() > size) return false;
+    if (record->is(Ros1Op::connection)) add_connection(opening, *record, read);
+    if (record->is(Ros1Op::message))
+      opening.topics.add_message(record->number("conn"), record->time_ns("time"), number, place);
+    place = record->end();
+  }
+  return whole;
+}
+
+/// Reads the whole file, where there is no index.
+void scan(Opening& opening, std::uint64_t place) {
+  const ReadBytes read = opening.reader();
+  while (place < opening.file->size()) {
+    const auto record = ros1_record(read, place);
+    if (!record) break;
+    if (record->is(Ros1Op::connection)) add_connection(opening, *record, read);
+    const bool scanned = !record->is(Ros1Op::chunk) ||
+                         scan_chunk(opening, opening.chunks->add(chunk_of(opening, *record)));
+    if (!scanned || record->end() > opening.file->size()) break;
+    place = record->end();
+  }
+  const bool whole = place == opening.file->size();
+  opening.bag.notes.push_back(
+      whole ? "the bag has no index: it was read from its beginning to its end"
+            : cut_note(*opening.file, place));
+}
+
+std::string read_message(const ChunkReader& chunks,
+                         const BagMessage& message,
+                         std::uint64_t most_bytes) {
+  const bool whole = most_bytes == kWholeMessage;
+  const ReadBytes read = [&](auto place, auto count) {
+    return chunks.read(message.chunk, place, count);
+  };
+  const auto record = ros1_record(read, message.place);
+  const std::uint64_t size = record ? record->data_size : 0;
+  std::string bytes;
+  if (record && record->is(Ros1Op::message) && size <= kMostMessageBytes)
+    bytes = read(record->data_place, std::min(size, most_bytes));
+  if (bytes.empty() || (whole && bytes.size() < size))
+    chunks.fail_message(message.chunk, message.place);
+  return bytes;
+}
+
+}  // namespace
+}  // namespace ros1
+
+Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
+  using namespace ros1;
+  Opening opening(file);
+  const auto header = ros1_record(opening.reader(), kRos1Magic.size());
+  if (!header || !header->is(Ros1Op::bag_header))
+    opening.fail(kRos1Magic.size(), "the header of a ROS 1 bag");
+  if (!read_index(opening, *header)) {
+    opening.topics.clear_messages();
+    opening.chunks->clear();
+    scan(opening, header->end());
+  }
+  opening.topics.finish();
+  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
+                         const BagMessage& message, std::uint64_t most_bytes) {
+    return read_message(*chunks, message, most_bytes);
+  };
+  return std::move(opening.bag);
+}
+
+}  // namespace gpo

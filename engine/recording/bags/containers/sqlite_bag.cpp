@@ -1,0 +1,204 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/bags/containers/sqlite_bag.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/recording/bags/containers/file_bytes.h"
+#include "engine/recording/bags/containers/topic_list.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLeastRowBytes = 8;  ///< in the file: no row takes less
+constexpr int kMostTextBytes = 100'000;      ///< of a name, and of a table's definition
+constexpr int kMostTopics = 10'000;
+constexpr std::size_t kLongestName = 1000;
+
+using Database = std::shared_ptr<sqlite3>;
+using Query = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
+
+[[noreturn]] void fail(const fs::path& file, const Database& database) {
+  throw InputError(
+      fmt::format("{}: found a database that cannot be read ({}), expected a ROS 2 bag",
+                  file.string(),
+                  sqlite3_errmsg(database.get())));
+}
+
+/// As an address of SQLite's, which takes options: nobody writes to the file while it is read,
+/// unless there is a log of changes beside it.
+std::string address_of(const fs::path& file) {
+  std::string address = "file:";
+  for (const char c : fs::absolute(file).string()) {
+    const bool special = c == '?' || c == '#' || c == '%';
+    address += special ? fmt::format("%{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return address + (is_file(file.string() + "-wal") ? "?mode=ro" : "?immutable=1");
+}
+
+Database open_database(const fs::path& file) {
+  sqlite3* opened = nullptr;
+  const int code = sqlite3_open_v2(address_of(file).c_str(),
+                                   &opened,
+                                   SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_FULLMUTEX,
+                                   nullptr);
+  Database database(opened, sqlite3_close);
+  if (code != SQLITE_OK) fail(file, database);
+  sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, kMostTextBytes);
+  sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  // With it SQLite reads what is left of a file that is shorter than it says.
+  sqlite3_exec(opened, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
+  return database;
+}
+
+Query prepare(const fs::path& file, const Database& database, const char* text) {
+  sqlite3_stmt* made = nullptr;
+  if (sqlite3_prepare_v2(database.get(), text, -1, &made, nullptr) != SQLITE_OK)
+    fail(file, database);
+  return {made, sqlite3_finalize};
+}
+
+std::string text_of(const Query& row, int column) {
+  const auto* text = sqlite3_column_text(row.get(), column);
+  const int size = sqlite3_column_bytes(row.get(), column);
+  return text == nullptr ? "" : std::string(reinterpret_cast<const char*>(text), size);
+}
+
+/// A view could be a query without end, a virtual table any code.
+void check_is_table(const fs::path& file, const Database& database, const std::string& name) {
+  const Query query = prepare(
+      file, database, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?1 LIMIT 1");
+  sqlite3_bind_text(query.get(), 1, name.c_str(), -1, SQLITE_TRANSIENT);
+  const int code = sqlite3_step(query.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) fail(file, database);
+  const bool found = code == SQLITE_ROW && text_of(query, 0).starts_with("CREATE TABLE");
+  if (found) return;
+  throw InputError(fmt::format(
+      "{}: found a database without the table `{}`, expected a ROS 2 bag", file.string(), name));
+}
+
+void add_topics(const fs::path& file, const Database& database, TopicList& topics) {
+  const Query query =
+      prepare(file, database, "SELECT id, name, type, serialization_format FROM topics");
+  int code = SQLITE_ROW;
+  for (int i = 0; i < kMostTopics && (code = sqlite3_step(query.get())) == SQLITE_ROW; ++i) {
+    const auto encoding =
+        text_of(query, 3) == "cdr" ? MessageEncoding::cdr : MessageEncoding::unknown;
+    const std::string name = text_of(query, 1);
+    const std::string type = text_of(query, 2);
+    if (std::max(name.size(), type.size()) > kLongestName) continue;
+    topics.add(sqlite3_column_int64(query.get(), 0), name, type, encoding);
+  }
+  if (code != SQLITE_DONE) fail(file, database);
+}
+
+/// In the order of the rows, without looking at their data. Returns whether all could be read.
+bool add_messages(const fs::path& file, const Database& database, TopicList& topics) {
+  const Query query = prepare(
+      file, database, "SELECT rowid, topic_id, timestamp FROM messages NOT INDEXED ORDER BY rowid");
+  const std::uint64_t most = FileBytes(file).size() / kLeastRowBytes;
+  std::optional<std::int64_t> last;
+  int code = SQLITE_ROW;
+  for (std::uint64_t i = 0; i <= most; ++i) {
+    code = sqlite3_step(query.get());
+    if (code != SQLITE_ROW) break;
+    const std::int64_t id = sqlite3_column_int64(query.get(), 0);
+    if (last && id <= *last) return false;  // pages that lead in circles
+    last = id;
+    topics.add_message(sqlite3_column_int64(query.get(), 1),
+                       sqlite3_column_int64(query.get(), 2),
+                       0,
+                       static_cast<std::uint64_t>(id));
+  }
+  return code == SQLITE_DONE;
+}
+
+/// Reads messages by rows; moving a handle is faster than opening one.
+class RowReader {
+ public:
+  RowReader(fs::path file, Database database)
+      : file_(std::move(file)), database_(std::move(database)) {}
+
+  std::string read(const BagMessage& message, std::uint64_t most_bytes) {
+    const std::scoped_lock lock(mutex_);
+    const auto row = static_cast<sqlite3_int64>(message.place);
+    if (!go_to(row)) broken(row);
+    const auto size = static_cast<std::uint64_t>(sqlite3_blob_bytes(blob_.get()));
+    std::string bytes(std::min({size, most_bytes, kMostMessageBytes}), '\0');
+    const int code =
+        sqlite3_blob_read(blob_.get(), bytes.data(), static_cast<int>(bytes.size()), 0);
+    if (code != SQLITE_OK) broken(row);
+    return bytes;
+  }
+
+ private:
+  using Blob = std::unique_ptr<sqlite3_blob, int (*)(sqlite3_blob*)>;
+
+  bool go_to(sqlite3_int64 row) {
+    if (blob_ && sqlite3_blob_reopen(blob_.get(), row) == SQLITE_OK) return true;
+    blob_.reset();
+    sqlite3_blob* opened = nullptr;
+    const int code =
+        sqlite3_blob_open(database_.get(), "main", "messages", "data", row, 0, &opened);
+    blob_.reset(opened);
+    return code == SQLITE_OK;
+  }
+  [[noreturn]] void broken(sqlite3_int64 row) {
+    blob_.reset();
+    throw InputError(fmt::format("{}: message {} cannot be read ({})",
+                                 file_.string(),
+                                 row,
+                                 sqlite3_errmsg(database_.get())));
+  }
+
+  fs::path file_;
+  Database database_;
+  std::mutex mutex_;
+  Blob blob_{nullptr, sqlite3_blob_close};
+};
+
+bool can_be_read(RowReader& rows, const BagMessage& message) {
+  try {
+    rows.read(message, kWholeMessage);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+Bag open_sqlite_bag(const fs::path& file) {
+  const Database database = open_database(file);
+  for (const char* table : {"topics", "messages"}) check_is_table(file, database, table);
+  Bag bag;
+  bag.file = file;
+  TopicList topics(bag);
+  add_topics(file, database, topics);
+  const auto rows = std::make_shared<RowReader>(file, database);
+  if (!add_messages(file, database, topics)) {
+    // The last row may begin before the cut and end behind it.
+    while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
+    bag.notes.push_back(fmt::format("the bag is cut or broken: {} messages of it can be read",
+                                    bag.messages.size()));
+  }
+  topics.finish();
+  bag.read = [rows](const BagMessage& message, std::uint64_t most_bytes) {
+    return rows->read(message, most_bytes);
+  };
+  return bag;
+}
+
+}  // namespace gpo

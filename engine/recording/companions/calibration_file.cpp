@@ -1,0 +1,313 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/calibration_file.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+#include "engine/files/xml_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <set>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+/// OpenCV leaves the names to whoever writes the file; these are its samples', ROS' and common
+/// ones.
+constexpr Names kMatrix = {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "M1", "mtx"};
+constexpr Names kCoefficients = {"distortion_coefficients",
+                                 "Distortion_Coefficients",
+                                 "distCoeffs",
+                                 "dist_coeffs",
+                                 "distortion",
+                                 "D",
+                                 "D1",
+                                 "dist"};
+constexpr Names kWidth = {"image_width", "image_Width", "imageWidth", "width"};
+constexpr Names kHeight = {"image_height", "image_Height", "imageHeight", "height"};
+constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
+
+constexpr double kMostFocalLength = 1e6;  // [px]
+constexpr double kMostCoefficient = 1e6;
+constexpr double kMostShift_s = 3600;
+/// From one picture in 100 s to a high-speed camera: the time stamps of as many pictures as are
+/// read are all different and fit into nanoseconds.
+constexpr double kLeastPictureRate_hz = 0.01;
+constexpr double kMostPictureRate_hz = 100'000;
+
+std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
+  for (const char* name : names) {
+    if (auto entry = find(map, name)) return entry;
+  }
+  return std::nullopt;
+}
+
+std::string count_of(const std::vector<double>& values) {
+  return std::to_string(values.size()) + " numbers";
+}
+
+void check_model(const YamlEntry& root) {
+  const auto entry = find(root, "camera_model");
+  if (!entry) return;
+  const std::string model = lower_case(text(*entry, "pinhole"));
+  if (model != "pinhole") yaml_fail(*entry, fmt::format("\"{}\"", model), "pinhole");
+}
+
+Distortion distortion_model(const YamlEntry& entry) {
+  const std::string expected = "radial-tangential, equidistant or none";
+  const std::string model = lower_case(text(entry, expected));
+  if (model == "none" || model == "no") return Distortion::none;
+  for (const char* same :
+       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"}) {
+    if (model == same) return Distortion::radial_tangential;
+  }
+  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"}) {
+    if (model == same) return Distortion::equidistant;
+  }
+  yaml_fail(entry, fmt::format("\"{}\"", model), expected);
+}
+
+void set_coefficients(Camera& camera, const YamlEntry& entry) {
+  const std::vector<double> values = numbers(entry);
+  const std::size_t n = values.size();
+  if (camera.distortion == Distortion::none) {
+    if (std::any_of(values.begin(), values.end(), [](double k) { return k != 0; })) {
+      yaml_fail(entry, count_of(values), "none for distortion model none");
+    }
+    return;
+  }
+  if (camera.distortion == Distortion::equidistant && n != 4) {
+    yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
+  }
+  static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
+  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n)) {
+    yaml_fail(entry,
+              count_of(values),
+              "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
+  }
+  const auto absurd = [](double k) { return std::abs(k) > kMostCoefficient; };
+  if (std::ranges::any_of(values, absurd)) {
+    yaml_fail(entry, "a coefficient that no lens has", "numbers of the order of 1");
+  }
+  camera.coefficients = values;
+}
+
+void set_resolution(Camera& camera, const YamlEntry& entry, double width, double height) {
+  constexpr double kMost = 1e5;
+  const bool whole = width == std::floor(width) && height == std::floor(height);
+  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost) {
+    yaml_fail(entry, "a size that no picture has", "[width, height] in pixels");
+  }
+  camera.width = static_cast<int>(width);
+  camera.height = static_cast<int>(height);
+}
+
+void set_intrinsics(
+    Camera& camera, const YamlEntry& entry, double fx, double fy, double cx, double cy) {
+  if (fx <= 0 || fy <= 0) {
+    yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
+  }
+  if (fx > kMostFocalLength || fy > kMostFocalLength) {
+    yaml_fail(entry, "a focal length that no lens has", "fx, fy in pixels");
+  }
+  const bool inside =
+      cx > -camera.width && cx < 2 * camera.width && cy > -camera.height && cy < 2 * camera.height;
+  if (camera.width > 0 && !inside) {
+    yaml_fail(entry,
+              "a principal point far outside of the picture",
+              "cx, cy in pixels, near the middle of it");
+  }
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
+}
+
+/// Standard deviations as `calibrate` writes them; of coefficients that the file has.
+void set_sigmas(Camera& camera, const YamlEntry& root) {
+  const auto intrinsics = find(root, "intrinsics_sigma");
+  if (!intrinsics) return;
+  camera.sigmas = numbers(*intrinsics, 4, "4 (of fx, fy, cx, cy)");
+  if (const auto entry = find(root, "distortion_coefficients_sigma")) {
+    const std::vector<double> values = numbers(*entry);
+    if (values.size() != camera.coefficients.size())
+      yaml_fail(*entry, count_of(values), "one for each of the distortion coefficients");
+    camera.sigmas.insert(camera.sigmas.end(), values.begin(), values.end());
+  }
+  const auto no_sigma = [](double sigma) { return !(sigma >= 0 && sigma < kMostCoefficient); };
+  if (std::ranges::any_of(camera.sigmas, no_sigma))
+    yaml_fail(*intrinsics, "a standard deviation that none can be", "numbers from 0 on");
+}
+
+/// EuRoC's keys and Kalibr's, which differ in one name only.
+Camera euroc_camera(const YamlEntry& root) {
+  Camera camera;
+  const auto resolution = at(root, "resolution", "[width, height]");
+  const auto size = numbers(resolution, 2, "2 (width, height)");
+  set_resolution(camera, resolution, size[0], size[1]);
+  const auto intrinsics = at(root, "intrinsics", "[fx, fy, cx, cy]");
+  const auto k = numbers(intrinsics, 4, "4 (fx, fy, cx, cy)");
+  set_intrinsics(camera, intrinsics, k[0], k[1], k[2], k[3]);
+  camera.distortion =
+      distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
+  const auto euroc_key = find(root, "distortion_coefficients");
+  const auto kalibr_key = find(root, "distortion_coeffs");
+  if (euroc_key || kalibr_key) {
+    set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
+  } else if (camera.distortion != Distortion::none) {
+    at(root, "distortion_coefficients", "a list of numbers");
+  }
+  set_sigmas(camera, root);
+  return camera;
+}
+
+/// Leaves the size at 0 where the file does not tell it.
+void set_opencv_size(Camera& camera, const YamlEntry& root) {
+  if (const auto size = find_any(root, kSize)) {
+    const auto s = numbers(*size, 2, "2 (width, height)");
+    return set_resolution(camera, *size, s[0], s[1]);
+  }
+  const auto width = find_any(root, kWidth);
+  const auto height = find_any(root, kHeight);
+  if (!width && !height) return;
+  const char* const kExpected = "a number of pixels";
+  if (!width) at(root, *kWidth.begin(), kExpected);
+  if (!height) at(root, *kHeight.begin(), kExpected);
+  set_resolution(camera, *width, number(*width), number(*height));
+}
+
+Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
+  Camera camera;
+  set_opencv_size(camera, root);
+  const auto k = numbers(matrix, 9, "9 (a 3x3 matrix)");
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+    yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+  }
+  set_intrinsics(camera, matrix, k[0], k[4], k[2], k[5]);
+  const auto coefficients = find_any(root, kCoefficients);
+  if (!coefficients) return camera;
+  const auto fisheye = find(root, "fisheye_model");
+  camera.distortion =
+      fisheye && number(*fisheye) != 0 ? Distortion::equidistant : Distortion::radial_tangential;
+  if (const auto model = find(root, "distortion_model")) {
+    camera.distortion = distortion_model(*model);
+  }
+  set_coefficients(camera, *coefficients);
+  return camera;
+}
+
+/// "camera.yaml", ... in the order in which they are looked for.
+std::vector<std::string> calibration_names() {
+  std::vector<std::string> names;
+  for (const char* stem : {"camera",
+                           "sensor",
+                           "camchain-imucam",
+                           "camchain",
+                           "calibration",
+                           "camera_calibration",
+                           "calib",
+                           "intrinsics",
+                           "out_camera_data"}) {
+    for (const char* extension : {".yaml", ".yml", ".xml", ".json"}) {
+      names.push_back(std::string(stem) + extension);
+    }
+  }
+  return names;
+}
+
+/// Kalibr prefixes the name of the bag: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
+bool is_camchain(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
+}
+
+}  // namespace
+
+Pose rigid_motion(const YamlEntry& entry) {
+  const auto values = numbers(entry, 16, "16 (a 4x4 matrix, row by row)");
+  const Eigen::Matrix4d T =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  constexpr double kTolerance = 1e-2;  // files are written with few digits
+  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
+      R.determinant() < 0) {
+    yaml_fail(entry, "a matrix that is no rotation", "an orthonormal right-handed 3x3 part");
+  }
+  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    yaml_fail(entry, "another last row", "0, 0, 0, 1");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return {svd.matrixU() * svd.matrixV().transpose(), T.topRightCorner<3, 1>()};
+}
+
+bool is_picture_rate(double rate_hz) {
+  return rate_hz >= kLeastPictureRate_hz && rate_hz <= kMostPictureRate_hz;
+}
+
+const char* distortion_name(Distortion distortion) {
+  if (distortion == Distortion::none) return "none";
+  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
+}
+
+Calibration read_calibration(const std::filesystem::path& file) {
+  const YamlEntry whole = is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
+  const auto kalibr = find(whole, "cam0");
+  const YamlEntry& root = kalibr ? *kalibr : whole;
+  check_model(root);
+  Calibration result;
+  const auto matrix = find_any(root, kMatrix);
+  result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
+  if (const auto T_BS = find(root, "T_BS")) {
+    result.T_body_camera = rigid_motion(*T_BS);
+  } else if (const auto T_cam_imu = find(root, "T_cam_imu")) {
+    result.T_body_camera = inverse(rigid_motion(*T_cam_imu));
+  }
+  if (const auto shift = find(root, "timeshift_cam_imu")) {
+    const double seconds = number(*shift);
+    if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
+    result.time_offset_ns = std::llround(seconds * 1e9);
+  }
+  if (const auto source = find(root, "source"))
+    result.self_calibrated = text(*source, "a name") == "self-calibrated";
+  if (const auto rate = find(root, "rate_hz")) {
+    result.rate_hz = number(*rate);
+    if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
+    if (!is_picture_rate(*result.rate_hz)) {
+      yaml_fail(
+          *rate,
+          fmt::format("{} to {:.0f} pictures a second", kLeastPictureRate_hz, kMostPictureRate_hz));
+    }
+  }
+  return result;
+}
+
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
+  for (const std::string& name : calibration_names()) {
+    if (is_file(folder / name)) return folder / name;
+  }
+  std::set<std::filesystem::path> chains;
+  for (const auto& file : files_in(folder)) {
+    if (is_camchain(file)) chains.insert(file);
+  }
+  return chains.empty() ? std::nullopt : std::optional(*chains.begin());
+}
+
+std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+  if (const auto file = find_calibration(folder)) return *file;
+  throw InputError(folder.string() +
+                   ": found no calibration, expected camera.yaml (the names and formats of EuRoC, "
+                   "OpenCV and Kalibr are known, too; `gpo-inspector calibrate` makes one)");
+}
+
+}  // namespace gpo

@@ -1,0 +1,142 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/truth_file.h"
+
+#include "engine/files/csv_table.h"
+#include "engine/files/folder.h"
+#include "engine/recording/companions/calibration_file.h"
+#include "engine/window/timestamps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+
+namespace {
+
+constexpr int kBiasColumn = 11;  // of b_w in: t, p (3), q (4), v (3), b_w (3), b_a (3)
+constexpr int kColumnsWithBias = 17;
+constexpr double kMostSeconds = 1e6;
+
+/// `q` has the columns of the quaternion's w, x, y, z; p is in columns 1 to 3.
+Pose pose_of(const CsvTable& table, const CsvRow& row, const std::array<int, 4>& q) {
+  const auto value = [&](int column) { return csv_number(table, row, column); };
+  const Eigen::Quaterniond rotation(value(q[0]), value(q[1]), value(q[2]), value(q[3]));
+  const double norm = rotation.norm();
+  if (!(std::abs(norm - 1) <= 1e-2)) {
+    csv_fail(table, row.line, "a quaternion of norm " + std::to_string(norm), "a unit quaternion");
+  }
+  return {rotation.normalized().toRotationMatrix(), {value(1), value(2), value(3)}};
+}
+
+PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
+  PosePath path;
+  path.timestamps_ns = csv_time_stamps(table, unit);
+  path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
+  path.poses.reserve(table.rows.size());
+  for (const auto& row : table.rows) path.poses.push_back(pose_of(table, row, quaternion));
+  return path;
+}
+
+std::optional<Eigen::Vector3d> mean_bias(const CsvTable& table) {
+  if (table.columns != kColumnsWithBias) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& row : table.rows) {
+    for (int i = 0; i < 3; ++i) sum[i] += csv_number(table, row, kBiasColumn + i);
+  }
+  return sum / static_cast<double>(table.rows.size());
+}
+
+std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string& key) {
+  const auto entry = find(root, key);
+  if (!entry) return std::nullopt;
+  const double seconds = number(*entry);
+  if (std::abs(seconds) > kMostSeconds) yaml_fail(*entry, "seconds, at most 1e6");
+  return std::llround(seconds * 1e9);
+}
+
+}  // namespace
+
+std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns) {
+  return 3 * std::min(median_period_ns(timestamps_ns), INT64_MAX / 4);
+}
+
+PosePath read_euroc_path(const std::filesystem::path& file) {
+  const CsvTable table =
+      read_csv(file, {"timestamp", "px", "py", "pz", "qw", "qx", "qy", "qz"}, CsvColumns::at_least);
+  PosePath path = path_of(table, TimeUnit::nanoseconds, {4, 5, 6, 7});
+  path.mean_gyro_bias_rad_s = mean_bias(table);
+  return path;
+}
+
+PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit) {
+  const CsvTable table = read_csv(file,
+                                  {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"},
+                                  CsvColumns::exactly,
+                                  Separator::blanks);
+  return path_of(table, unit, {7, 4, 5, 6});
+}
+
+std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns) {
+  const auto& times = path.timestamps_ns;
+  const auto after = std::lower_bound(times.begin(), times.end(), time_ns);
+  if (after == times.end()) return std::nullopt;
+  const auto b = after - times.begin();
+  if (*after == time_ns) return path.poses[b];
+  if (b == 0) return std::nullopt;
+  const auto a = b - 1;
+  if (times[b] - times[a] > path.longest_gap_ns) return std::nullopt;
+  const double s =
+      static_cast<double>(time_ns - times[a]) / static_cast<double>(times[b] - times[a]);
+  const Pose& T_a = path.poses[a];
+  const Pose& T_b = path.poses[b];
+  const Eigen::Quaterniond q =
+      Eigen::Quaterniond(T_a.R_wc).slerp(s, Eigen::Quaterniond(T_b.R_wc)).normalized();
+  return Pose{q.toRotationMatrix(), (1 - s) * T_a.p_wc + s * T_b.p_wc};
+}
+
+GroundTruth camera_truth(const PosePath& path,
+                         const TruthMounting& mounting,
+                         std::string source,
+                         const std::vector<std::int64_t>& frame_times_ns) {
+  GroundTruth truth;
+  truth.source = std::move(source);
+  truth.poses.reserve(frame_times_ns.size());
+  for (const std::int64_t time : frame_times_ns) {
+    const auto measured = pose_at(path, time + mounting.time_offset_ns);
+    truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)
+                                   : std::nullopt);
+  }
+  return truth;
+}
+
+void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting) {
+  const YamlEntry root = load_yaml(yaml);
+  if (const auto offset = nanoseconds(root, "time_offset_s")) mounting.time_offset_ns = *offset;
+  if (const auto gap = nanoseconds(root, "longest_gap_s")) path.longest_gap_ns = *gap;
+}
+
+void read_mounting_beside(const std::filesystem::path& folder,
+                          PosePath& path,
+                          TruthMounting& mounting) {
+  const auto yaml = if_file(folder / "groundtruth.yaml");
+  if (!yaml) return;
+  read_truth_clock(*yaml, path, mounting);
+  if (const auto T = find(load_yaml(*yaml), "T_truth_camera"))
+    mounting.T_measured_camera = rigid_motion(*T);
+}
+
+std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+                                        const std::vector<std::int64_t>& frame_times_ns) {
+  const auto file = if_file(folder / "groundtruth.txt");
+  if (!file) return std::nullopt;
+  PosePath path = read_tum_path(*file);
+  TruthMounting mounting;
+  read_mounting_beside(folder, path, mounting);
+  return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
+}
+
+}  // namespace gpo
