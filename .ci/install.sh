@@ -16,7 +16,7 @@ test_packages=(
   # bags that we did not write
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
   python3-opencv python3-jsonschema  # an initializer that we did not compile
-  python3-pytest
+  python3-pytest python3-matplotlib  # the Python module, engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
 )
 benchmark_packages=(libbenchmark-dev)

@@ -56,6 +56,8 @@ PYBIND11_MODULE(_gpo, module) {
   av_log_set_level(AV_LOG_QUIET);
   py::register_exception<gpo::InputError>(module, "InputError", PyExc_ValueError);
   module.attr("__version__") = GPO_VERSION;
+  gpo::bind_solved(module);
   gpo::bind_recording(module);
+  gpo::bind_initialize(module);
   gpo::bind_results(module);
 }

@@ -48,6 +48,9 @@ py::object gyroscope_of(const OpenRecording& open) {
   result["R_gyro_camera"] = gyro.R_gyro_camera;
   result["time_offset_ns"] = gyro.time_offset_ns;
   result["bias_rad_s"] = gyro.bias_rad_s;
+  result["bias_sigma_rad_s"] = gyro.bias_sigma_rad_s;
+  result["bias_known"] = gyro.bias_known;
+  result["noise_density"] = gyro.noise_density;
   return result;
 }
 
@@ -68,13 +71,6 @@ py::object truth_of(const OpenRecording& open) {
     result["distance"] = recording->plane->distance;
   }
   return result;
-}
-
-Eigen::Matrix3d intrinsics_of(const OpenRecording& open) {
-  const Camera& camera = open.shared->camera;
-  Eigen::Matrix3d K;
-  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-  return K;
 }
 
 }  // namespace
@@ -101,28 +97,19 @@ void bind_recording(py::module_& module) {
             return seen_by_numpy(all.data(), {std::ssize(all)}, {sizeof(std::int64_t)}, r.shared);
           },
           "(N,) int64 [ns]")
-      .def_property_readonly("K", &intrinsics_of, "(3, 3) [px]; pixel centers at integers")
       .def_property_readonly(
-          "distortion",
-          [](const Open& r) { return py::array(py::cast(r.shared->camera.coefficients)); },
-          "OpenCV's order: k1 k2 p1 p2 (k3 ...); of a fisheye k1 to k4")
-      .def_property_readonly(
-          "size",
-          [](const Open& r) {
-            const Camera& camera = r.shared->camera;
-            return py::make_tuple(camera.width, camera.height);
-          },
-          "(width, height) [px]")
+          "camera", [](const Open& r) { return r.shared->camera; }, "Camera, with K and lens")
       .def_property_readonly(
           "camera_source",
           [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
           "file, self-calibrated or guess")
       .def("frame", &frame_of, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
-      .def_property_readonly(
-          "gyroscope",
-          &gyroscope_of,
-          "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
-          "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s (3,)}")
+      .def_property_readonly("gyroscope",
+                             &gyroscope_of,
+                             "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
+                             "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s "
+                             "(3,), bias_sigma_rad_s, "
+                             "bias_known, noise_density [rad/s/sqrt(Hz)]}")
       .def_property_readonly(
           "truth",
           &truth_of,

@@ -4,6 +4,7 @@
 #include "app/python/arrays.h"
 #include "app/python/bindings.h"
 #include "app/python/interruptible.h"
+#include "app/python/solved.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/experiment/experiment.h"
@@ -32,16 +33,20 @@ namespace py = pybind11;
 namespace fs = std::filesystem;
 
 /// Python's Result.
-struct Result {
+struct Result : Solved {
+  explicit Result(std::shared_ptr<const Inspection> inspection)
+      : Solved{{inspection, &*inspection->initialization},
+               inspection->window,
+               {inspection->tracks, &inspection->tracks->ids}},
+        shared(std::move(inspection)) {}
   std::shared_ptr<const Inspection> shared;
-  const Initialization& initialization() const { return *shared->initialization; }
 };
 
 Result run(const RecordingOrPath& recording, const py::kwargs& given) {
   const SharedRecording open = opened(recording);
   const Settings settings = settings_of(given);
-  return {interruptible(
-      [&](const std::stop_token& stop) { return Inspector(open).inspect(settings, stop); })};
+  return Result(interruptible(
+      [&](const std::stop_token& stop) { return Inspector(open).inspect(settings, stop); }));
 }
 
 py::object metrics_of(const Result& result) {
@@ -49,27 +54,22 @@ py::object metrics_of(const Result& result) {
   return py::module_::import("json").attr("loads")(to_json(*result.shared).at("metrics").dump());
 }
 
-py::array points_of(const Result& result) {
-  static const MapPoint none{};
-  const auto& points = result.initialization().points;
-  return seen_by_numpy(points.empty() ? none.position.data() : points.front().position.data(),
-                       {std::ssize(points), 3},
-                       {sizeof(MapPoint), sizeof(double)},
-                       result.shared);
-}
-
-py::list planes_of(const Result& result) {
-  const Initialization& initialization = result.initialization();
-  py::list planes;
-  for (const PlaneEstimate& estimate : initialization.planes) {
-    py::dict plane;
-    plane["number"] = estimate.number + 1;
-    plane["normal"] = estimate.plane.normal;
-    plane["distance"] = estimate.plane.distance;
-    plane["normal_covariance_rad2"] = estimate.normal_covariance;
-    planes.append(std::move(plane));
+/// As `initialize` takes them: (timestamp_ns, ids, pixels) of each frame.
+py::list frames_of(const Result& result) {
+  py::list frames;
+  const auto& tracks = result.shared->tracks;
+  for (int i = 0; tracks && i < tracks->frame_count(); ++i) {
+    std::vector<int> seen;
+    for (int j = 0; j < tracks->track_count(); ++j)
+      if (tracks->seen(i, j)) seen.push_back(j);
+    std::vector<std::int64_t> ids;
+    for (const int j : seen) ids.push_back(tracks->ids[j]);
+    const Eigen::MatrixX2d pixels = tracks->raw_px[i](Eigen::all, seen).transpose();
+    frames.append(py::make_tuple(result.shared->recording->timestamps_ns[tracks->start + i],
+                                 py::array_t<std::int64_t>(std::ssize(ids), ids.data()),
+                                 pixels));
   }
-  return planes;
+  return frames;
 }
 
 py::object json_of(const Result& result) {
@@ -161,28 +161,13 @@ py::array snapshot(const RecordingOrPath& recording,
 }  // namespace
 
 void bind_results(py::module_& module) {
-  py::class_<Result>(module,
-                     "Result",
-                     "One initialization. World: the reference camera; unit: the distance of the "
-                     "leading plane. Arrays look at its memory, read-only.")
-      .def_property_readonly("ok", [](const Result& r) { return r.initialization().ok; })
-      .def_property_readonly("reason", [](const Result& r) { return r.initialization().reason; })
+  py::class_<Result, Solved>(
+      module, "Result", "One initialization of a recording's window, with what it was made of.")
       .def_property_readonly("method", [](const Result& r) { return r.shared->settings.method; })
-      .def_property_readonly(
-          "R_wc",
-          [](const Result& r) { return rotations_of(r.initialization().cameras, r.shared); },
-          "(N, 3, 3), camera to world, one a frame of the window")
-      .def_property_readonly(
-          "p_wc",
-          [](const Result& r) { return centers_of(r.initialization().cameras, r.shared); },
-          "(N, 3) camera centers [plane distances]")
-      .def_property_readonly("points", &points_of, "(M, 3) [plane distances]")
-      .def_property_readonly(
-          "normal",
-          [](const Result& r) { return r.initialization().plane.normal; },
-          "(3,) of the leading plane, in the reference camera: normal . x + distance = 0")
-      .def_property_readonly(
-          "planes", &planes_of, "[{number, normal (3,), distance, normal_covariance_rad2 (3, 3)}]")
+      .def_property_readonly("frames",
+                             &frames_of,
+                             "[(timestamp_ns, ids (n,), pixels (n, 2) as in the picture)]: what "
+                             "`initialize` takes")
       .def_property_readonly("metrics", &metrics_of, "None without truth; else as in the JSON")
       .def_property_readonly("json", &json_of, "what `run --json` writes, as a dict")
       .def("__str__", [](const Result& r) { return to_text(*r.shared); })
@@ -190,7 +175,7 @@ void bind_results(py::module_& module) {
         return fmt::format("<gpo.Result {} on {}: {}>",
                            r.shared->settings.method,
                            r.shared->recording->name,
-                           r.initialization().ok ? "ok" : r.initialization().reason);
+                           r.initialization->ok ? "ok" : r.initialization->reason);
       });
   module.def("run",
              &run,

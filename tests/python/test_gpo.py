@@ -7,6 +7,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -67,12 +68,80 @@ def test_arrays_look_at_the_result():
     on_plane = result.points @ result.normal + 1
     assert np.median(np.abs(on_plane)) < 0.02
     assert result.planes[0]["number"] == 1
+    assert [list(p["tracks"]) for p in result.planes] == [p["tracks"] for p in told["planes"]]
     points = result.points
     del result
     gc.collect()
     assert np.isfinite(points).all()
     with pytest.raises(ValueError):
         points[0, 0] = 1
+
+
+def same(one, other):
+    for name in ("R_wc", "p_wc", "points", "normal", "point_tracks", "bias_rad_s"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    assert one.verdict == other.verdict and one.normal_sigma_deg == other.normal_sigma_deg
+    assert len(one.planes) == len(other.planes)
+
+
+@pytest.mark.parametrize("settings", [{}, {"method": "ba"}, {"planes": "one"}, {"rotations": "averaging"}])
+def test_initializes_tracks_to_the_same_bits(settings):
+    recording = gpo.open(DESK)
+    whole = gpo.run(recording, frames=20, start=5, **settings)
+    window = gpo.initialize(recording.camera, whole.frames, recording.gyroscope, **settings)
+    assert window.ok and window.is_ready == (whole.readiness == "ready")
+    same(window, whole)
+    np.testing.assert_array_equal(window.ids, whole.ids)
+    assert set(window.point_tracks) <= set(range(len(window.ids)))
+
+
+def test_initializes_plain_lists_of_undistorted_pixels():
+    """A plane at z = 2, seen by a camera that moves sideways and turns: closed form."""
+    rng = np.random.default_rng(3)
+    points = np.column_stack([rng.uniform(-1, 1, (60, 2)), np.full(60, 2.0)])
+    K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
+    frames = []
+    for i in range(12):
+        a = 0.01 * i
+        R = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
+        center = np.array([0.05 * i, 0.01 * i, 0.02 * i])
+        seen = (points - center) @ R @ K.T
+        frames.append((i * 33_000_000, list(range(60)), (seen[:, :2] / seen[:, 2:]).tolist(), R))
+    window = gpo.initialize(K.tolist(), frames, method="gpo")
+    assert window.ok, window.reason
+    assert window.rotations == "truth"
+    np.testing.assert_allclose(window.normal, [0, 0, -1], atol=1e-6)
+    np.testing.assert_allclose(window.p_wc[-1], np.array([0.55, 0.11, 0.22]) / 2, atol=1e-6)
+
+
+def test_a_live_window_is_ready_where_run_says_so():
+    recording = gpo.open(DESK)
+    whole = gpo.run(recording, frames=30)
+    live = gpo.Initializer(recording.camera, recording.gyroscope, background=False)
+    for i, frame in enumerate(whole.frames):
+        status = live.add_frame(*frame)
+        if status.ready:
+            break
+    assert status.ready and status.ready_frames == i + 1 and status.answer.is_ready
+    fresh = gpo.run(recording, frames=i + 1)
+    assert fresh.readiness == "ready"
+    same(status.answer, fresh)
+    beside = gpo.Initializer(recording.camera, recording.gyroscope)
+    for frame in whole.frames[: i + 1]:
+        beside.add_frame(*frame)
+    assert beside.wait().ready
+
+
+def test_a_live_gyroscope_comes_in_samples():
+    recording = gpo.open(DESK)
+    whole = gpo.run(recording, frames=12)
+    samples = dict(recording.gyroscope)
+    times, rates = samples.pop("timestamps_ns"), samples.pop("rates_rad_s")
+    live = gpo.Initializer(recording.camera, samples, background=False)
+    for time_ns, rate in zip(times, rates):
+        live.add_gyroscope(int(time_ns), rate)
+    assert live.add_frame(*whole.frames[0]).frames == 1
+    assert live.status.frames == 1 and not live.status.ready
 
 
 def test_opens_a_recording():
@@ -83,8 +152,8 @@ def test_opens_a_recording():
     files = sorted((ROOT / "sequences/desk/mav0/cam0/data").iterdir())
     picture = recording.frame(3)
     np.testing.assert_array_equal(picture, cv2.imread(str(files[3])))
-    assert recording.size == (picture.shape[1], picture.shape[0])
-    assert recording.K[0, 2] == pytest.approx(picture.shape[1] / 2, rel=0.1)
+    assert recording.camera.size == (picture.shape[1], picture.shape[0])
+    assert recording.camera.K[0, 2] == pytest.approx(picture.shape[1] / 2, rel=0.1)
     rates = recording.gyroscope["rates_rad_s"]
     assert rates.shape == (len(recording.gyroscope["timestamps_ns"]), 3)
     truth = recording.truth
@@ -92,7 +161,31 @@ def test_opens_a_recording():
     assert np.linalg.norm(truth["normal"]) == pytest.approx(1)
     with pytest.raises(IndexError):
         recording.frame(len(recording))
+    lens = gpo.Camera(recording.camera.K, distortion=[-0.3, 0.1, 0.001, -0.002, 0.01])
+    pixels = np.array([[100.0, 50], [300, 200], [10, 400]])
+    to_the_end = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 200, 1e-12)
+    judged = cv2.undistortPointsIter(
+        pixels[:, None], lens.K, lens.distortion, np.eye(3), lens.K, to_the_end
+    )
+    np.testing.assert_allclose(lens.undistort(pixels), judged[:, 0], atol=1e-6)
     assert gpo.run(recording, frames=10).normal.shape == (3,)
+
+
+def test_the_example_draws_a_room(tmp_path):
+    pytest.importorskip("matplotlib")
+    room = ROOT.parent / "shared/data/euroc-room"
+    recording, planes = (room, 2) if room.exists() else (DESK, 1)
+    figure = tmp_path / "planes.png"
+    script = ROOT / "engine/examples/planes_of_a_room.py"
+    told = subprocess.run(
+        [sys.executable, script, recording, figure], check=True, capture_output=True, text=True
+    ).stdout
+    assert told.splitlines()[-1] == f"wrote {figure}"
+    picture = cv2.imread(str(figure))
+    assert picture.shape == (500, 1300, 3)
+    # matplotlib's tab10 of plane k, as BGR
+    colors = [(14, 127, 255), (44, 160, 44)][:planes]
+    assert all((picture == color).all(axis=2).sum() > 100 for color in colors)
 
 
 def test_evaluates_to_a_structured_array():
@@ -126,6 +219,17 @@ def test_draws_what_the_command_line_draws(view, tmp_path):
         (lambda: gpo.snapshot(DESK, "kitchen"), "expected one of image"),
         (lambda: gpo.snapshot(DESK, "image", frame=999), "frame: 999 is not in the recording"),
         (lambda: gpo.evaluate([], methods="gpo"), "expected recordings"),
+        (lambda: gpo.initialize(np.eye(3), []), "a window of 0 frames"),
+        (lambda: gpo.initialize(np.zeros((3, 3)), [(0, [], np.zeros((0, 2)))] * 2), "camera: fx 0"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1], [[1, 2, 3]])]), r"frame 0: expected ids \(n,\)"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1], "here")]), "frame 0: expected"),
+        (lambda: gpo.initialize(np.eye(3), [(0, [1])]), "frame 0: expected"),
+        (lambda: gpo.initialize(np.eye(3), [], start=3), "start: of recordings"),
+        (lambda: gpo.initialize(np.eye(3), [], speed=3), "speed"),
+        (lambda: gpo.initialize(np.eye(3), [], {"rates_rad_s": [1, 2]}), r"rates_rad_s \(3,\), or \(m, 3\)"),
+        (lambda: gpo.initialize(np.eye(3), [], {"bias_rad_s": "none"}), "bias_rad_s is of another type"),
+        (lambda: gpo.Initializer(np.eye(2)), r"expected K \(3, 3\)"),
+        (lambda: gpo.Camera(np.eye(3), model="mirror"), "model: mirror, expected none"),
     ],
 )
 def test_bad_input_is_one_documented_error(call, message):

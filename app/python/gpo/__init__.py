@@ -8,6 +8,35 @@
 
 World: the reference camera of the window; unit: the distance of the leading plane.
 """
-from ._gpo import InputError, Recording, Result, __version__, evaluate, open, run, snapshot
+from ._gpo import (
+    Camera,
+    Initialization,
+    Initialized,
+    Initializer,
+    InputError,
+    LiveStatus,
+    Recording,
+    Result,
+    __version__,
+    evaluate,
+    initialize,
+    open,
+    run,
+    snapshot,
+)
 
-__all__ = ["InputError", "Recording", "Result", "evaluate", "open", "run", "snapshot"]
+__all__ = [
+    "Camera",
+    "Initialization",
+    "Initialized",
+    "Initializer",
+    "InputError",
+    "LiveStatus",
+    "Recording",
+    "Result",
+    "evaluate",
+    "initialize",
+    "open",
+    "run",
+    "snapshot",
+]

@@ -1,9 +1,9 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-from typing import Any, Optional, Sequence, TypedDict, Union
+from typing import Any, Iterable, Optional, Sequence, Tuple, TypedDict, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
@@ -16,6 +16,9 @@ class Gyroscope(TypedDict):
     R_gyro_camera: NDArray[np.float64]
     time_offset_ns: int
     bias_rad_s: NDArray[np.float64]
+    bias_sigma_rad_s: float
+    bias_known: bool
+    noise_density: float
 
 class Truth(TypedDict, total=False):
     R_wc: NDArray[np.float64]
@@ -28,6 +31,20 @@ class PlaneEstimate(TypedDict):
     normal: NDArray[np.float64]
     distance: float
     normal_covariance_rad2: Optional[NDArray[np.float64]]
+    tracks: NDArray[np.int64]
+
+class Camera:
+    K: NDArray[np.float64]
+    size: tuple[int, int]
+    distortion: NDArray[np.float64]
+    def __init__(
+        self,
+        K: ArrayLike,
+        size: tuple[int, int] = ...,
+        distortion: Sequence[float] = ...,
+        model: str = ...,
+    ) -> None: ...
+    def undistort(self, pixels: ArrayLike) -> NDArray[np.float64]: ...
 
 class Recording:
     name: str
@@ -35,27 +52,77 @@ class Recording:
     path: str
     notes: list[str]
     timestamps_ns: NDArray[np.int64]
-    K: NDArray[np.float64]
-    distortion: NDArray[np.float64]
-    size: tuple[int, int]
+    camera: Camera
     camera_source: str
     gyroscope: Optional[Gyroscope]
     truth: Optional[Truth]
     def __len__(self) -> int: ...
     def frame(self, frame: int) -> NDArray[np.uint8]: ...
 
-class Result:
+# (timestamp_ns, ids (n,), pixels (n, 2)), or with R_wc (3, 3)
+Frame = Union[Tuple[int, ArrayLike, ArrayLike], Tuple[int, ArrayLike, ArrayLike, Optional[ArrayLike]]]
+
+class Initialization:
     ok: bool
     reason: str
-    method: str
+    readiness: Optional[str]
+    verdict: str
     R_wc: NDArray[np.float64]
     p_wc: NDArray[np.float64]
     points: NDArray[np.float64]
+    point_tracks: NDArray[np.int32]
     normal: NDArray[np.float64]
+    normal_sigma_deg: Optional[float]
+    bias_rad_s: Optional[NDArray[np.float64]]
     planes: list[PlaneEstimate]
+    ids: NDArray[np.int64]
+
+class Initialized(Initialization):
+    is_ready: bool
+    rotations: str
+
+class Result(Initialization):
+    method: str
+    frames: list[tuple[int, NDArray[np.int64], NDArray[np.float64]]]
     metrics: Optional[dict[str, Any]]
     json: dict[str, Any]
 
+class LiveStatus:
+    ready: bool
+    reference: int
+    frames: int
+    ready_frames: int
+    solved_frames: int
+    pending: int
+    started_anew: bool
+    reason: str
+    answer: Optional[Initialized]
+
+class Initializer:
+    status: LiveStatus
+    def __init__(
+        self,
+        camera: Union[Camera, ArrayLike],
+        gyroscope: Optional[dict[str, Any]] = ...,
+        background: bool = ...,
+        most_frames: int = ...,
+        least_tracks: int = ...,
+        least_share: float = ...,
+        **settings: Any,
+    ) -> None: ...
+    def add_gyroscope(self, timestamp_ns: int, rate_rad_s: ArrayLike) -> None: ...
+    def add_frame(
+        self, timestamp_ns: int, ids: ArrayLike, pixels: ArrayLike, R_wc: Optional[ArrayLike] = ...
+    ) -> LiveStatus: ...
+    def wait(self) -> LiveStatus: ...
+
+def initialize(
+    camera: Union[Camera, ArrayLike],
+    frames: Iterable[Frame],
+    gyroscope: Optional[dict[str, Any]] = ...,
+    camera_is_guess: bool = ...,
+    **settings: Any,
+) -> Initialized: ...
 def open(path: str) -> Recording: ...
 def run(recording: Union[Recording, str], **settings: Any) -> Result: ...
 def evaluate(

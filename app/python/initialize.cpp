@@ -1,0 +1,337 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The front door, from Python: tracks of any front end.
+#include "engine/initialize.h"
+
+#include "app/python/arrays.h"
+#include "app/python/bindings.h"
+#include "app/python/interruptible.h"
+#include "app/python/solved.h"
+#include "engine/base/error.h"
+#include "engine/inspection/settings/settings_table.h"
+
+#include <map>
+#include <variant>
+
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+namespace gpo {
+namespace {
+
+namespace py = pybind11;
+
+/// Python's Initialized.
+struct TrackedWindow : Solved {
+  explicit TrackedWindow(std::shared_ptr<const Initialized> window)
+      : Solved{{window, &window->initialization},
+               {window, &window->window},
+               {window, &window->ids}},
+        shared(std::move(window)) {}
+  std::shared_ptr<const Initialized> shared;
+};
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+/// K alone is a lens that bends nothing.
+using CameraOrK = std::variant<Camera, Numbers>;
+
+Eigen::Matrix3d matrix_of(const Numbers& rows, const char* name) {
+  if (rows.ndim() != 2 || rows.shape(0) != 3 || rows.shape(1) != 3)
+    throw InputError(fmt::format("expected {} (3, 3)", name));
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
+}
+
+/// Rows of three, or one.
+std::vector<Eigen::Vector3d> vectors_of(const Numbers& rows, const char* name) {
+  if (rows.ndim() == 0 || rows.shape(rows.ndim() - 1) != 3)
+    throw InputError(fmt::format("gyroscope: expected {} (3,), or (m, 3)", name));
+  std::vector<Eigen::Vector3d> vectors;
+  for (const double* row = rows.data(); row < rows.data() + rows.size(); row += 3)
+    vectors.emplace_back(row);
+  return vectors;
+}
+
+const std::map<std::string, Distortion> kLenses = {
+    {"none", Distortion::none},
+    {"radial-tangential", Distortion::radial_tangential},
+    {"equidistant", Distortion::equidistant},
+};
+
+Camera camera_of(const Eigen::Matrix3d& K,
+                 std::pair<int, int> size,
+                 std::vector<double> distortion,
+                 const std::string& model) {
+  const auto lens = kLenses.find(model);
+  if (lens == kLenses.end()) {
+    throw InputError(
+        fmt::format("model: {}, expected none, radial-tangential or equidistant", model));
+  }
+  return {.width = size.first,
+          .height = size.second,
+          .fx = K(0, 0),
+          .fy = K(1, 1),
+          .cx = K(0, 2),
+          .cy = K(1, 2),
+          .distortion = distortion.empty() ? Distortion::none : lens->second,
+          .coefficients = std::move(distortion)};
+}
+
+Camera camera_of(const CameraOrK& given) {
+  if (const auto* camera = std::get_if<Camera>(&given)) return *camera;
+  return camera_of(matrix_of(std::get<Numbers>(given), "K"), {0, 0}, {}, "none");
+}
+
+Frame frame_of(std::int64_t timestamp_ns,
+               const Ids& ids,
+               const Numbers& pixels,
+               const std::optional<Numbers>& R_wc) {
+  if (ids.ndim() != 1 || pixels.ndim() != 2 || pixels.shape(1) != 2)
+    throw InputError("expected ids (n,) and pixels (n, 2)");
+  return {.timestamp_ns = timestamp_ns,
+          .ids = {ids.data(), ids.data() + ids.size()},
+          .raw_px = Eigen::Map<const Eigen::Matrix2Xd>(pixels.data(), 2, pixels.shape(0)),
+          .R_wc = R_wc ? std::optional(matrix_of(*R_wc, "R_wc")) : std::nullopt};
+}
+
+/// Throws InputError with these words where the object is of another type.
+template <class T>
+T cast(const py::handle& given, const std::string& otherwise) {
+  try {
+    return given.cast<T>();
+  } catch (const py::cast_error&) {
+    throw InputError(otherwise);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    throw InputError(otherwise);
+  }
+}
+
+Frame frame_of(const py::handle& given, std::size_t number) {
+  const std::string expected =
+      fmt::format("frame {}: expected (timestamp_ns, ids, pixels) or with R_wc, numbers", number);
+  const auto parts = cast<py::sequence>(given, expected);
+  if (parts.size() != 3 && parts.size() != 4) throw InputError(expected);
+  const auto time_ns = cast<std::int64_t>(parts[0], expected);
+  const auto ids = cast<Ids>(parts[1], expected);
+  const auto pixels = cast<Numbers>(parts[2], expected);
+  using Rotation = std::optional<Numbers>;
+  const auto R_wc = parts.size() == 4 ? cast<Rotation>(parts[3], expected) : Rotation();
+  try {
+    return frame_of(time_ns, ids, pixels, R_wc);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("frame {}: {}", number, error.what()));
+  }
+}
+
+template <class T>
+void take(const py::dict& given, const char* key, T& field) {
+  if (given.contains(key))
+    field = cast<T>(given[key], fmt::format("gyroscope: {} is of another type", key));
+}
+
+/// The keys of `Recording.gyroscope`; what is missing is as of a phone's.
+std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
+  if (!given) return std::nullopt;
+  Gyroscope gyroscope;
+  Numbers rates(std::vector<py::ssize_t>{0, 3});
+  Numbers bias(3, Eigen::Vector3d::Zero().eval().data());
+  Numbers axes(std::vector<py::ssize_t>{3, 3}, Eigen::Matrix3d::Identity().eval().data());
+  take(*given, "timestamps_ns", gyroscope.timestamps_ns);
+  take(*given, "rates_rad_s", rates);
+  take(*given, "R_gyro_camera", axes);
+  take(*given, "time_offset_ns", gyroscope.time_offset_ns);
+  take(*given, "bias_rad_s", bias);
+  take(*given, "bias_sigma_rad_s", gyroscope.bias_sigma_rad_s);
+  take(*given, "bias_known", gyroscope.bias_known);
+  take(*given, "noise_density", gyroscope.noise_density);
+  gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
+  gyroscope.bias_rad_s = vectors_of(bias, "bias_rad_s").front();
+  gyroscope.rates_rad_s = vectors_of(rates, "rates_rad_s");
+  return gyroscope;
+}
+
+/// The settings that tell how tracks are initialized, not which ones.
+InitializeOptions options_of_keywords(const py::kwargs& given) {
+  for (const auto& [key, value] : given) {
+    const std::string name = py::str(key);
+    if (name == "preset") throw InputError("preset: of recordings; expected single settings");
+    if (find_setting(name).stage == SettingStage::tracks || name == "exclude")
+      throw InputError(name + ": of recordings; the frames given are the window");
+  }
+  return options_of(settings_of(given));
+}
+
+TrackedWindow initialized(const CameraOrK& camera,
+                          const py::iterable& frames,
+                          const std::optional<py::dict>& gyroscope,
+                          bool camera_is_guess,
+                          const py::kwargs& given) {
+  std::vector<Frame> window;
+  for (const py::handle frame : frames) window.push_back(frame_of(frame, window.size()));
+  InitializeOptions options = options_of_keywords(given);
+  options.camera_is_guess = camera_is_guess;
+  const auto gyro = gyroscope_of(gyroscope);
+  const Camera calibrated = camera_of(camera);
+  return TrackedWindow(interruptible([&](const std::stop_token& stop) {
+    return std::make_shared<const Initialized>(
+        initialize(calibrated, window, gyro ? &*gyro : nullptr, options, stop));
+  }));
+}
+
+std::unique_ptr<Initializer> initializer_of(const CameraOrK& camera,
+                                            const std::optional<py::dict>& gyroscope,
+                                            LiveOptions live,
+                                            const py::kwargs& given) {
+  live.initialize = options_of_keywords(given);
+  return std::make_unique<Initializer>(camera_of(camera), live, gyroscope_of(gyroscope));
+}
+
+py::array undistorted(const Camera& camera, const Numbers& pixels) {
+  if (pixels.ndim() != 2 || pixels.shape(1) != 2) throw InputError("expected pixels (n, 2)");
+  Numbers result(std::vector<py::ssize_t>{pixels.shape(0), 2});
+  for (py::ssize_t i = 0; i < pixels.shape(0); ++i)
+    Eigen::Vector2d::Map(result.mutable_data(i, 0)) =
+        undistort(camera, Eigen::Vector2d::Map(pixels.data(i, 0)));
+  return result;
+}
+
+void bind_camera(py::module_& module) {
+  py::class_<Camera>(
+      module,
+      "Camera",
+      "A calibrated camera. Pixel centers at integers; K of the undistorted picture, too.")
+      .def(py::init([](const Numbers& K,
+                       std::pair<int, int> size,
+                       std::vector<double> distortion,
+                       const std::string& model) {
+             return camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
+           }),
+           py::arg("K"),
+           py::arg("size") = std::pair(0, 0),
+           py::arg("distortion") = std::vector<double>(),
+           py::arg("model") = "radial-tangential",
+           "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model none, "
+           "radial-tangential or equidistant")
+      .def_property_readonly("K", &intrinsic_matrix, "(3, 3) [px]")
+      .def_property_readonly(
+          "size",
+          [](const Camera& c) { return std::pair(c.width, c.height); },
+          "(width, height) [px]")
+      .def_property_readonly(
+          "distortion",
+          [](const Camera& c) { return py::array(py::cast(c.coefficients)); },
+          "OpenCV's order: k1 k2 p1 p2 (k3 ...); of a fisheye k1 to k4")
+      .def("undistort",
+           &undistorted,
+           py::arg("pixels"),
+           "(n, 2), where a camera without lens but the same K sees them; NaN beyond the model");
+}
+
+void bind_live(py::module_& module) {
+  py::class_<LiveStatus>(module, "LiveStatus", "What an Initializer knows after a frame.")
+      .def_readonly("ready", &LiveStatus::ready)
+      .def_readonly("reference", &LiveStatus::reference, "the window's first frame, as added")
+      .def_readonly("frames", &LiveStatus::frames, "of the window")
+      .def_readonly("ready_frames", &LiveStatus::ready_frames, "of the shortest ready window")
+      .def_readonly("solved_frames", &LiveStatus::solved_frames)
+      .def_readonly("pending", &LiveStatus::pending)
+      .def_readonly("started_anew", &LiveStatus::started_anew)
+      .def_readonly("reason", &LiveStatus::reason)
+      .def_property_readonly(
+          "answer",
+          [](const LiveStatus& s) {
+            return s.answer ? std::optional(TrackedWindow(s.answer)) : std::nullopt;
+          },
+          "Initialized, or None")
+      .def("__repr__", [](const LiveStatus& s) {
+        return fmt::format(
+            "<gpo.LiveStatus {} frames: {}>", s.frames, s.ready ? "ready" : s.reason);
+      });
+  const LiveOptions usual;
+  py::class_<Initializer>(
+      module,
+      "Initializer",
+      "A window that grows with each frame until it is fit to initialize from. With background "
+      "(the default) windows are solved on a thread of its own and add_frame returns at once.")
+      .def(
+          py::init([](const CameraOrK& camera,
+                      const std::optional<py::dict>& gyroscope,
+                      bool background,
+                      int most_frames,
+                      int least_tracks,
+                      double least_share,
+                      const py::kwargs& given) {
+            return initializer_of(
+                camera, gyroscope, {{}, background, most_frames, least_tracks, least_share}, given);
+          }),
+          py::arg("camera"),
+          py::arg("gyroscope") = py::none(),
+          py::arg("background") = usual.background,
+          py::arg("most_frames") = usual.most_frames,
+          py::arg("least_tracks") = usual.least_tracks,
+          py::arg("least_share") = usual.least_share)
+      .def(
+          "add_gyroscope",
+          [](Initializer& live, std::int64_t timestamp_ns, const Numbers& rate_rad_s) {
+            live.add_gyroscope(timestamp_ns, vectors_of(rate_rad_s, "rate_rad_s").front());
+          },
+          py::arg("timestamp_ns"),
+          py::arg("rate_rad_s"),
+          "One sample, (3,) in the gyroscope's own axes; in order of time, best before its frame")
+      .def(
+          "add_frame",
+          [](Initializer& live,
+             std::int64_t timestamp_ns,
+             const Ids& ids,
+             const Numbers& pixels,
+             const std::optional<Numbers>& R_wc) {
+            const Frame frame = frame_of(timestamp_ns, ids, pixels, R_wc);
+            const py::gil_scoped_release others_may_run;
+            return live.add_frame(frame);
+          },
+          py::arg("timestamp_ns"),
+          py::arg("ids"),
+          py::arg("pixels"),
+          py::arg("R_wc") = py::none(),
+          "ids (n,), pixels (n, 2) as in the picture, R_wc (3, 3) where you know it")
+      .def_property_readonly("status", &Initializer::status)
+      .def("wait",
+           &Initializer::wait,
+           py::call_guard<py::gil_scoped_release>(),
+           "Until no window is pending");
+}
+
+}  // namespace
+
+void bind_initialize(py::module_& module) {
+  bind_camera(module);
+  py::class_<TrackedWindow, Solved>(
+      module, "Initialized", "One initialization of tracks that were handed over.")
+      .def_property_readonly("is_ready",
+                             [](const TrackedWindow& w) { return w.shared->is_ready(); })
+      .def_property_readonly(
+          "rotations",
+          [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },
+          "where the rotations came from")
+      .def("__repr__", [](const TrackedWindow& w) {
+        return fmt::format("<gpo.Initialized: {}>",
+                           w.initialization->ok ? "ok" : w.initialization->reason);
+      });
+  module.def(
+      "initialize",
+      &initialized,
+      py::arg("camera"),
+      py::arg("frames"),
+      py::arg("gyroscope") = py::none(),
+      py::arg("camera_is_guess") = false,
+      "Tracks of any front end to cameras, points and planes; the same bits as `run` for the "
+      "same tracks. camera: Camera, or K (3, 3) of undistorted pixels. frames: "
+      "(timestamp_ns, ids (n,), pixels (n, 2)) or with R_wc (3, 3), each. gyroscope: a dict "
+      "as `Recording.gyroscope`. Settings as of `run`: method, rotations, planes, ... "
+      "Raises InputError; what cannot be initialized is not ok, with the reason.");
+  bind_live(module);
+}
+
+}  // namespace gpo
