@@ -27,8 +27,8 @@ fs::path example_recording() {
   std::error_code none;
   const fs::path here = program_folder();
   const fs::path example = fs::path("sequences") / "desk";
-  for (const fs::path& root : {fs::path(GPO_SOURCE_DIR),
-                               here.parent_path() / "share" / "gpo-inspector",
+  for (const fs::path& root : {here.parent_path() / "share" / "gpo-inspector",
+                               fs::path(GPO_SOURCE_DIR),
                                here,
                                here.parent_path(),
                                fs::current_path(none)}) {

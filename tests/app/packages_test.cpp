@@ -1,0 +1,110 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The Debian packages of this build: what is in them, and that it works where they put it.
+// tests/packages.sh installs them on a bare machine.
+#include "engine/version.h"
+#include "tests/app/program.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::shell;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+fs::path folder() { return fs::path(GPO_TEST_OUTPUT_DIR) / "packages"; }
+fs::path root() { return folder() / "root"; }
+
+fs::path deb(const std::string& name) {
+  const std::string architecture = shell("dpkg --print-architecture").out;
+  return folder() / "debs" /
+         fmt::format("{}_{}.{}.{}_{}.deb",
+                     name,
+                     GPO_VERSION_MAJOR,
+                     GPO_VERSION_MINOR,
+                     GPO_VERSION_PATCH,
+                     architecture.substr(0, architecture.find('\n')));
+}
+
+std::string field(const std::string& name, const std::string& field) {
+  return shell(fmt::format("dpkg-deb -f {} {}", deb(name).string(), field)).out;
+}
+
+/// As if below a root of their own.
+void make_and_unpack() {
+  fs::remove_all(folder());
+  const test::Outcome made = shell(
+      fmt::format("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
+                  folder().string(),
+                  GPO_BINARY_DIR));
+  ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+  for (const char* name : {"gpo-inspector", "libgpo-dev", "python3-gpo"}) {
+    const test::Outcome unpacked =
+        shell(fmt::format("dpkg-deb -x {} {}", deb(name).string(), root().string()));
+    ASSERT_EQ(unpacked.exit_code, 0) << unpacked.err;
+  }
+}
+
+void expect_that_the_program_runs() {
+  const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
+  const fs::path picture = folder() / "image.png";
+  const test::Outcome drawn =
+      shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
+                        (root() / "usr/bin/gpo-inspector").string(),
+                        desk.string(),
+                        picture.string()));
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(fs::exists(picture));
+  EXPECT_THAT(field("gpo-inspector", "Depends"),
+              AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
+}
+
+void expect_that_the_desktop_finds_it() {
+  for (const char* file : {"applications/gpo-inspector.desktop",
+                           "icons/hicolor/scalable/apps/gpo-inspector.svg",
+                           "mime/packages/gpo-inspector.xml",
+                           "man/man1/gpo-inspector.1.gz",
+                           "bash-completion/completions/gpo-inspector",
+                           "zsh/vendor-completions/_gpo-inspector"})
+    EXPECT_TRUE(fs::exists(root() / "usr/share" / file)) << file;
+}
+
+void expect_the_library() {
+  EXPECT_TRUE(fs::exists(root() / "usr/include/gpo/initialize.h"));
+  EXPECT_TRUE(fs::exists(root() / "usr/share/doc/libgpo-dev/examples/tracks_to_pose.cpp"));
+  const std::string depends = field("libgpo-dev", "Depends");
+  for (const char* needed : {"libeigen3-dev", "libceres-dev", "libopencv-dev", "libopengv-dev"})
+    EXPECT_THAT(depends, HasSubstr(needed));
+}
+
+void expect_that_python_imports_its_module() {
+  const fs::path module = root() / "usr/lib/python3/dist-packages";
+  const test::Outcome told = shell(fmt::format(
+      "cd / && PYTHONPATH={} PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import gpo; "
+      "print(gpo.__file__, gpo.run(\"{}\", frames=10).ok)'",
+      module.string(),
+      (root() / "usr/share/gpo-inspector/sequences/desk").string()));
+  EXPECT_EQ(told.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string())) << told.err;
+  EXPECT_THAT(field("python3-gpo", "Depends"),
+              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
+}
+
+TEST(Packages, WorkWhereTheyPutWhatIsInThem) {
+  make_and_unpack();
+  if (HasFatalFailure()) return;
+  expect_that_the_program_runs();
+  expect_that_the_desktop_finds_it();
+  expect_the_library();
+  expect_that_python_imports_its_module();
+  fs::remove_all(folder());
+}
+
+}  // namespace
+}  // namespace gpo

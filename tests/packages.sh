@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Makes the Debian packages, installs them on this machine and uses them as a stranger would: program,
+# C++ examples outside of our tree, Python. It changes the machine: for a bare one.
+#   tests/packages.sh [PRESET]   of what is built in build/PRESET; "package" is built first
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+source "$here/.ci/install.sh"
+preset=${1:-package}
+cd "$here"
+install_packages "${build_packages[@]}" lintian
+if [ "$preset" = package ]; then
+  cmake --preset package
+  cmake --build --preset package
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+cpack --config "$here/build/$preset/CPackConfig.cmake"
+lintian --fail-on error ./*.deb
+apt-get install -y --no-install-recommends ./*.deb
+
+echo "== program"
+desk=/usr/share/gpo-inspector/sequences/desk
+gpo-inspector --version
+gpo-inspector run "$desk"
+gpo-inspector snapshot "$desk" --view image --output image.png
+gpo-inspector snapshot "$desk" --view window --output window.png
+test -s image.png && test -s window.png
+gunzip -c /usr/share/man/man1/gpo-inspector.1.gz | head -n 1
+
+echo "== C++"
+cmake -S /usr/share/doc/libgpo-dev/examples -B examples -G Ninja
+cmake --build examples
+awk 'BEGIN { for (i = 0; i < 12; ++i) for (j = 0; j < 60; ++j) {
+  x = (j % 10 - 4.5) / 5 - 0.05 * i; y = (int(j / 10) - 2.5) / 3 - 0.01 * i; z = 2 - 0.02 * i
+  printf "%d,%d,%.9f,%.9f\n", i, j, 500 * x / z + 320, 500 * y / z + 240 } }' >tracks.csv
+examples/tracks_to_pose tracks.csv 500 500 320 240
+
+echo "== Python"
+install_packages python3-pytest python3-opencv python3-numpy
+GPO_PROGRAM=/usr/bin/gpo-inspector PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -m pytest -q -p no:cacheprovider "$here/tests/python"
+echo "packages: ok"
