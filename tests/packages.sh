@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
 # Makes the Debian packages, installs them on this machine and uses them as a stranger would: program,
 # C++ examples outside of our tree, Python. It changes the machine: for a bare one.
-#   tests/packages.sh [PRESET]   of what is built in build/PRESET; "package" is built first
+#   tests/packages.sh [FOLDER]   of the packages in FOLDER; without it they are built
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 source "$here/.ci/install.sh"
-preset=${1:-package}
-cd "$here"
-install_packages "${build_packages[@]}" lintian
-if [ "$preset" = package ]; then
-  cmake --preset package
-  cmake --build --preset package
-fi
-
+given=${1:+$(realpath "$1")}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
-cpack --config "$here/build/$preset/CPackConfig.cmake"
+install_packages lintian
+if [ -n "$given" ]; then
+  cp "$given"/*.deb .
+else
+  install_packages "${build_packages[@]}"
+  (cd "$here" && cmake --preset package && cmake --build --preset package)
+  cpack --config "$here/build/package/CPackConfig.cmake"
+fi
 lintian --fail-on error ./*.deb
-apt-get install -y --no-install-recommends ./*.deb
+apt-get install -y --no-install-recommends ./*.deb >apt.log || { tail -n 20 apt.log; exit 1; }
 
 echo "== program"
 desk=/usr/share/gpo-inspector/sequences/desk
@@ -30,6 +30,7 @@ test -s image.png && test -s window.png
 gunzip -c /usr/share/man/man1/gpo-inspector.1.gz | head -n 1
 
 echo "== C++"
+install_packages g++ cmake ninja-build
 cmake -S /usr/share/doc/libgpo-dev/examples -B examples -G Ninja
 cmake --build examples
 awk 'BEGIN { for (i = 0; i < 12; ++i) for (j = 0; j < 60; ++j) {
