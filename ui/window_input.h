@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/input_queue.h"
 #include "ui/workbench/commands.h"
-
-#include <string>
 
 struct GLFWwindow;
 
 namespace gpo {
 
-/// Keys and dropped files of a window as commands. To be made before `Gui`, which passes events on
-/// to it. Needs Dear ImGui to be there when events come: keys that type into a field are left out.
+struct WorkbenchState;
+
+/// Keys, mouse and dropped files of a window, on their way to Dear ImGui and as commands. `Gui`
+/// takes nothing from the window by itself.
 class WindowInput {
  public:
   explicit WindowInput(GLFWwindow* window);
@@ -19,23 +20,23 @@ class WindowInput {
   WindowInput(const WindowInput&) = delete;
   WindowInput& operator=(const WindowInput&) = delete;
 
-  /// What came since the last call.
-  Commands take();
+  /// Before each frame: hands on to Dear ImGui what belongs to it. Returns what of it are commands.
+  /// The rest waits for the next frame.
+  Commands hand_on(const WorkbenchState& state);
+  /// Whether something waits for the next frame.
+  bool waiting() const { return !queue_.empty(); }
 
  private:
-  static void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers);
-  static void on_character(GLFWwindow* window, unsigned codepoint);
-  static void on_drop(GLFWwindow* window, int count, const char** paths);
-
-  /// Whether keys are text for a field.
-  bool typing();
-  void run(const std::string& line);
+  Listener listener(const WorkbenchState& state);
+  void heed(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void heed_key(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void heed_character(const InputEvent& event, const WorkbenchState& state, Commands& commands);
 
   GLFWwindow* window_;
-  Commands commands_;
-  bool repeating_ = false;  ///< the key that types the next character is being held
-  bool will_type_ = false;  ///< a field was opened and has not been drawn yet
-  bool shortcut_ = false;   ///< ... together with Ctrl, Alt or Super
+  InputQueue queue_;
+  int frames_without_field_ = 0;  ///< since the palette is open
+  bool repeating_ = false;        ///< the key that types the next character is being held
+  bool shortcut_ = false;         ///< ... together with Ctrl, Alt or Super
 };
 
 }  // namespace gpo

@@ -43,6 +43,8 @@ class WorkbenchHost {
   /// One frame of the window into the framebuffer that is bound. Returns what the user did. Waits
   /// for no picture: `changed` is called when it has come.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);
+  /// Whether the last frame was another than the one before.
+  bool redrawn() const { return !views_.window.redrawn().empty(); }
   /// The window, or one view of it alone, at any size: CV_8UC3, BGR, with all of its pictures.
   /// Throws InputError for an unknown view.
   cv::Mat picture(const std::string& view, std::optional<cv::Size> wanted = {});

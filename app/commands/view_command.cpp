@@ -31,8 +31,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Dear ImGui needs a frame to see what the mouse hovers, and another one to size what it opens.
-constexpr int kFramesAfterEvent = 3;
+/// Dear ImGui needs a frame to see what the mouse hovers, and more to size what it opens: the
+/// window has come to rest when so many frames are all alike. A text field's cursor never rests.
+constexpr int kFramesAlike = 2;
+constexpr int kMostFramesAfterEvent = 30;
 constexpr double kIdle_s = 3600;
 constexpr double kBetweenQuestions_s = 0.1;
 constexpr const char* kTitle = "GPO Inspector";
@@ -75,11 +77,11 @@ struct Session {
     while (!answer && !window.should_close()) {
       const cv::Size size = window.size();
       window.bind();
+      input.hand_on(host.state);
       if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
       window.swap();
       if (!answer) window.wait(kBetweenQuestions_s);
     }
-    input.take();  // what was typed meanwhile was meant for nobody
     *own.allowed = answer.value_or(false);
     if (!*own.allowed) say_not_started(own);
   }
@@ -112,7 +114,7 @@ struct Session {
   }
 
   /// Sleeps until something happens or the next frame is due. Time goes on before the keys are
-  /// heeded: what begins to play now has not slept.
+  /// heeded: what begins to play then has not slept.
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
@@ -123,7 +125,11 @@ struct Session {
     const auto now = Clock::now();
     seconds = std::chrono::duration<double>(now - std::exchange(last, now)).count();
     advance(host.state, seconds);
-    for (const Command& command : input.take()) apply(host.state, command);
+  }
+
+  /// What was done in the window, before the frame that shows it.
+  void heed_input() {
+    for (const Command& command : input.hand_on(host.state)) apply(host.state, command);
   }
 
   /// One command at a time, each when what the last one asked for is computed.
@@ -135,15 +141,18 @@ struct Session {
   }
 
   void run() {
-    for (int frames = kFramesAfterEvent; !window.should_close() && !host.state.wishes.quit;) {
+    int frames = 0, alike = 0;  // since something happened
+    while (!window.should_close() && !host.state.wishes.quit) {
+      heed_input();
       host.synchronize();
       tell_what_methods_say();
       go_on_with_script();
       update_title();
       draw();
-      --frames;
-      wait(frames <= 0);
-      if (frames <= 0) frames = kFramesAfterEvent;
+      alike = host.redrawn() ? 0 : alike + 1;
+      const bool settled = alike >= kFramesAlike || ++frames >= kMostFramesAfterEvent;
+      wait(settled && !input.waiting());
+      if (settled) frames = alike = 0;
     }
   }
 };

@@ -58,6 +58,28 @@ key s
 until_true "a second picture of the frame" saved 0020-2
 cmp -s "$name-0020.png" "$name-0020-2.png" && fail "the picture without RANSAC to differ"
 
+# Commands typed as fast as hands and pasting programs do: none is lost, none is a shortcut.
+type_command() { xdotool key --delay 10 ctrl+p; xdotool type --delay 10 "$1"; xdotool key --delay 10 Return; }
+commands=30
+for i in $(seq 0 $((commands - 1))); do
+  type_command "frame $i"
+  type_command "bookmark /c1 n$i.mp4"
+done
+type_command "save-session typed.json"
+until_true "typed commands to be run" test -s typed.json
+typed=$(grep -c '"note": "/c1 n' typed.json)
+[ "$typed" = "$commands" ] || fail "$commands bookmarks of as many commands typed, not $typed"
+
+# Esc shuts a menu and nothing else; its letters are no shortcuts.
+until_true "a window that comes to rest" at_rest
+cp before.png shut.png
+xdotool mousemove --window "$window" 30 13 click 1
+until_true "a click to open the menu" other_than shut.png
+key c r
+key Escape
+xdotool mousemove --window "$window" 700 708
+until_true "Esc to shut the menu, and letters to do nothing meanwhile" same_as shut.png
+
 rm -f "$name"-*.png
 key Home space
 until_true "Space to play" later_frame_is_saved

@@ -35,7 +35,7 @@ Gui::Gui(float content_scale) : scale_(content_scale), has_window_(false) {
 
 Gui::Gui(WindowContext& window) : scale_(window.content_scale()), has_window_(true) {
   create();
-  ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
+  ImGui_ImplGlfw_InitForOpenGL(window.glfw(), false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 

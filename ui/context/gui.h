@@ -26,7 +26,7 @@ class Gui {
 
   /// Without input, for pictures: the same frames give the same bytes.
   explicit Gui(float content_scale = 1);
-  /// Fed with mouse and keys by the window.
+  /// For that window; `WindowInput` feeds it with mouse and keys.
   explicit Gui(WindowContext& window);
   ~Gui();
   Gui(const Gui&) = delete;

@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 // Where the versions of Dear ImGui that the program is built with differ, 1.86 (Debian 12) to
 // 1.90.1 (Debian 13).
@@ -20,5 +22,17 @@ inline void set_draw_lists(ImDrawData& data, std::vector<ImDrawList*>& lists) {
 #endif
   data.CmdListsCount = static_cast<int>(lists.size());
 }
+
+/// Where the pointer is [screen units]; the older one asks the window itself.
+inline void hand_pointer_to_imgui([[maybe_unused]] GLFWwindow* window,
+                                  [[maybe_unused]] double x,
+                                  [[maybe_unused]] double y) {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui_ImplGlfw_CursorPosCallback(window, x, y);
+#endif
+}
+
+/// Menus, combos and what else floats; there is no public call for it.
+inline void close_popups() { ImGui::ClosePopupToLevel(0, true); }
 
 }  // namespace gpo

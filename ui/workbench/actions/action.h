@@ -40,6 +40,7 @@ struct Action {
   bool needs_recording = true;
   bool repeats = false;  ///< while its key is held
   bool held = false;     ///< run with "on" when its key goes down, with "off" when it comes up
+  bool opens_field = false;  ///< which is to have what is typed from then on
 
   /// Can be run by its name alone.
   bool complete() const { return arguments.empty() || arguments.front() == '['; }

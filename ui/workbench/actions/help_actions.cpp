@@ -38,6 +38,7 @@ void add_help_actions(std::vector<Action>& table) {
   };
   palette.checked = [](const State& s) { return s.palette.has_value(); };
   palette.needs_recording = false;
+  palette.opens_field = true;
   table.push_back(palette);
   Action help = plain("help",
                       "Keys",
