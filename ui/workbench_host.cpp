@@ -41,6 +41,7 @@ PanelInput WorkbenchHost::input() const {
 }
 
 void WorkbenchHost::synchronize() {
+  gui_.set_zoom(state.text_zoom);
   if ((movie_ || state.wishes.movie) && std::exchange(state.wishes.cancel, false)) {
     movie_.reset();
     state.wishes.movie.reset();

@@ -38,14 +38,13 @@ void draw_views(const PanelInput& input,
                 const WindowLayout& layout,
                 Views& views,
                 Commands& commands) {
+  if (layout.views.empty()) return;
   if (!input.state.recording) return empty_panel(input, layout.views, commands);
-  if (input.state.panes.compare) {
-    compare_panel(input, layout.views, views, commands);
-  } else {
-    image_panel(input, layout.picture, views, commands);
-    side_tabs(input, layout.side_tabs, commands);
-    side_pane(input, layout.side, views, commands);
-  }
+  if (input.state.panes.compare) return compare_panel(input, layout.views, views, commands);
+  if (!layout.picture.empty()) image_panel(input, layout.picture, views, commands);
+  if (layout.side.empty()) return;
+  side_tabs(input, layout.side_tabs, commands);
+  side_pane(input, layout.side, views, commands);
 }
 
 /// Everything has another color now, also what nobody draws anew.
@@ -66,15 +65,17 @@ void forget_hover(const PanelInput& input, const Rectangle& views, Commands& com
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
   const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
   const bool drawer_open = input.state.panes.drawer != nullptr;
-  const WindowLayout layout = window_layout(window.width, window.height, input.scale, drawer_open);
+  const WindowLayout layout =
+      window_layout(window.width, window.height, input.scale, input.state.division, drawer_open);
   menu_bar(input, commands);
-  settings_panel(input, layout.settings, commands);
-  results_panel(input, layout.results);
+  if (!layout.settings.empty()) settings_panel(input, layout.settings, commands);
+  if (!layout.results.empty()) results_panel(input, layout.results);
   draw_views(input, layout, views, commands);
-  drawer_tabs(input, layout.drawer_tabs, commands);
-  if (drawer_open) drawer(input, layout.drawer, views, commands);
-  timeline_panel(input, layout.timeline, commands);
+  if (!layout.drawer_tabs.empty()) drawer_tabs(input, layout.drawer_tabs, commands);
+  if (!layout.drawer.empty()) drawer(input, layout.drawer, views, commands);
+  if (!layout.timeline.empty()) timeline_panel(input, layout.timeline, commands);
   status_line(input, layout.status);
+  splitters(input, layout, commands);
   forget_hover(input, layout.views, commands);
   if (input.state.show_help) help_overlay(input, window, commands);
   if (input.state.palette)
@@ -155,6 +156,7 @@ cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size win
   const WindowLayout layout = window_layout(static_cast<float>(window.width),
                                             static_cast<float>(window.height),
                                             input.scale,
+                                            {},
                                             below != nullptr);
   const Rectangle& place = side != nullptr    ? layout.side
                            : below != nullptr ? layout.drawer

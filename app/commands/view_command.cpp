@@ -148,6 +148,7 @@ struct Session {
       tell_what_methods_say();
       go_on_with_script();
       update_title();
+      window.set_fullscreen(host.state.fullscreen);
       draw();
       alike = host.redrawn() ? 0 : alike + 1;
       const bool settled = alike >= kFramesAlike || ++frames >= kMostFramesAfterEvent;
@@ -177,14 +178,15 @@ int view_command(const ViewArguments& arguments, const OwnMethods& own) {
   session.host.state.has_last_session = std::filesystem::exists(last_session_file());
   session.host.state.settings = settings;
   session.host.state.wishes.open = session_file ? session_file : recording;
+  const KeptWindow kept = read_kept_window(session.host.state);
   const float scale = session.gui.scale();
-  if (scale > 1) {
-    glfwSetWindowSize(
-        session.window.glfw(), static_cast<int>(1280 * scale), static_cast<int>(720 * scale));
-  }
+  session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)
+                                       : cv::Size(cvRound(1280 * scale), cvRound(720 * scale)));
   if (!own.waiting.empty()) session.ask_for_commands();
   session.run();
   save_last_session(session.host.state);
+  const cv::Size size = session.window.place().size();
+  keep_window({size.width, size.height}, session.host.state);
   return kDone;
 }
 

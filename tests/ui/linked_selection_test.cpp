@@ -120,7 +120,7 @@ class LinkedSelection : public DrawingTest {
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_ =
       std::make_shared<const Inspection>(made_inspection());
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };
 
 TEST_F(LinkedSelection, TrackLightsUpWhereTheMouseIsAndIsForgottenElsewhere) {

@@ -47,7 +47,7 @@ class PanesTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, state_.panes.drawer != nullptr);
+    return window_layout(kWidth, kHeight, 1, {}, state_.panes.drawer != nullptr);
   }
   cv::Mat drawer_picture() {
     draw();

@@ -44,7 +44,7 @@ class UnchangedWindow : public DrawingTest {
   WorkbenchState state_;
   WorkerStatus idle_;
   SurveyStatus no_survey_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };
 
 TEST_F(UnchangedWindow, IsNotDrawnAgain) {

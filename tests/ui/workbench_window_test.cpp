@@ -83,7 +83,7 @@ class WorkbenchWindow : public DrawingTest {
   WorkerStatus idle_;
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };
 
 TEST_F(WorkbenchWindow, DoesNothingByItself) {

@@ -28,12 +28,12 @@ void Gui::create() {
   load_fonts(scale_);
 }
 
-Gui::Gui(float content_scale) : scale_(content_scale), has_window_(false) {
+Gui::Gui(float content_scale) : screen_scale_(content_scale), has_window_(false) {
   create();
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
-Gui::Gui(WindowContext& window) : scale_(window.content_scale()), has_window_(true) {
+Gui::Gui(WindowContext& window) : screen_scale_(window.content_scale()), has_window_(true) {
   create();
   ImGui_ImplGlfw_InitForOpenGL(window.glfw(), false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -48,6 +48,17 @@ Gui::~Gui() {
 void Gui::set_theme(Theme theme) {
   theme_ = theme;
   apply_style(scale_, theme_);
+}
+
+void Gui::set_zoom(double zoom) {
+  const float scale = screen_scale_ * static_cast<float>(zoom);
+  if (scale == scale_) return;
+  scale_ = scale;
+  apply_style(scale_, theme_);
+  ImGui::GetIO().Fonts->Clear();
+  load_fonts(scale_);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Gui::begin_frame(int width, int height, float framebuffer_scale, double delta_seconds) {

@@ -43,6 +43,8 @@ class Gui {
   void end_frame(WindowPicture& picture, std::uint32_t background_rgb);
   /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
   float scale() const { return scale_; }
+  /// Everything so many times as large as the screen's own scale has it. Between two frames.
+  void set_zoom(double zoom);
 
   Theme theme() const { return theme_; }
   /// Of everything that is drawn from now on.
@@ -51,7 +53,8 @@ class Gui {
  private:
   void create();
 
-  float scale_;
+  float screen_scale_;
+  float scale_ = screen_scale_;
   Theme theme_ = Theme::dark;
   bool has_window_;
 };

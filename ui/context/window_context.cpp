@@ -6,6 +6,7 @@
 #include "ui/context/framebuffer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <GL/glew.h>
 #include <GLFW/glfw3.h>
@@ -78,6 +79,40 @@ float WindowContext::content_scale() const {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
   return std::max({x, y, 1.0F});
+}
+
+void WindowContext::set_fullscreen(bool fullscreen) {
+  if (fullscreen == !before_.empty()) return;
+  if (fullscreen) {
+    const cv::Rect now = place();
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (mode == nullptr) return;
+    before_ = now;
+    glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, GLFW_DONT_CARE);
+  } else {
+    const cv::Rect back = std::exchange(before_, {});
+    glfwSetWindowMonitor(window_, nullptr, back.x, back.y, back.width, back.height, GLFW_DONT_CARE);
+  }
+}
+
+void WindowContext::resize(cv::Size wanted) {
+  int x = 0, y = 0, width = 0, height = 0;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+  if (width > 0 && height > 0) {
+    wanted.width = std::min(wanted.width, width);
+    wanted.height = std::min(wanted.height, height);
+  }
+  glfwSetWindowSize(window_, wanted.width, wanted.height);
+}
+
+cv::Rect WindowContext::place() const {
+  if (!before_.empty()) return before_;
+  cv::Rect now;
+  glfwGetWindowPos(window_, &now.x, &now.y);
+  glfwGetWindowSize(window_, &now.width, &now.height);
+  return now;
 }
 
 cv::Mat WindowContext::read_bgr() {

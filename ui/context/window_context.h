@@ -32,12 +32,19 @@ class WindowContext {
   cv::Size size() const;
   /// The monitor's: 1 at 96 dpi, 2 on a HiDPI screen.
   float content_scale() const;
+  /// The whole monitor, or as it was before.
+  void set_fullscreen(bool fullscreen);
+  /// As large as that [screen units], but no larger than the monitor's free area.
+  void resize(cv::Size wanted);
+  /// [screen units], and of a window in full screen what it was before.
+  cv::Rect place() const;
   /// What was drawn into the back buffer: CV_8UC3, BGR, y down. Before `swap`.
   cv::Mat read_bgr();
   GLFWwindow* glfw() { return window_; }
 
  private:
   GLFWwindow* window_ = nullptr;
+  cv::Rect before_;  ///< full screen; empty: it is not
 };
 
 }  // namespace gpo

@@ -106,6 +106,8 @@ void palette_overlay(const PanelInput& input,
                      const Rectangle& window,
                      Views& views,
                      Commands& commands);
+/// Lines between the parts, to be dragged; a double click puts one back.
+void splitters(const PanelInput& input, const WindowLayout& layout, Commands& commands);
 void empty_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
 
 /// Names of the side panes, and of the drawers, to choose one by a click.

@@ -13,8 +13,11 @@ namespace {
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
-/// One name in a row of them; underlined where it is open. Whether it was clicked.
-bool tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
+/// What was done to a tab.
+enum class TabEvent { none, click, double_click };
+
+/// One name in a row of them; underlined where it is open.
+TabEvent tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
   const float padding = 10 * scale;
   const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, place.height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -30,26 +33,40 @@ bool tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
   list.AddText({std::round(at.x + padding), y},
                imgui_color(open || hovered ? color_of(Role::text) : color_of(Role::text_dim)),
                pane.title);
-  if (!open) tooltip(pane.tooltip);
+  tooltip(std::string(pane.tooltip) + "\nDouble click: all of the window, and back");
+  const bool twice = hovered && ImGui::IsMouseDoubleClicked(0);
   ImGui::SameLine(0, 0);
-  return clicked;
+  return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
+}
+
+/// A part takes the window, or gives it back.
+void maximize(const PanelInput& input, WindowPart part, Commands& commands) {
+  const bool back = input.state.division.maximized == part;
+  push(commands, RunAction{"maximize " + std::string(to_string(back ? WindowPart::none : part))});
 }
 
 }  // namespace
 
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("side tabs", place, {0, 0});
-  for (const Pane& pane : side_panes())
-    if (tab(pane, input.state.panes.side == &pane, place, input.scale))
-      push(commands, RunAction{action_of(pane)});
+  for (const Pane& pane : side_panes()) {
+    const TabEvent event = tab(pane, input.state.panes.side == &pane, place, input.scale);
+    if (event != TabEvent::none) push(commands, RunAction{action_of(pane)});
+    if (event == TabEvent::double_click) maximize(input, WindowPart::side, commands);
+  }
 }
 
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("drawer tabs", place, {0, 0});
   for (const Pane& pane : drawers()) {
     const bool open = input.state.panes.drawer == &pane;
-    if (tab(pane, open, place, input.scale))
+    const TabEvent event = tab(pane, open, place, input.scale);
+    // A drawer shuts when its tab comes up again: not while a second click is still to come.
+    if (event == TabEvent::click)
       push(commands, RunAction{open ? "view no-drawer" : action_of(pane)});
+    if (event != TabEvent::double_click) continue;
+    push(commands, RunAction{action_of(pane)});
+    maximize(input, WindowPart::drawer, commands);
   }
 }
 

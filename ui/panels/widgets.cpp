@@ -22,12 +22,11 @@ PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                    ImGuiWindowFlags_NoNav | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar));
-}
-
-PanelScope::~PanelScope() {
-  ImGui::End();
+  // The panel's alone: tooltips and popups have their own.
   ImGui::PopStyleVar(3);
 }
+
+PanelScope::~PanelScope() { ImGui::End(); }
 
 void draw_empty(const Rectangle& place, const std::string& text) {
   const float wrap = place.width * 0.8F;

@@ -6,6 +6,7 @@
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/picture_zoom.h"
+#include "ui/workbench/division.h"
 #include "ui/workbench/selection.h"
 
 #include <filesystem>
@@ -49,6 +50,9 @@ struct OrbitScene {
   OrbitCamera camera;
 };
 struct FitScene {};
+struct DivideWindow {
+  Division division;
+};
 struct OpenPath {
   std::filesystem::path path;
 };
@@ -71,6 +75,7 @@ using Command = std::variant<RunAction,
                              ZoomNormals,
                              OrbitScene,
                              FitScene,
+                             DivideWindow,
                              OpenPath,
                              HoverOver,
                              SelectTracks>;

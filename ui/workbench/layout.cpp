@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace gpo {
 
@@ -22,33 +23,47 @@ constexpr float kTabsHeight = 26;
 constexpr float kDrawerShare = 0.36F;  // of the views' height
 constexpr float kLeastDrawerHeight = 170;
 constexpr float kMostDrawerHeight = 420;
+// What a drag leaves of each part.
+constexpr float kLeastColumn = 200, kMostColumn = 640;
+constexpr float kLeastSettings = 80;
+constexpr double kLeastShare = 0.12;
 
 float scaled(float length, float scale) { return std::round(length * scale); }
 
 /// Takes the drawer off the lower end of the views.
-void put_drawer(WindowLayout& layout, float scale, bool open) {
+void put_drawer(WindowLayout& layout, float scale, const Division& division, bool open) {
   Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
-  const float wanted = std::clamp(views.height * kDrawerShare,
-                                  scaled(kLeastDrawerHeight, scale),
-                                  scaled(kMostDrawerHeight, scale));
-  const float height = open ? std::round(std::min(wanted, views.height * 0.5F)) : 0;
+  const float by_itself = std::round(std::min(std::clamp(views.height * kDrawerShare,
+                                                         scaled(kLeastDrawerHeight, scale),
+                                                         scaled(kMostDrawerHeight, scale)),
+                                              views.height * 0.5F));
+  const float wanted = division.drawer_share > 0
+                           ? std::round(views.height * static_cast<float>(division.drawer_share))
+                           : by_itself;
+  const float height = open ? wanted : 0;
   views.height -= tabs + height;
   layout.drawer_tabs = {views.x, views.bottom(), views.width, tabs};
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
 }
 
+/// Picture and side pane, else one above the other.
+bool stands_beside(const Rectangle& views) { return views.width >= 1.2f * views.height; }
+
 /// Picture and side pane within the views.
-void put_panes(WindowLayout& layout, float scale, float gap) {
+void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {
   const Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
   Rectangle side = layout.picture = views;
-  if (views.width >= 1.2f * views.height) {
-    layout.picture.width = std::round((views.width - gap) * kPictureShare);
+  const auto given = static_cast<float>(division.picture_share);
+  if (stands_beside(views)) {
+    const float share = given > 0 ? given : kPictureShare;
+    layout.picture.width = std::round((views.width - gap) * share);
     side.x = layout.picture.right() + gap;
     side.width = views.right() - side.x;
   } else {
-    layout.picture.height = std::round((views.height - gap) / 2);
+    const float share = given > 0 ? given : 0.5F;
+    layout.picture.height = std::round((views.height - gap) * share);
     side.y = layout.picture.bottom() + gap;
     side.height = views.bottom() - side.y;
   }
@@ -72,14 +87,52 @@ void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   }
 }
 
+/// The upper and the lower part of the left column.
+void put_column(WindowLayout& layout, const Rectangle& column, float scale, double wanted_px) {
+  const float most = std::round(column.height - scaled(kLeastResultsHeight, scale));
+  float settings = std::min(scaled(kSettingsHeight, scale), most);
+  const float half = std::max(settings, std::round(column.height / 2));
+  settings = std::min(half, std::max(settings, scaled(100, scale)));
+  if (wanted_px > 0) {
+    const float least = scaled(kLeastSettings, scale);
+    settings = std::clamp(scaled(static_cast<float>(wanted_px), scale),
+                          least,
+                          std::max(least, column.height - least));
+  }
+  layout.settings = {column.x, column.y, column.width, settings};
+  layout.results = {column.x, layout.settings.bottom(), column.width, column.height - settings};
+}
+
+/// One part has all that lies between the bars.
+void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPart part) {
+  const float tabs_height = scaled(kTabsHeight, scale);
+  const Rectangle tabs{all.x, all.y, all.width, tabs_height};
+  const Rectangle below{all.x, tabs.bottom(), all.width, all.height - tabs_height};
+  layout.settings = layout.results = layout.picture = layout.side_tabs = layout.side = {};
+  layout.drawer_tabs = layout.drawer = {};
+  layout.views = all;
+  if (part == WindowPart::picture) layout.picture = all;
+  if (part == WindowPart::side) std::tie(layout.side_tabs, layout.side) = std::tie(tabs, below);
+  if (part != WindowPart::drawer) return;
+  layout.views = {};
+  std::tie(layout.drawer_tabs, layout.drawer) = std::tie(tabs, below);
+}
+
 }  // namespace
 
-WindowLayout window_layout(float width, float height, float scale, bool drawer_open) {
+WindowLayout window_layout(
+    float width, float height, float scale, const Division& division, bool drawer_open) {
   // A window too small for its scale shrinks the fixed parts rather than the pictures to nothing.
-  const float column = std::min(scaled(kColumnWidth, scale), std::round(width * 0.38f));
+  const float wanted =
+      division.column_px > 0 ? static_cast<float>(division.column_px) : kColumnWidth;
+  const float column = division.column
+                           ? std::min(scaled(wanted, scale),
+                                      std::round(width * (division.column_px > 0 ? 0.6f : 0.38f)))
+                           : 0;
   const float menu = scaled(kMenuHeight, scale);
   const float status = scaled(kStatusHeight, scale);
-  const float timeline = std::min(scaled(kTimelineHeight, scale), std::round(height * 0.2f));
+  const float timeline =
+      division.timeline ? std::min(scaled(kTimelineHeight, scale), std::round(height * 0.2f)) : 0;
   const float gap = std::max(1.0f, scaled(1, scale));
 
   WindowLayout layout;
@@ -88,18 +141,93 @@ WindowLayout window_layout(float width, float height, float scale, bool drawer_o
   layout.timeline = {0, layout.status.y - timeline, width, timeline};
   const float top = menu;
   const float bottom = layout.timeline.y - gap;
-
-  const float settings = std::min(scaled(kSettingsHeight, scale),
-                                  std::round((bottom - top) - scaled(kLeastResultsHeight, scale)));
-  layout.settings = {0, top, column, std::max(settings, std::round((bottom - top) / 2))};
-  layout.settings.height = std::min(layout.settings.height, std::max(settings, scaled(100, scale)));
-  layout.results = {0, layout.settings.bottom(), column, bottom - layout.settings.bottom()};
-
-  layout.views = {column + gap, top, width - column - gap, bottom - top};
-  put_drawer(layout, scale, drawer_open);
-  put_panes(layout, scale, gap);
+  put_column(layout, {0, top, column, bottom - top}, scale, division.settings_px);
+  const float left = division.column ? column + gap : 0;
+  layout.views = {left, top, width - left, bottom - top};
+  put_drawer(layout, scale, division, drawer_open);
+  put_panes(layout, scale, gap, division);
   keep_a_pixel(layout, drawer_open);
+  if (!division.column) layout.settings = layout.results = {};
+  if (!division.timeline) layout.timeline = {};
+  const bool there = division.maximized != WindowPart::drawer || drawer_open;
+  if (division.maximized != WindowPart::none && there) {
+    const Rectangle all{0, top, std::max(width, 1.0F), std::max(bottom - top, 1.0F)};
+    maximize(layout, all, scale, division.maximized);
+  }
   return layout;
+}
+
+Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
+  const float gap = std::max(1.0f, scaled(1, scale));
+  const auto& [menu,
+               settings,
+               results,
+               views,
+               picture,
+               side_tabs,
+               side,
+               drawer_tabs,
+               drawer,
+               timeline,
+               status] = layout;
+  switch (splitter) {
+    case Splitter::column:
+      if (settings.empty() || views.empty()) return {};
+      return {views.x - gap, settings.y, gap, settings.height + results.height};
+    case Splitter::settings:
+      if (settings.empty()) return {};
+      return {settings.x, settings.bottom() - gap, settings.width, gap};
+    case Splitter::picture:
+      if (picture.empty() || side.empty()) return {};
+      if (stands_beside(views)) return {picture.right(), picture.y, gap, picture.height};
+      return {picture.x, picture.bottom(), picture.width, gap};
+    case Splitter::drawer:
+      if (views.empty() || drawer.empty()) return {};
+      return {drawer_tabs.x, drawer_tabs.y - gap, drawer_tabs.width, gap};
+  }
+  return {};
+}
+
+Division dragged(const Division& division,
+                 Splitter splitter,
+                 const WindowLayout& layout,
+                 float x,
+                 float y,
+                 float scale) {
+  Division result = division;
+  const Rectangle& views = layout.views;
+  const auto share = [](float part, float whole) {
+    return std::clamp(static_cast<double>(part / whole), kLeastShare, 1 - kLeastShare);
+  };
+  switch (splitter) {
+    case Splitter::column:
+      result.column_px = std::clamp(x / scale, kLeastColumn, kMostColumn);
+      break;
+    case Splitter::settings:
+      result.settings_px = std::max((y - layout.settings.y) / scale, kLeastSettings);
+      break;
+    case Splitter::picture:
+      result.picture_share =
+          stands_beside(views) ? share(x - views.x, views.width) : share(y - views.y, views.height);
+      break;
+    case Splitter::drawer: {
+      const float tabs = layout.drawer_tabs.height;
+      const float whole = layout.drawer.bottom() - views.y;
+      constexpr double kMostDrawer = 0.8;
+      result.drawer_share = std::min(share(layout.drawer.bottom() - y - tabs, whole), kMostDrawer);
+      break;
+    }
+  }
+  return result;
+}
+
+Division automatic(Division division, Splitter splitter) {
+  double Division::*const lengths[] = {&Division::column_px,
+                                       &Division::settings_px,
+                                       &Division::picture_share,
+                                       &Division::drawer_share};
+  division.*lengths[static_cast<int>(splitter)] = 0;
+  return division;
 }
 
 }  // namespace gpo

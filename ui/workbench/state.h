@@ -10,6 +10,7 @@
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
 #include "ui/look/picture_zoom.h"
+#include "ui/workbench/division.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 #include "ui/workbench/time_span.h"
@@ -97,6 +98,9 @@ struct WorkbenchState {
   Theme theme = Theme::dark;
   ViewToggles view;
   Panes panes;
+  Division division;
+  double text_zoom = 1;     ///< of everything, times the screen's own scale
+  bool fullscreen = false;  ///< wanted
   std::vector<std::string> compared = {"gpo", "pnp_ba", "ba", "pba"};  ///< keys of Configurations
   std::optional<PictureZoom> compare_zoom;  ///< of all columns; nothing: around the cubes
   bool flip = false;  ///< the picture shows the first compared other result; see `flipped`

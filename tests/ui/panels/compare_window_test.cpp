@@ -88,7 +88,7 @@ class CompareWindow : public DrawingTest {
   WorkbenchState state_;
   WorkerStatus idle_;
   SurveyStatus no_survey_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, false);
+  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };
 
 int count(const cv::Mat& picture, std::uint32_t rgb) {
@@ -176,7 +176,7 @@ TEST_F(CompareWindow, FlipShowsTheOtherResultInThePictureAndSaysWhose) {
 
 TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
   state_.panes.drawer = find_drawer("table");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
+  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   draw();
   bool chosen = false;
@@ -205,7 +205,7 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
     }
   }
   state_.panes.drawer = find_drawer("curves");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
+  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   const float y = layout.drawer.y + layout.drawer.height / 2;
   const Commands early = click(layout.drawer.x + 80, y);
@@ -221,7 +221,7 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
 
 TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
   state_.panes.drawer = find_drawer("curves");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, true);
+  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   const Commands commands = click(layout.drawer.x + 40, layout.drawer.y + 14);
   ASSERT_NE(find<RunAction>(commands), nullptr);

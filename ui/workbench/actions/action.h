@@ -38,8 +38,8 @@ struct Action {
       {};  ///< its state, for the help window; else on or off
   std::function<bool(const WorkbenchState&)> checked = {};  ///< null: not a switch
   bool needs_recording = true;
-  bool repeats = false;  ///< while its key is held
-  bool held = false;     ///< run with "on" when its key goes down, with "off" when it comes up
+  bool repeats = false;      ///< while its key is held
+  bool held = false;         ///< run with "on" when its key goes down, with "off" when it comes up
   bool opens_field = false;  ///< which is to have what is typed from then on
 
   /// Can be run by its name alone.

@@ -33,13 +33,25 @@ void apply(WorkbenchState& state, const Command& command) {
   const auto normals = [&](const ZoomNormals& c) { state.normals_zoom = c.zoom; };
   const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
   const auto fit = [&](const FitScene&) { state.orbit.reset(); };
+  const auto divide = [&](const DivideWindow& c) { state.division = c.division; };
   const auto open = [&](const OpenPath& c) { state.wishes.open = c.path; };
   const auto hover = [&](const HoverOver& c) { state.hover = c.hover; };
   const auto select = [&](const SelectTracks& c) { state.selection = c.selection; };
-  std::visit(
-      Overloaded{
-          run, change, go, cube, move, zoom, zoom_all, normals, orbit, fit, open, hover, select},
-      command);
+  std::visit(Overloaded{run,
+                        change,
+                        go,
+                        cube,
+                        move,
+                        zoom,
+                        zoom_all,
+                        normals,
+                        orbit,
+                        fit,
+                        divide,
+                        open,
+                        hover,
+                        select},
+             command);
 }
 
 }  // namespace gpo

@@ -13,6 +13,7 @@ namespace gpo {
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
+void add_layout_actions(std::vector<Action>& table);
 void add_compare_actions(std::vector<Action>& table);  ///< a part of the views'
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);

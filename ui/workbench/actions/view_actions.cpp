@@ -59,6 +59,11 @@ Action open_pane(const Pane& pane,
   return action;
 }
 
+/// What is asked for is not to stay behind what has the whole window.
+void uncover(Division& division, WindowPart part) {
+  if (division.maximized != part) division.maximized = WindowPart::none;
+}
+
 void add_panes(std::vector<Action>& table) {
   for (const Pane& pane : side_panes())
     table.push_back(open_pane(
@@ -66,15 +71,19 @@ void add_panes(std::vector<Action>& table) {
         [&pane](State& s) {
           s.panes.side = &pane;
           s.panes.compare = false;
+          uncover(s.division, WindowPart::side);
         },
         [&pane](const State& s) { return s.panes.side == &pane && !s.panes.compare; }));
   for (const Pane& pane : drawers())
     table.push_back(open_pane(
         pane,
-        [&pane](State& s) { s.panes.drawer = &pane; },
+        [&pane](State& s) {
+          s.panes.drawer = &pane;
+          uncover(s.division, WindowPart::drawer);
+        },
         [&pane](const State& s) { return s.panes.drawer == &pane; }));
   Action shut = plain("view no-drawer",
-                      "Shut the drawer",
+                      "Close the drawer",
                       "View",
                       {},
                       "Picture and side pane take all of the height",
@@ -144,6 +153,7 @@ void add_view_actions(std::vector<Action>& table) {
   add_compare_actions(table);
   add_cameras(table);
   add_themes(table);
+  add_layout_actions(table);
 }
 
 }  // namespace gpo

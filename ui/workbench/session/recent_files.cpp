@@ -5,10 +5,13 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
+#include "ui/workbench/session/session_fields.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/session/user_folders.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -37,6 +40,11 @@ Json read_quietly(const fs::path& file) {
     return {};
   }
 }
+
+/// Of the fields of a session those that belong to the window.
+constexpr std::array kWindowFields = {"theme", "division", "text_zoom"};
+
+fs::path window_file() { return user_state_folder() / "window.json"; }
 
 fs::path recent_list() { return user_state_folder() / "recent.json"; }
 
@@ -69,6 +77,32 @@ void remember_file(const fs::path& path) {
   Json json = Json::array();
   for (const fs::path& one : files) json.push_back(one.string());
   write_quietly(recent_list(), json_text(json, 2));
+}
+
+KeptWindow read_kept_window(WorkbenchState& state) {
+  const Json json = read_quietly(window_file());
+  KeptWindow kept;
+  if (!json.is_object()) return kept;
+  try {
+    constexpr int kMost = 100'000;
+    const SessionReader read(json, window_file().string());
+    read("width", kept.width, 0, kMost);
+    read("height", kept.height, 0, kMost);
+    for (const SessionField& field : session_fields())
+      if (std::ranges::count(kWindowFields, std::string_view(field.key)) > 0 && read.has(field.key))
+        field.read(read, state);
+  } catch (const InputError&) {
+    // Somebody's own hand was in it; the window then is as it comes.
+  }
+  return kept;
+}
+
+void keep_window(const KeptWindow& window, const WorkbenchState& state) {
+  Json json = {{"width", window.width}, {"height", window.height}};
+  for (const SessionField& field : session_fields())
+    if (std::ranges::count(kWindowFields, std::string_view(field.key)) > 0)
+      json[field.key] = field.write(state);
+  write_quietly(window_file(), json_text(json, 2));
 }
 
 }  // namespace gpo

@@ -19,4 +19,13 @@ void save_last_session(const WorkbenchState& state);
 std::vector<std::filesystem::path> recent_files();
 void remember_file(const std::filesystem::path& path);
 
+/// The window itself as it was left: theme, layout, size.
+struct KeptWindow {
+  int width = 0;  ///< [screen units]; 0: never kept
+  int height = 0;
+};
+/// Into the state what of it belongs to the window rather than to a recording.
+KeptWindow read_kept_window(WorkbenchState& state);
+void keep_window(const KeptWindow& window, const WorkbenchState& state);
+
 }  // namespace gpo

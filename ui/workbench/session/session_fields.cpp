@@ -24,7 +24,7 @@ using State = WorkbenchState;
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 template <class T>
-concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera>;
+concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> || Is<T, Division>;
 
 void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
   use("factor", zoom.factor, 1, 64);
@@ -44,6 +44,15 @@ void each_part(Is<OrbitCamera> auto& orbit, auto&& use) {
   use("pitch_deg", orbit.pitch_deg, -89, 89);
   use("distance", orbit.distance, 1e-6, 1e6);
   use("view_angle_deg", orbit.view_angle_deg, 1, 170);
+}
+
+void each_part(Is<Division> auto& division, auto&& use) {
+  use("column_px", division.column_px, 0, 10'000);
+  use("settings_px", division.settings_px, 0, 10'000);
+  use("picture_share", division.picture_share, 0, 1);
+  use("drawer_share", division.drawer_share, 0, 1);
+  use("column", division.column);
+  use("timeline", division.timeline);
 }
 
 /// Each kind of value as a session writes it.
@@ -214,6 +223,8 @@ std::span<const SessionField> session_fields() {
       field("theme", &State::theme),
       field("view", &State::view),
       field("panes", &State::panes),
+      field("division", &State::division),
+      field("text_zoom", &State::text_zoom, 0.5, 3.0),
       field_with("compared", &State::compared, rewrite_keys),
       field("hidden_curves", &State::hidden_curves),
       field("compare_zoom", &State::compare_zoom),
