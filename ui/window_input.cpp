@@ -71,6 +71,9 @@ void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
   }
 }
 
+/// What is open has one that takes all keys.
+bool has_field(const WorkbenchState& state) { return state.palette || state.browse; }
+
 bool popup_is_open() {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
@@ -103,14 +106,14 @@ WindowInput::~WindowInput() {
 
 Listener WindowInput::listener(const WorkbenchState& state) {
   if (ImGui::GetIO().WantTextInput) return Listener::field;
-  if (state.palette && frames_without_field_ < kMostFramesWithoutField) return Listener::nobody;
+  if (has_field(state) && frames_without_field_ < kMostFramesWithoutField) return Listener::nobody;
   return popup_is_open() ? Listener::popup : Listener::shortcuts;
 }
 
 Commands WindowInput::hand_on(const WorkbenchState& state) {
   Commands commands;
   queue_.begin_frame();
-  const bool waits = state.palette && !ImGui::GetIO().WantTextInput;
+  const bool waits = has_field(state) && !ImGui::GetIO().WantTextInput;
   frames_without_field_ = waits ? frames_without_field_ + 1 : 0;
   while (queue_.has_next(listener(state))) {
     const InputEvent event = queue_.take();
@@ -135,7 +138,7 @@ void WindowInput::heed_key(const InputEvent& event,
   const bool escape = event.code == GLFW_KEY_ESCAPE;
   // Esc shuts a menu before it does anything else, and in a field it takes back what was typed.
   if (escape && event.action != GLFW_RELEASE && popup_is_open()) return close_popups();
-  const bool typed = ImGui::GetIO().WantTextInput && !(escape && state.palette);
+  const bool typed = ImGui::GetIO().WantTextInput && !(escape && has_field(state));
   const bool of_popup = popup_is_open() && types(event);
   if (held(GLFW_MOD_ALT | GLFW_MOD_SUPER) || typed || of_popup) return;
   const Action* found = action_of_key(event.code, held(GLFW_MOD_SHIFT), held(GLFW_MOD_CONTROL));

@@ -32,6 +32,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
     : gui_(gui),
       example_(std::move(example)),
       fetcher_(changed),
+      lister_(changed),
       survey_(changed),
       worker_(std::move(open), changed) {}
 
@@ -63,6 +64,8 @@ void WorkbenchHost::settle() {
 Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
   shown.fetcher = &fetcher_;
+  shown.lister = &lister_;
+  shown.example = example_;
   return draw_workbench(shown, size, gui_, views_, delta_seconds);
 }
 

@@ -60,6 +60,7 @@ class WorkbenchHost {
   WorkerStatus movie_status_;   ///< how far it is
   Views views_;
   PictureFetcher fetcher_;
+  FolderLister lister_;
   Survey survey_;
   Worker worker_;
 };

@@ -82,6 +82,10 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
     palette_overlay(input, window, views, commands);
   else
     views.palette = {};
+  if (input.state.browse)
+    browser_overlay(input, window, views, commands);
+  else
+    views.browser.open = false;
 }
 
 void draw_picture(const PanelInput& input, cv::Size size, Views& views) {

@@ -174,6 +174,7 @@ int view_command(const ViewArguments& arguments, const OwnMethods& own) {
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.link.calibrates = calibrate == "auto";
+  session.host.state.asks = true;
   session.host.state.recent = recent_files();
   session.host.state.has_last_session = std::filesystem::exists(last_session_file());
   session.host.state.settings = settings;

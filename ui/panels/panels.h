@@ -14,6 +14,7 @@
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"
+#include "ui/workbench/work/folder_lister.h"
 #include "ui/workbench/work/picture_fetcher.h"
 
 #include <array>
@@ -32,6 +33,8 @@ struct PanelInput {
   float scale = 1;      ///< of the text: sizes for 96 dpi times this
   const WorkerStatus* writing = nullptr;  ///< how far a movie is; null: none is written
   PictureFetcher* fetcher = nullptr;      ///< null: drawing waits for pictures itself
+  FolderLister* lister = nullptr;         ///< null: folders are shown as empty
+  std::filesystem::path example = {};     ///< the recording that comes with the program
 
   /// The last one that was finished; null: none.
   const Inspection* inspection() const { return state.inspection.get(); }
@@ -43,6 +46,15 @@ struct PaletteEntry {
   int chosen = 0;          ///< of the actions that it finds
   bool open = false;       ///< in the last frame
   bool typed_out = false;  ///< by us: the cursor is to go to its end
+};
+
+/// What was typed to choose a file.
+struct BrowserEntry {
+  std::array<char, 1024> text{};
+  int chosen = 0;          ///< of the entries that it finds; -1: what is typed
+  bool open = false;       ///< in the last frame
+  bool typed_out = false;  ///< by us: the field is to take it over
+  FolderList listed;       ///< in the last frame
 };
 
 /// An enlarged part of a picture, and what it shows.
@@ -69,6 +81,7 @@ struct Views {
   std::string picture_error;                   ///< why there is none
   SceneView scene;
   PaletteEntry palette;
+  BrowserEntry browser;
   std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   KeptCurveFacts curves;                    ///< of the drawer
@@ -108,6 +121,10 @@ void palette_overlay(const PanelInput& input,
                      Commands& commands);
 /// Lines between the parts, to be dragged; a double click puts one back.
 void splitters(const PanelInput& input, const WindowLayout& layout, Commands& commands);
+void browser_overlay(const PanelInput& input,
+                     const Rectangle& window,
+                     Views& views,
+                     Commands& commands);
 void empty_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
 
 /// Names of the side panes, and of the drawers, to choose one by a click.

@@ -56,6 +56,12 @@ struct Bookmark {
   bool operator==(const Bookmark&) const = default;
 };
 
+/// Choosing a file or a folder for an action.
+struct Browse {
+  std::string action = "open";  ///< run with what is chosen
+  std::string text = {};        ///< in the field at the start
+};
+
 struct WorkbenchState;
 
 /// A session from a file, see `read_session`.
@@ -118,6 +124,10 @@ struct WorkbenchState {
   Hover hover;
   bool show_help = false;
   std::optional<std::string> palette;  ///< open, with this typed already; nothing: shut
+  std::optional<Browse> browse;        ///< open; nothing: shut
+
+  bool asks = false;                   ///< somebody is there who can be asked for a file
+  std::filesystem::path session_file;  ///< where it was saved last; empty: not yet
 
   std::vector<std::filesystem::path> recent;  ///< opened before, the last one first
   bool has_last_session = false;              ///< `continue` has something to open

@@ -77,7 +77,8 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
   centered("or tracks.csv with a calibration; a saved session; a results.csv", place);
   ImGui::PopStyleColor();
   ImGui::Dummy({1, 8 * s});
-  if (button("Open the example", place, s, true)) push(commands, RunAction{"open-example"});
+  if (button("Open ...", place, s, true)) push(commands, RunAction{"browse"});
+  if (button("Open the example", place, s, false)) push(commands, RunAction{"open-example"});
   if (input.state.has_last_session && button("Continue the last session", place, s, false))
     push(commands, RunAction{"continue"});
   recent_list(input, place, commands);

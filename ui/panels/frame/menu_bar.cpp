@@ -10,13 +10,31 @@
 namespace gpo {
 namespace {
 
+/// What needs more than a click is chosen, or typed.
+std::string line_of_click(const Action& action) {
+  if (action.complete()) return action.name;
+  if (takes_a_file(action)) return "browse \"" + action.name + "\"";
+  return "palette " + action.name;
+}
+
+/// Files that were opened before, with their folders.
+void recent_menu(const PanelInput& input, Commands& commands) {
+  if (!ImGui::BeginMenu("Open recent", !input.state.recent.empty())) return;
+  for (const std::filesystem::path& path : input.state.recent) {
+    ImGui::PushID(path.c_str());
+    const std::string folder = path.parent_path().string();
+    if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(commands, OpenPath{path});
+    ImGui::PopID();
+  }
+  ImGui::EndMenu();
+}
+
 void menu_item(const Action& action, const PanelInput& input, Commands& commands) {
   const bool checked = action.checked && action.checked(input.state);
   const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
   const std::string title = action.title + (action.complete() ? "" : " ...");
   if (ImGui::MenuItem(title.c_str(), keys.c_str(), checked, enabled(action, input.state))) {
-    // What needs more than a click is typed.
-    push(commands, RunAction{action.complete() ? action.name : "palette " + action.name});
+    push(commands, RunAction{line_of_click(action)});
   }
   tooltip(action.tooltip);
 }
@@ -65,6 +83,7 @@ void menu_bar(const PanelInput& input, Commands& commands) {
     if (!ImGui::BeginMenu(menu.c_str())) continue;
     for (const Action& action : actions()) {
       if (action.menu == menu) menu_item(action, input, commands);
+      if (action.menu == menu && action.name == "browse") recent_menu(input, commands);
     }
     ImGui::EndMenu();
   }

@@ -82,6 +82,11 @@ bool enabled(const Action& action, const WorkbenchState& state) {
   return state.recording || !action.needs_recording;
 }
 
+bool takes_a_file(const Action& action) {
+  return action.arguments.starts_with("FILE") || action.arguments.starts_with("PATH") ||
+         action.arguments.starts_with("[FILE");
+}
+
 std::vector<const Action*> find_actions(const std::string& text) {
   const std::vector<std::string> words = words_of(lower_case(text));
   std::vector<const Action*> found;

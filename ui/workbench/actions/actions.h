@@ -26,6 +26,9 @@ const Action* action_of_character(char32_t character);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
+/// Whether its first argument is a file or a folder, which one would rather choose than type.
+bool takes_a_file(const Action& action);
+
 /// The actions whose name or title has all words of a text, those that begin with it first.
 std::vector<const Action*> find_actions(const std::string& text);
 

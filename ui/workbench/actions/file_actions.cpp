@@ -6,6 +6,7 @@
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/session/picture_size.h"
 #include "ui/workbench/session/recent_files.h"
@@ -89,9 +90,42 @@ Action trajectory_export(const std::string& what,
 
 std::string whole_result(const Inspection& inspection) { return json_text(to_json(inspection), 2); }
 
+/// ACTION [PATH]: what is shown at first, or the folder of what is open.
+void browse(State& state, const Arguments& arguments) {
+  Browse wanted;
+  if (!arguments.empty()) wanted.action = arguments[0];
+  const Action* action = find_action(wanted.action);
+  if (action == nullptr || !takes_a_file(*action))
+    throw InputError(
+        fmt::format("browse: '{}', expected an action that takes a file", wanted.action));
+  if (!enabled(*action, state)) throw InputError("no recording is open");
+  std::error_code none;
+  const bool opens = wanted.action == "open" && state.recording;
+  const std::filesystem::path folder =
+      opens ? state.recording->path.parent_path() : std::filesystem::current_path(none);
+  wanted.text = (std::filesystem::absolute(folder, none) / "").string();
+  if (arguments.size() > 1) wanted.text = arguments[1];
+  state.palette.reset();
+  state.browse = wanted;
+}
+
+void add_browse(std::vector<Action>& table) {
+  Action action{
+      "browse",
+      "Open a file",
+      "File",
+      {control('O')},
+      "Chooses a recording, session or results.csv to open; or a file for another action"};
+  action.arguments = "[ACTION [PATH]]";
+  action.run = browse;
+  action.needs_recording = false;
+  action.opens_field = true;
+  table.push_back(action);
+}
+
 void add_open(std::vector<Action>& table) {
   Action open{"open",
-              "Open",
+              "Open a path",
               "File",
               {},
               "Opens a recording (a folder or a file), a session, or "
@@ -113,17 +147,23 @@ void add_open(std::vector<Action>& table) {
   table.push_back(example);
 }
 
+/// Without a name: where it was saved before; the first time the window asks.
 void save_session(State& state, const Arguments& arguments) {
   expect_count("save-session", arguments, 0, 1);
   std::filesystem::path file =
-      state.recording->name + std::string(arguments.empty() ? ".session.json" : "");
-  if (!arguments.empty()) file = arguments[0];
+      arguments.empty() ? state.session_file : std::filesystem::path(arguments[0]);
+  if (file.empty()) file = state.recording->name + ".session.json";
+  if (arguments.empty() && state.session_file.empty() && state.asks) {
+    state.browse = Browse{"save-session", std::filesystem::absolute(file).string()};
+    return;
+  }
   if (file.extension() != ".json")
     throw InputError(
         fmt::format("save-session: '{}', expected a file name that ends in .json", file.string()));
   check_writable(file);
   write_file(file, session_text(state));
-  say(state, "saved " + file.string());
+  state.session_file = std::filesystem::absolute(file);
+  say(state, "saved " + state.session_file.string());
 }
 
 void add_sessions(std::vector<Action>& table) {
@@ -131,8 +171,8 @@ void add_sessions(std::vector<Action>& table) {
               "Save the session",
               "File",
               {control('S')},
-              "Writes what is open, chosen and selected into a file that `open` reads; without a "
-              "name into the current folder"};
+              "Writes what is open, chosen and selected into a file that `open` reads; again: into "
+              "the same file"};
   save.arguments = "[FILE]";
   save.run = save_session;
   table.push_back(save);
@@ -153,6 +193,7 @@ void add_sessions(std::vector<Action>& table) {
 }  // namespace
 
 void add_file_actions(std::vector<Action>& table) {
+  add_browse(table);
   add_open(table);
   add_sessions(table);
   table.push_back(

@@ -12,7 +12,9 @@ namespace {
 using State = WorkbenchState;
 
 void escape(State& state) {
-  if (state.palette) {
+  if (state.browse) {
+    state.browse.reset();
+  } else if (state.palette) {
     state.palette.reset();
   } else if (state.show_help) {
     state.show_help = false;

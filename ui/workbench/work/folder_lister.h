@@ -1,0 +1,51 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ui/workbench/browsing.h"
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace gpo {
+
+/// What is in a folder, as far as it is known.
+struct FolderList {
+  std::vector<FolderEntry> entries;  ///< folders first, each by name
+  std::string error;                 ///< why there are none, one line
+  bool reading = false;              ///< entries are still to come, or what they are
+};
+
+/// Lists folders on a thread of its own: a slow disk stops no window. May be called from any
+/// thread.
+class FolderLister {
+ public:
+  /// `changed` is called on the lister's thread when more is known.
+  explicit FolderLister(std::function<void()> changed = {});
+
+  /// What is known of it; the folder before is forgotten.
+  FolderList list(const std::filesystem::path& folder);
+  /// To be read anew when it is listed next.
+  void forget();
+
+ private:
+  void run(const std::stop_token& stop);
+  /// Whether it is still the folder that somebody wants; changes the list.
+  bool update(const std::filesystem::path& folder, const std::function<void(FolderList&)>& change);
+
+  std::function<void()> changed_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::filesystem::path folder_;  ///< that is wanted
+  bool wanted_ = false;           ///< and has not been begun
+  FolderList list_;
+  std::jthread thread_;  ///< last: it starts when all the others exist
+};
+
+}  // namespace gpo
