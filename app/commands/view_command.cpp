@@ -118,7 +118,8 @@ struct Session {
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
-      window.wait(std::max(0.001, due.value_or(kIdle_s)));
+      const double message = seconds_of_message(host.state).value_or(kIdle_s);
+      window.wait(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
     } else {
       window.poll();
     }

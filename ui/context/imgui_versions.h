@@ -32,6 +32,11 @@ inline void hand_pointer_to_imgui([[maybe_unused]] GLFWwindow* window,
 #endif
 }
 
+/// Whether the number drawn last is a field at the moment, whose text may be half a number.
+inline bool number_is_being_typed() {
+  return ImGui::TempInputIsActive(ImGui::GetCurrentContext()->LastItemData.ID);
+}
+
 /// Menus, combos and what else floats; there is no public call for it.
 inline void close_popups() { ImGui::ClosePopupToLevel(0, true); }
 

@@ -3,6 +3,7 @@
 #include "ui/workbench/playing.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace gpo {
 namespace {
@@ -24,6 +25,8 @@ void go_to_frame(WorkbenchState& state, int frame) {
 }
 
 void advance(WorkbenchState& state, double seconds) {
+  state.message_seconds += seconds;
+  if (!seconds_of_message(state)) state.message.clear();
   if (!state.playing) return;
   state.play_seconds += seconds * state.speed;
   while (const auto left = seconds_to_next_frame(state)) {
@@ -34,6 +37,14 @@ void advance(WorkbenchState& state, double seconds) {
   }
   state.playing = false;
   state.play_seconds = 0;
+}
+
+std::optional<double> seconds_of_message(const WorkbenchState& state) {
+  constexpr double kShown_s = 12;
+  if (state.message.empty()) return std::nullopt;
+  if (state.message_severity == Severity::error) return std::numeric_limits<double>::infinity();
+  const double left = kShown_s - state.message_seconds;
+  return left > 0 ? std::optional(left) : std::nullopt;
 }
 
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state) {

@@ -17,4 +17,8 @@ void advance(WorkbenchState& state, double seconds);
 /// Until `advance` shows another frame [s]; nothing where it will not.
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
+/// How long the message is still to be shown; nothing: there is none. Errors stay until the next
+/// one.
+std::optional<double> seconds_of_message(const WorkbenchState& state);
+
 }  // namespace gpo

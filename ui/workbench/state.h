@@ -62,6 +62,13 @@ struct Browse {
   std::string text = {};        ///< in the field at the start
 };
 
+/// What `undo` takes back: how the problem is put, and where the cube stands.
+struct UndoStep {
+  Settings settings;
+  double cube_side = 0;
+  std::optional<Eigen::Vector3d> cube_ray;
+};
+
 struct WorkbenchState;
 
 /// A session from a file, see `read_session`.
@@ -91,7 +98,7 @@ struct WorkbenchState {
   std::shared_ptr<const NormalStudy> study;  ///< the last one, maybe of another window; null: none
 
   Settings settings;
-  std::vector<Settings> undo, redo;  ///< earlier settings, and those that were undone; last first
+  std::vector<UndoStep> undo, redo;  ///< before earlier changes, and undone ones; the last one last
   bool dragging_settings = false;    ///< the last change was one of many small ones
   int frame = 0;                     ///< shown, counts in the recording
   bool playing = false;
@@ -133,6 +140,8 @@ struct WorkbenchState {
   bool has_last_session = false;              ///< `continue` has something to open
 
   std::string message;  ///< the last one, one line
+  Severity message_severity = Severity::note;
+  double message_seconds = 0;  ///< since it was said
   std::vector<LogLine> log;
   Wishes wishes;
   std::optional<SavedSession> waiting_session;  ///< goes on when its recording is open

@@ -9,10 +9,24 @@
 namespace gpo {
 namespace {
 
-/// `from` becomes the settings, and these become the last of `to`.
-void step_back(WorkbenchState& state, std::vector<Settings>& from, std::vector<Settings>& to) {
+UndoStep now(const WorkbenchState& state) {
+  return {state.settings, state.cube_side, state.cube_ray};
+}
+
+void remember(WorkbenchState& state) {
+  constexpr std::size_t kMostUndo = 200;
+  state.undo.push_back(now(state));
+  if (state.undo.size() > kMostUndo) state.undo.erase(state.undo.begin());
+  state.redo.clear();
+}
+
+/// `from` becomes how things are, and these become the last of `to`.
+void step_back(WorkbenchState& state, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
   if (from.empty()) return;
-  to.push_back(std::exchange(state.settings, from.back()));
+  to.push_back(now(state));
+  state.settings = from.back().settings;
+  state.cube_side = from.back().cube_side;
+  state.cube_ray = from.back().cube_ray;
   from.pop_back();
   state.dragging_settings = false;
 }
@@ -20,16 +34,21 @@ void step_back(WorkbenchState& state, std::vector<Settings>& from, std::vector<S
 }  // namespace
 
 void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
-  constexpr std::size_t kMostUndo = 200;
   if (state.recording) settings = fit_window(settings, state.frame_count());
   // Their ids count within the tracks of one reference frame.
   if (settings.start != state.settings.start) settings.exclude.clear();
   if (settings == state.settings) return;
-  if (!dragging || !state.dragging_settings) state.undo.push_back(state.settings);
-  if (state.undo.size() > kMostUndo) state.undo.erase(state.undo.begin());
+  if (!dragging || !state.dragging_settings) remember(state);
   state.dragging_settings = dragging;
   state.redo.clear();
   state.settings = std::move(settings);
+}
+
+void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray) {
+  if (ray == state.cube_ray) return;
+  remember(state);
+  state.dragging_settings = false;
+  state.cube_ray = ray;
 }
 
 void undo(WorkbenchState& state) { step_back(state, state.undo, state.redo); }

@@ -10,7 +10,11 @@ namespace gpo {
 /// `dragging` are undone together.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
 
-/// The settings before the last change, and again those after it; as they are where there are none.
+/// Puts the cube where that ray of the reference camera meets the plane; nothing: back to its
+/// place.
+void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
+
+/// As it was before the last change, and again as after it; as it is where there is none.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
 

@@ -112,6 +112,16 @@ Settings with_setting(Settings settings, const std::string& key, const std::stri
   return settings;
 }
 
+Settings switched(Settings settings, const std::string& key, bool on) {
+  const Setting& setting = find_setting(key);
+  if (setting.optional && setting.used != nullptr) {
+    setting.set(settings, SettingValue());
+    if (setting.used(settings) == SettingValue(on)) return settings;
+  }
+  setting.set(settings, on);
+  return settings;
+}
+
 Settings with_default(Settings settings, const std::string& key) {
   const Setting& setting = find_setting(key);
   setting.set(settings, setting.get(Settings{}));

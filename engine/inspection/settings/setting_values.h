@@ -18,6 +18,9 @@ std::string setting_text(const Settings& settings, const std::string& key);
 /// The settings with another value. Throws InputError for an unknown key, SettingError for a value.
 Settings with_setting(Settings settings, const std::string& key, const std::string& text);
 
+/// The settings with a switch on or off; left to the method where that does so by itself.
+Settings switched(Settings settings, const std::string& key, bool on);
+
 /// The settings with the default value of one; or of all but start, frames and method.
 Settings with_default(Settings settings, const std::string& key);
 Settings with_defaults(const Settings& settings);

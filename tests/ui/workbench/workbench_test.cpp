@@ -327,5 +327,41 @@ TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
   EXPECT_EQ(state.settings.ransac_threshold_px, 2.3);
 }
 
+TEST(Workbench, UndoTakesBackTheCubesPlace) {
+  WorkbenchState state = opened(60);
+  const Eigen::Vector3d there(0.1, 0.2, 1), elsewhere(0.3, 0.2, 1);
+  apply(state, MoveCube{there});
+  apply(state, MoveCube{elsewhere});
+  run(state, "undo");
+  EXPECT_EQ(state.cube_ray, there);
+  run(state, "redo");
+  EXPECT_EQ(state.cube_ray, elsewhere);
+  run(state, "reset-cube");
+  EXPECT_EQ(state.cube_ray, std::nullopt);
+  run(state, "undo");
+  EXPECT_EQ(state.cube_ray, elsewhere);
+}
+
+TEST(Workbench, RansacSwitchedTwiceIsLeftToTheMethodAgain) {
+  WorkbenchState state = opened(60);
+  const Settings first = state.settings;
+  run(state, "ransac");
+  EXPECT_EQ(state.settings.ransac, false);
+  run(state, "ransac");
+  EXPECT_EQ(state.settings, first);
+}
+
+TEST(Workbench, NotesPassAndErrorsStay) {
+  WorkbenchState state = opened(60);
+  say(state, "saved");
+  advance(state, 5);
+  EXPECT_EQ(state.message, "saved");
+  advance(state, 60);
+  EXPECT_EQ(state.message, "");
+  say(state, "cannot be read", Severity::error);
+  advance(state, 600);
+  EXPECT_EQ(state.message, "cannot be read");
+}
+
 }  // namespace
 }  // namespace gpo

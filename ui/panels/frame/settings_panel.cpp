@@ -3,6 +3,7 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "ui/context/gui.h"
+#include "ui/context/imgui_versions.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -110,13 +111,17 @@ struct SettingRows {
                           &least,
                           &most,
                           format.c_str(),
-                          ImGuiSliderFlags_AlwaysClamp))
+                          ImGuiSliderFlags_AlwaysClamp) &&
+        !number_is_being_typed())
       change(setting, value);
     explain(setting, kDrag);
   }
 
   void check_box(const Setting& setting, bool on) {
-    if (ImGui::Checkbox(("##" + setting.key).c_str(), &on)) change(setting, on);
+    if (ImGui::Checkbox(("##" + setting.key).c_str(), &on)) {
+      settings = switched(settings, setting.key, on);
+      changed = true;
+    }
     explain(setting);
   }
 

@@ -23,6 +23,11 @@ std::optional<WorkerStatus> current_work(const PanelInput& input) {
   return std::nullopt;
 }
 
+std::uint32_t color_of(Severity severity) {
+  if (severity == Severity::error) return gpo::color_of(Role::bad);
+  return gpo::color_of(severity == Severity::warning ? Role::warning : Role::text_dim);
+}
+
 void draw_bar(float done, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size(140 * scale, std::round(8 * scale));
@@ -63,7 +68,8 @@ void status_line(const PanelInput& input, const Rectangle& place) {
     const float right = place.width - 12 * s;
     const bool error = !input.worker.error.empty();
     const std::string& message = error ? input.worker.error : input.state.message;
-    const std::uint32_t color = error ? color_of(Role::bad) : color_of(Role::text_dim);
+    const std::uint32_t color =
+        error ? gpo::color_of(Role::bad) : color_of(input.state.message_severity);
     if (const auto work = current_work(input)) {
       const float left = draw_progress(*work, s);
       ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));

@@ -46,12 +46,22 @@ Hover hover_in(const Inspection& inspection,
   return hover;
 }
 
-/// Click: picks the point, goes to the camera's frame, or moves the cube to there on the plane.
-void click(const PanelInput& input,
-           const ScreenRect& rect,
-           const OrbitCamera& camera,
-           const Hover& hover,
-           Commands& commands) {
+/// Right click: moves the cube to there on the plane; a left one is too easily astray.
+void move_cube_to(const PanelInput& input,
+                  const ScreenRect& rect,
+                  const OrbitCamera& camera,
+                  Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Vector2d at(io.MousePos.x, io.MousePos.y);
+  const Vector2d pressed(io.MouseClickedPos[1].x, io.MouseClickedPos[1].y);
+  if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(1)) return;
+  if ((at - pressed).norm() > 4 * input.scale) return;
+  const auto point = plane_at(*input.inspection(), camera, rect.size, at - rect.min);
+  if (point) push(commands, MoveCube{*point});
+}
+
+/// Click: picks the point, or goes to the camera's frame.
+void click(const PanelInput& input, const Hover& hover, Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
   const Vector2d at(io.MousePos.x, io.MousePos.y);
   const Vector2d pressed(io.MouseClickedPos[0].x, io.MouseClickedPos[0].y);
@@ -65,8 +75,6 @@ void click(const PanelInput& input,
     if (!io.KeyCtrl) lead_with(input.state, *hover.track, commands);
   } else if (hover.camera) {
     push(commands, GoToFrame{*hover.camera});
-  } else if (const auto point = plane_at(*input.inspection(), camera, rect.size, at - rect.min)) {
-    push(commands, MoveCube{*point});
   }
 }
 
@@ -87,7 +95,8 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   orbit_and_zoom(camera, place.height, commands);
   const Hover hover = hover_in(inspection, rect, camera, input.scale);
   if (ImGui::IsItemHovered() && hover != state.hover) push(commands, HoverOver{hover});
-  click(input, rect, camera, hover, commands);
+  click(input, hover, commands);
+  move_cube_to(input, rect, camera, commands);
   SceneViewOptions options = scene_options(state);
   options.legend = room_for_legend(place, input.scale);
   draw_scene_view(

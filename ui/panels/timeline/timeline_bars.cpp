@@ -21,10 +21,13 @@ struct BarColors {
 };
 
 /// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
-/// taken for one, so what is no inlier is gray then. Without a verdict it is told by green and red.
+/// taken for one, so what is no inlier is gray. A window that failed has no colors: green would be
+/// taken for success.
 BarColors bar_colors(const Inspection& inspection, int frame) {
   const auto& growth = inspection.growth;
-  if (growth.empty()) return {imgui_color(Role::good, 0.75), imgui_color(Role::bad, 0.75)};
+  const bool failed = !inspection.initialization || !inspection.initialization->ok;
+  if (failed || growth.empty())
+    return {imgui_color(Role::text_dim, 0.75), imgui_color(Role::text_dim, 0.4)};
   const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
   const std::uint32_t rgb =
       judged ? look_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim);
@@ -128,8 +131,24 @@ void draw_bookmarks(ImDrawList& list,
   }
 }
 
+namespace {
+
+void draw_failure(ImDrawList& list, const std::string& reason, float left, float top, float scale) {
+  const ImFont* f = font(Font::small);
+  draw_sign(list, Sign::cross, {left + 6 * scale, top + f->FontSize / 2}, color_of(Role::bad));
+  list.AddText(f,
+               f->FontSize,
+               {std::round(left + 16 * scale), std::round(top)},
+               imgui_color(Role::text),
+               ("not initialized: " + reason).c_str());
+}
+
+}  // namespace
+
 void draw_verdict_legend(
     ImDrawList& list, const Inspection& inspection, float left, float top, float scale) {
+  if (inspection.initialization && !inspection.initialization->ok)
+    return draw_failure(list, inspection.initialization->reason, left, top, scale);
   const ImFont* f = font(Font::small);
   const auto write = [&](const char* text, std::uint32_t rgb) {
     list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);

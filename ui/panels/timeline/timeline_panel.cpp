@@ -262,7 +262,9 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   }
   const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
-  const bool legend = input.inspection() && !input.inspection()->growth.empty() &&
+  const Inspection* shown = input.inspection();
+  const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
+  const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
   const Rectangle bar{left,
                       place.y + std::round(12 * s),

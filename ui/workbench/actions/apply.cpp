@@ -27,7 +27,7 @@ void apply(WorkbenchState& state, const Command& command) {
   };
   const auto go = [&](const GoToFrame& c) { go_to_frame(state, c.frame); };
   const auto cube = [&](const SetCubeSide& c) { state.cube_side = std::clamp(c.side, 0.0, 2.0); };
-  const auto move = [&](const MoveCube& c) { state.cube_ray = c.ray; };
+  const auto move = [&](const MoveCube& c) { move_cube(state, c.ray); };
   const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
   const auto zoom_all = [&](const ZoomCompare& c) { state.compare_zoom = c.zoom; };
   const auto normals = [&](const ZoomNormals& c) { state.normals_zoom = c.zoom; };

@@ -16,12 +16,13 @@ namespace {
 using State = WorkbenchState;
 
 void add_undo(std::vector<Action>& table) {
-  Action undo = plain("undo",
-                      "Undo",
-                      "Edit",
-                      {control('Z')},
-                      "Takes back the last change of the settings or of the excluded tracks",
-                      gpo::undo);
+  Action undo = plain(
+      "undo",
+      "Undo",
+      "Edit",
+      {control('Z')},
+      "Takes back the last change of the settings, of the excluded tracks or of the cube's place",
+      gpo::undo);
   undo.value = [](const State& s) { return std::to_string(s.undo.size()); };
   Action redo = plain("redo",
                       "Redo",
@@ -32,6 +33,12 @@ void add_undo(std::vector<Action>& table) {
   redo.value = [](const State& s) { return std::to_string(s.redo.size()); };
   table.push_back(undo);
   table.push_back(redo);
+  table.push_back(plain("reset-cube",
+                        "Put the cube back",
+                        "Edit",
+                        {},
+                        "The cube stands where it comes by itself again",
+                        [](State& s) { move_cube(s, std::nullopt); }));
 }
 
 void select_track(State& state, const Arguments& arguments) {

@@ -112,7 +112,7 @@ void browse(State& state, const Arguments& arguments) {
 void add_browse(std::vector<Action>& table) {
   Action action{
       "browse",
-      "Open a file",
+      "Open",
       "File",
       {control('O')},
       "Chooses a recording, session or results.csv to open; or a file for another action"};

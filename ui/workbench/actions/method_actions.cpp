@@ -91,16 +91,15 @@ std::vector<Action> settings_by_name() {
 }
 
 void add_settings(std::vector<Action>& table) {
-  Action ransac = plain("ransac",
-                        "RANSAC",
-                        "Method",
-                        {letter('R')},
-                        "Rejects outliers by a homography from the reference frame",
-                        [](State& s) {
-                          Settings settings = s.settings;
-                          settings.ransac = !uses_ransac(settings);
-                          change_settings(s, settings);
-                        });
+  Action ransac =
+      plain("ransac",
+            "RANSAC",
+            "Method",
+            {letter('R')},
+            "Rejects outliers by a homography from the reference frame",
+            [](State& s) {
+              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings)));
+            });
   ransac.checked = [](const State& s) { return uses_ransac(s.settings); };
   ransac.needs_recording = false;
   table.push_back(ransac);

@@ -35,7 +35,11 @@ void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   const Settings fitting = fit_window(state.settings, state.frame_count());
   state.message.clear();
   for (const std::string& note : state.recording->notes) say(state, note);
-  if (!state.recording->notes.empty()) state.message = state.recording->notes.front();
+  if (!state.recording->notes.empty()) {
+    state.message = state.recording->notes.front();
+    state.message_severity = Severity::note;
+    state.message_seconds = 0;
+  }
   if (fitting.start != state.settings.start) {
     say(state,
         "start " + std::to_string(state.settings.start) + " does not fit: the last of " +

@@ -34,7 +34,10 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   if (opened) {
     adopt(state, published.recording);
     survey.open(published.recording);
-    if (link.remembers_files && !link.opening.empty()) remember_file(link.opening);
+    if (link.remembers_files && !link.opening.empty()) {
+      remember_file(link.opening);
+      state.recent = recent_files();
+    }
   }
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
