@@ -88,9 +88,11 @@ std::string man_options(const CLI::App& command) {
   return text;
 }
 
+// groff 1.23 takes the adjustment of each paragraph from the string AD, those before from .ad
+// alone.
 std::string man_page(const CLI::App& app, const std::string& version) {
   std::string text = fmt::format(
-      ".TH GPO\\-INSPECTOR 1 \"\" \"gpo\\-inspector {}\" \"User Commands\"\n.ad l\n"
+      ".TH GPO\\-INSPECTOR 1 \"\" \"gpo\\-inspector {}\" \"User Commands\"\n.ds AD l\n.ad l\n"
       ".SH NAME\ngpo\\-inspector \\- inspects monocular initialization on planar scenes\n"
       ".SH SYNOPSIS\n.B gpo\\-inspector\n[\\fICOMMAND\\fR] [\\fIOPTIONS\\fR] [\\fIRECORDING\\fR]\n"
       ".SH DESCRIPTION\nOpens a recorded sequence, follows points through a window of frames, "
