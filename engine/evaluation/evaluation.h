@@ -27,6 +27,9 @@ struct Evaluation {
   std::optional<double> pne_aligned_deg;
   std::optional<double> pde_m;
   std::optional<double> pne_bound_deg;
+  /// Of gravity and meters by an accelerometer; gravity where the truth's world stands upright.
+  std::optional<double> scale_error_percent;
+  std::optional<double> gravity_error_deg;
 };
 
 /// Measures an initialization that is `ok`; engine/method.md, "Metrics". `seed` drives the plane

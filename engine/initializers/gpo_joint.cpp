@@ -290,7 +290,8 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 /// With the weights that the solution rests on.
 void add_uncertainty(const Fit& fit, Initialization& result) {
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
-  result.uncertainty = uncertainty_of(fit.window, fit.observations, motion, fit.turns.model);
+  result.uncertainty =
+      uncertainty_of(fit.window, fit.observations, motion, fit.turns.model, Centers::jointly);
   if (!result.uncertainty || result.planes.empty()) return;
   result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
   result.planes[0].distance_sigma = 0;

@@ -134,7 +134,8 @@ Initialization assessed(const Method& method, const Window& window, Initializati
       scene_criterion(window, result.cameras, result.verdict->noise_px.value_or(0));
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   if (method.rotations)
-    result.uncertainty = uncertainty_of(window, result.plane, result.cameras, *method.rotations);
+    result.uncertainty =
+        uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   Initialization refused = failed(result.verdict->reason, result.solver);
   refused.candidates = std::move(result.candidates);

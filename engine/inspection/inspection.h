@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/initializers/common/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/motion.h"
@@ -35,6 +36,9 @@ struct Inspection {
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
   std::shared_ptr<const Initialization> initialization;
+  /// Gravity and meters, of an initialization that is ok; nothing where they are not asked for, or
+  /// the recording has no accelerometer.
+  std::optional<InertialAlignment> inertial;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
   std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations

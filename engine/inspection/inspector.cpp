@@ -42,6 +42,16 @@ void without_plane(Evaluation& evaluation) {
   evaluation.pne_bound_deg.reset();
 }
 
+/// Gravity and meters beside the truth's.
+void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
+  if (!inertial.ok) return;
+  if (inertial.scale_known && evaluation.scale)
+    evaluation.scale_error_percent = 100 * (inertial.scale / *evaluation.scale - 1);
+  if (!truth.upright || !truth.cameras.front()) return;
+  const Eigen::Vector3d down = -truth.cameras.front()->R_wc.row(2).transpose();
+  evaluation.gravity_error_deg = angle_deg(inertial.gravity_m_s2, down);
+}
+
 }  // namespace
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
@@ -75,6 +85,8 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       inspection.evaluation = evaluate(
           *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
       if (!leads_truth) without_plane(*inspection.evaluation);
+      if (inspection.inertial)
+        compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
       return place_cube(

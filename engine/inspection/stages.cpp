@@ -4,6 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/make_window.h"
+#include "engine/inertial/inertial_alignment.h"
+#include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize/steps.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -86,6 +88,17 @@ Initialization initialized(const Recording& recording,
   return method.initialize_from
              ? method.initialize_from(window, sources_of(recording, window), watch)
              : method.initialize(window, settings.initializer, watch);
+}
+
+/// Nothing where the recording has no accelerometer.
+std::optional<InertialAlignment> inertial_of(const Recording& recording,
+                                             const Window& window,
+                                             const Initialization& initialization) {
+  if (!recording.gyroscope || recording.gyroscope->accelerations_m_s2.empty()) return std::nullopt;
+  return align_inertial(uncertain_poses(window, initialization),
+                        window.timestamps_ns,
+                        *recording.gyroscope,
+                        recording.T_body_camera);
 }
 
 }  // namespace
@@ -183,6 +196,8 @@ void Stages::initialize(const Settings& settings,
     inspection.motion = frame_motion(window);
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
   }
+  if (initialization.ok && settings.gravity == Gravity::after)
+    inspection.inertial = inertial_of(*recording, window, initialization);
   complete_verdict(window, inspection.growth, initialization);
   if (recording->camera_source == CameraSource::guess) {
     std::ranges::for_each(inspection.growth, demote);

@@ -26,6 +26,7 @@ struct GroundTruth {
   std::string source;                                           ///< file name, for people
   std::vector<std::optional<Pose>> poses;                       ///< in the truth's world [m]
   std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< as `poses`; empty: not known
+  bool upright = false;  ///< the world's z axis points away from gravity
 };
 
 /// The truth over one window, in the truth's own world.
@@ -34,6 +35,7 @@ struct WindowTruth {
   std::vector<std::optional<Pose>> cameras;                     ///< one a frame of the window [m]
   std::optional<Plane> plane;                                   ///< [m]
   std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< as `cameras`; empty: not known
+  bool upright = false;  ///< the world's z axis points away from gravity
 };
 
 }  // namespace gpo

@@ -19,46 +19,7 @@ using Eigen::Vector3d;
 
 constexpr int kLeastClusters = 5;  // fewer frames tell nothing of what they share
 
-/// Huber's loss beyond its knee, k |r|, bends along the error not at all and across it by k / |r|;
-/// the weights of its least squares, k / |r| both ways, would promise too much. Nothing where every
-/// weight is one, or a matrix already.
-std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
-                                                   const FrameState& state) {
-  if (!f.weight.empty()) return std::nullopt;
-  if (std::all_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m == 1; }))
-    return std::nullopt;
-  FrameObservations curved = f;
-  curved.weight.assign(f.count, Eigen::Matrix2d::Identity());
-  for (int k = 0; k < f.count; ++k) {
-    if (f.mask[k] == 1) continue;
-    const Eigen::Vector2d r = transfer_error_px(f, state, k).normalized();
-    curved.weight[k] = f.mask[k] * f.mask[k] * (Eigen::Matrix2d::Identity() - r * r.transpose());
-  }
-  return curved;
-}
-
 int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
-
-/// J^T r of an observation over (u, phi, t), of its own error or another one, weighted as it is.
-Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
-                                        const FrameState& state,
-                                        int k,
-                                        Eigen::Vector2d r) {
-  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
-  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
-  const double x = y.x() / y.z();
-  const double v = y.y() / y.z();
-  r = f.weight.empty() ? Eigen::Vector2d(f.mask[k] * f.mask[k] * r)
-                       : Eigen::Vector2d(f.weight[k] * r);
-  // dp/dy, transposed, times r; then dy/du = -tau_c (x_1.N), dy/dphi = [y]x, dy/dt = -n.x_1.
-  const double a = state.fx * r.x() / y.z();
-  const double b = state.fy * r.y() / y.z();
-  const Vector3d g(a, b, -(a * x + b * v));
-  Eigen::Matrix<double, 8, 1> gradient;
-  gradient << -state.tau_c.dot(g) * (state.tangents.transpose() * ray), g.cross(y),
-      -state.normal.dot(ray) * g;
-  return gradient;
-}
 
 /// How one observation moves the solution.
 struct Influence {
@@ -95,26 +56,6 @@ std::vector<Influence> influences(const PlaneObservations& observations,
   return all;
 }
 
-/// By how much the errors of a frame's observations change with one parameter of the lens [px].
-Eigen::Matrix2Xd lens_errors_px(const Window& window,
-                                const FrameObservations& f,
-                                const FrameState& state,
-                                int frame,
-                                std::size_t parameter) {
-  const std::vector<Eigen::Matrix2Xd>& moves = window.lens_moves_px[parameter];
-  FrameObservations moved = f;
-  Eigen::Matrix2Xd errors(2, f.count);
-  for (int o = 0; o < f.count; ++o) {
-    const int j = f.track[o];
-    moved.ray_x[o] += moves[0](0, j) / state.fx;
-    moved.ray_y[o] += moves[0](1, j) / state.fy;
-    moved.u[o] += moves[frame](0, j);
-    moved.v[o] += moves[frame](1, j);
-    errors.col(o) = transfer_error_px(moved, state, o) - transfer_error_px(f, state, o);
-  }
-  return errors;
-}
-
 /// What frames have in common, beside what each observation has for itself; zero where they are too
 /// few to tell.
 SharedMatrix spread_by_frame(const std::vector<Influence>& all,
@@ -133,6 +74,41 @@ SharedMatrix spread_by_frame(const std::vector<Influence>& all,
 }
 
 }  // namespace
+
+std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
+                                                   const FrameState& state) {
+  if (!f.weight.empty()) return std::nullopt;
+  if (std::all_of(f.mask.begin(), f.mask.begin() + f.count, [](double m) { return m == 1; }))
+    return std::nullopt;
+  FrameObservations curved = f;
+  curved.weight.assign(f.count, Eigen::Matrix2d::Identity());
+  for (int k = 0; k < f.count; ++k) {
+    if (f.mask[k] == 1) continue;
+    const Eigen::Vector2d r = transfer_error_px(f, state, k).normalized();
+    curved.weight[k] = f.mask[k] * f.mask[k] * (Eigen::Matrix2d::Identity() - r * r.transpose());
+  }
+  return curved;
+}
+
+Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
+                                        const FrameState& state,
+                                        int k,
+                                        Eigen::Vector2d r) {
+  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
+  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
+  const double x = y.x() / y.z();
+  const double v = y.y() / y.z();
+  r = f.weight.empty() ? Eigen::Vector2d(f.mask[k] * f.mask[k] * r)
+                       : Eigen::Vector2d(f.weight[k] * r);
+  // dp/dy, transposed, times r; then dy/du = -tau_c (x_1.N), dy/dphi = [y]x, dy/dt = -n.x_1.
+  const double a = state.fx * r.x() / y.z();
+  const double b = state.fy * r.y() / y.z();
+  const Vector3d g(a, b, -(a * x + b * v));
+  Eigen::Matrix<double, 8, 1> gradient;
+  gradient << -state.tau_c.dot(g) * (state.tangents.transpose() * ray), g.cross(y),
+      -state.normal.dot(ray) * g;
+  return gradient;
+}
 
 int own_size(RotationModel model, const PlaneMotion& motion) {
   const bool noisy = model == RotationModel::bias && !motion.gyro_noise_rad.empty();
@@ -270,70 +246,28 @@ Spread spread_of(const Window& window,
   return spread;
 }
 
-// What a step of the walk turns, it turns in all later frames: there its axes are R_wc^T of the
-// world's. A frame whose noise is phi moves the solution by the prior's weight times it.
-void add_gyro_noise(const Window& window,
-                    const PlaneMotion& motion,
-                    const Bread& bread,
-                    const SharedMatrix& shared_inverse,
-                    Spread& spread) {
-  if (bread.noise_weights.empty()) return;
-  const int frames = static_cast<int>(motion.tau.size());
-  using Moves = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-  std::vector<OwnMatrix> own(frames);  // of each frame's noise, in the world's axes
-  std::vector<Moves> later(frames + 1, Moves::Zero(shared_inverse.rows(), 3));
-  for (int i = frames - 1; i > 0; --i) {
-    const Eigen::Matrix3d turn = bread.noise_weights[i] * motion.R_wc[i].transpose();
-    own[i] = -bread.frames[i].inverse.leftCols<3>() * turn;
-    const SharedMatrix pull = bread.frames[i].gain.topRows<3>().transpose() * turn;
-    later[i] = later[i + 1] + shared_inverse * pull;
+std::vector<SolutionMove> moves_by_track(const Window& window,
+                                         const PlaneObservations& observations,
+                                         const PlaneMotion& motion,
+                                         const Bread& bread,
+                                         const SharedMatrix& shared_inverse,
+                                         double degrees_of_freedom) {
+  const std::vector<Influence> all = influences(observations, motion, bread, shared_inverse);
+  std::vector<int> place(window.track_count(), -1);
+  int tracks = 0;
+  for (const Influence& one : all)
+    if (place[one.track] < 0) place[one.track] = tracks++;
+  const OwnVector none = OwnVector::Zero(bread.frames[1].inverse.rows());
+  std::vector<SolutionMove> moves(
+      tracks, {Eigen::VectorXd::Zero(bread.layout.size()), {motion.tau.size(), none}});
+  const double weight =
+      std::sqrt(degrees_of_freedom * tracks / std::max(1.0, static_cast<double>(tracks) - 1));
+  for (const Influence& one : all) {
+    SolutionMove& move = moves[place[one.track]];
+    move.shared += weight * one.shared;
+    move.own[one.frame] += weight * one.own;
   }
-  SharedMatrix walked = Moves::Zero(shared_inverse.rows(), 3);
-  double before = 0;
-  for (int i = 1; i < frames; ++i) {
-    const double sigma = gyro_noise_sigma_rad(window, i);
-    const double variance = sigma * sigma;
-    walked += (variance - before) * later[i];
-    spread.shared += (variance - before) * later[i] * later[i].transpose();
-    spread.cross[i] += walked * own[i].transpose();
-    spread.own[i] += variance * own[i] * own[i].transpose();
-    before = variance;
-  }
-}
-
-void add_lens(const Window& window,
-              const PlaneObservations& observations,
-              const PlaneMotion& motion,
-              const Bread& bread,
-              const SharedMatrix& shared_inverse,
-              Spread& spread) {
-  const int frames = static_cast<int>(motion.tau.size());
-  const auto own = bread.frames[1].inverse.rows();
-  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p) {
-    Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
-    std::vector<OwnVector> of_frame(frames, OwnVector::Zero(own));
-    for (int i = 1; i < frames; ++i) {
-      for (std::size_t k = 0; k < bread.columns.size(); ++k) {
-        const int plane = static_cast<int>(k);
-        const FrameObservations& f = of_plane(observations, plane)[i];
-        const FrameState state = state_of(observations, motion, i, plane);
-        const Eigen::Matrix2Xd errors = lens_errors_px(window, f, state, i, p);
-        const FrameObservations curved = curvature_weights(f, state).value_or(f);
-        Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
-        for (int o = 0; o < f.count; ++o) g += gradient_of(curved, state, o, errors.col(o));
-        reduced(bread.places(plane)) += bread.columns[k][i].transpose() * g;
-        of_frame[i] += g.tail(own);
-      }
-      reduced -= bread.frames[i].gain.transpose() * of_frame[i];
-    }
-    const Eigen::VectorXd x = -(shared_inverse * reduced);
-    spread.shared += x * x.transpose();
-    for (int i = 1; i < frames; ++i) {
-      const OwnVector e = -(bread.frames[i].inverse * of_frame[i]);
-      spread.cross[i] += x * e.transpose();
-      spread.own[i] += e * e.transpose();
-    }
-  }
+  return moves;
 }
 
 }  // namespace gpo

@@ -37,6 +37,17 @@ FrameState state_of(const PlaneObservations& observations,
 /// A frame's normal equations; under Huber's loss JtJ is what the loss itself bends by.
 FrameNormals curved_normals(const FrameObservations& observations, const FrameState& state);
 
+/// Huber's loss beyond its knee, k |r|, bends along the error not at all and across it by k / |r|;
+/// the weights of its least squares, k / |r| both ways, would promise too much. Nothing where every
+/// weight is one, or a matrix already.
+std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
+                                                   const FrameState& state);
+/// J^T r of an observation over (u, phi, t), of its own error or another one, weighted as it is.
+Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
+                                        const FrameState& state,
+                                        int k,
+                                        Eigen::Vector2d r);
+
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< the leading one first; one a frame
   double sigma_px = 0;                            ///< of a pixel's coordinate, from the residuals
@@ -67,6 +78,13 @@ struct Bread {
   std::vector<int> places(int plane) const;
 };
 
+/// How something that is wrong moves the solution: x what is shared, e what is a frame's own with x
+/// left out, one a frame.
+struct SolutionMove {
+  Eigen::VectorXd shared;
+  std::vector<OwnVector> own;
+};
+
 Bread bread_of(const Window& window,
                const PlaneMotion& motion,
                const Linearization& linearized,
@@ -90,21 +108,12 @@ Spread spread_of(const Window& window,
                  const SharedMatrix& shared_inverse,
                  double degrees_of_freedom);
 
-/// Adds what a gyroscope's noise, a random walk, moves where it is unknown (engine/method.md, eq.
-/// 14f).
-void add_gyro_noise(const Window& window,
-                    const PlaneMotion& motion,
-                    const Bread& bread,
-                    const SharedMatrix& shared_inverse,
-                    Spread& spread);
-
-/// Adds what is not known of the lens: its parameters' errors are independent, each moves the whole
-/// solution.
-void add_lens(const Window& window,
-              const PlaneObservations& observations,
-              const PlaneMotion& motion,
-              const Bread& bread,
-              const SharedMatrix& shared_inverse,
-              Spread& spread);
+/// Of each track that is seen, weighted so that their squares sum up to `spread_of`'s.
+std::vector<SolutionMove> moves_by_track(const Window& window,
+                                         const PlaneObservations& observations,
+                                         const PlaneMotion& motion,
+                                         const Bread& bread,
+                                         const SharedMatrix& shared_inverse,
+                                         double degrees_of_freedom);
 
 }  // namespace gpo

@@ -3,14 +3,19 @@
 #include "engine/initializers/certainty/uncertainty.h"
 
 #include "engine/initializers/certainty/bend.h"
+#include "engine/initializers/certainty/joint_centers.h"
 #include "engine/initializers/certainty/neighbors.h"
 #include "engine/initializers/certainty/sandwich.h"
 #include "engine/initializers/certainty/shared_information.h"
+#include "engine/initializers/certainty/solution_moves.h"
 #include "engine/initializers/common/window_checks.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace gpo {
 namespace {
@@ -86,12 +91,29 @@ std::optional<double> bound_deg(const Window& window,
   return degrees(linearized.sigma_px * std::sqrt(covariance->topLeftCorner<2, 2>().trace()));
 }
 
+/// All that is wrong and moves single frames, too.
+std::vector<SolutionMove> all_moves(const Window& window,
+                                    const PlaneObservations& observations,
+                                    const PlaneMotion& motion,
+                                    const Bread& bread,
+                                    const SharedMatrix& shared_inverse,
+                                    double degrees_of_freedom) {
+  std::vector<SolutionMove> moves =
+      moves_by_track(window, observations, motion, bread, shared_inverse, degrees_of_freedom);
+  std::ranges::move(moves_by_gyro_noise(window, motion, bread, shared_inverse),
+                    std::back_inserter(moves));
+  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p)
+    moves.push_back(move_by_lens(window, observations, motion, bread, shared_inverse, p));
+  return moves;
+}
+
 }  // namespace
 
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const PlaneObservations& observations,
                                           const PlaneMotion& motion,
-                                          RotationModel model) {
+                                          RotationModel model,
+                                          Centers centers) {
   const auto linearized = linearize(observations, motion, model);
   if (!linearized) return std::nullopt;
   const bool holds_bias = model == RotationModel::known && window.gyro;
@@ -102,12 +124,8 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   const int frames = static_cast<int>(motion.tau.size());
   const double residuals = 2.0 * observations.count();
   const double unknowns = inverse->rows() + own_size(model, motion) * (frames - 1.0);
-  Spread spread = spread_of(window,
-                            observations,
-                            motion,
-                            bread,
-                            *inverse,
-                            residuals / std::max(1.0, residuals - unknowns));
+  const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
+  Spread spread = spread_of(window, observations, motion, bread, *inverse, degrees_of_freedom);
   std::vector<std::optional<Eigen::Matrix2d>> neighbors(observations.others.size() + 1);
   if (!holds_bias)
     neighbors =
@@ -152,6 +170,10 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < frames; ++i) add_frame(motion, i, bread.frames[i], spread, result);
+  if (centers == Centers::jointly) {
+    const auto moves = all_moves(window, observations, motion, bread, *inverse, degrees_of_freedom);
+    result.joint_covariance = joint_covariance(motion, bread, moves, covariance);
+  }
   if (model == RotationModel::bias) result.bias_covariance = covariance.bottomRightCorner<3, 3>();
   const auto bound = [&](RotationModel of) { return bound_deg(window, motion, *linearized, of); };
   result.bound_known_rotations_deg = bound(RotationModel::known);
@@ -162,8 +184,10 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
-                                          RotationModel model) {
-  return uncertainty_of(window, plane_observations(window), motion_of(plane, cameras), model);
+                                          RotationModel model,
+                                          Centers centers) {
+  return uncertainty_of(
+      window, plane_observations(window), motion_of(plane, cameras), model, centers);
 }
 
 }  // namespace gpo

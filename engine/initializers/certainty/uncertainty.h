@@ -16,17 +16,23 @@
 
 namespace gpo {
 
+/// Whether the covariance of all centers at once is computed, too, which takes a millisecond or
+/// two.
+enum class Centers { one_by_one, jointly };
+
 /// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.
 /// Nothing where the solution is not determined or a point lies behind a camera.
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
-                                          RotationModel rotations);
+                                          RotationModel rotations,
+                                          Centers centers = Centers::one_by_one);
 
 /// The same of a solution over several planes whose observations are weighted.
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const PlaneObservations& observations,
                                           const PlaneMotion& motion,
-                                          RotationModel rotations);
+                                          RotationModel rotations,
+                                          Centers centers = Centers::one_by_one);
 
 }  // namespace gpo

@@ -131,14 +131,37 @@ ordered_json planes_json(const Inspection& inspection) {
   return planes;
 }
 
+/// World = reference camera; scale: meters per plane distance, sigma: of its logarithm.
+ordered_json inertial_json(const InertialAlignment& inertial) {
+  if (!inertial.ok) return {{"status", "failed"}, {"reason", inertial.reason}};
+  ordered_json velocities = ordered_json::array();
+  for (const Eigen::Vector3d& v : inertial.velocities_m_s) velocities.push_back(vector_json(v));
+  const bool told = std::isfinite(inertial.log_scale_sigma);
+  return {{"status", "ok"},
+          {"reason", inertial.scale_reason},
+          {"gravity", vector_json(inertial.gravity_m_s2)},
+          {"gravity_sigma_deg", inertial.gravity_sigma_deg},
+          {"direction_covariance_rad2", matrix_json(inertial.direction_covariance)},
+          {"scale", inertial.scale},
+          {"sigma", told ? ordered_json(inertial.log_scale_sigma) : ordered_json(nullptr)},
+          {"scale_known", inertial.scale_known},
+          {"velocities", velocities},
+          {"accelerometer_bias", vector_json(inertial.accelerometer_bias_m_s2)},
+          {"accelerometer_bias_covariance", matrix_json(inertial.accelerometer_bias_covariance)},
+          {"misfit", inertial.misfit}};
+}
+
 ordered_json metrics_json(const Evaluation& evaluation) {
-  return {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
-          {"scale", optional_json(evaluation.scale)},
-          {"ate_m", optional_json(evaluation.ate_m)},
-          {"pne_deg", optional_json(evaluation.pne_deg)},
-          {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
-          {"pde_m", optional_json(evaluation.pde_m)},
-          {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+  ordered_json json = {{"alignment", evaluation.alignment == Alignment::ok ? "ok" : "degenerate"},
+                       {"scale", optional_json(evaluation.scale)},
+                       {"ate_m", optional_json(evaluation.ate_m)},
+                       {"pne_deg", optional_json(evaluation.pne_deg)},
+                       {"pne_aligned_deg", optional_json(evaluation.pne_aligned_deg)},
+                       {"pde_m", optional_json(evaluation.pde_m)},
+                       {"pne_bound_deg", optional_json(evaluation.pne_bound_deg)}};
+  if (evaluation.scale_error_percent) json["scale_error_percent"] = *evaluation.scale_error_percent;
+  if (evaluation.gravity_error_deg) json["gravity_error_deg"] = *evaluation.gravity_error_deg;
+  return json;
 }
 
 ordered_json dropped_json(const Inspection& inspection) {
@@ -292,6 +315,7 @@ ordered_json to_json(const Inspection& inspection) {
     if (inspection.recording->camera_source == CameraSource::guess)
       json["uncertainty"]["lens"] = "a guess, taken as exact";
   }
+  if (inspection.inertial) json["inertial"] = inertial_json(*inspection.inertial);
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);

@@ -67,6 +67,24 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   return text;
 }
 
+/// Gravity's direction and the scale, or why there are none.
+std::string inertial_text(const std::optional<InertialAlignment>& inertial, const Plane& plane) {
+  if (!inertial) return "";
+  if (!inertial->ok) return row("gravity", "not found: " + inertial->reason);
+  const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
+  return row("gravity",
+             fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera)",
+                         down.x(),
+                         down.y(),
+                         down.z(),
+                         inertial->gravity_sigma_deg)) +
+         row("scale",
+             inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away",
+                                                 100 * inertial->log_scale_sigma,
+                                                 inertial->scale * plane.distance)
+                                   : inertial->scale_reason);
+}
+
 /// Nothing of a method that solves nothing.
 std::string solver_text(const SolverReport& solver) {
   if (solver.unknowns == 0) return "";
@@ -87,7 +105,10 @@ std::string metrics_text(const Evaluation& e) {
              with_unit(e.pne_deg, 1, 3, "deg") + "  (bound " +
                  with_unit(e.pne_bound_deg, 1, 3, "deg") + ", after alignment " +
                  with_unit(e.pne_aligned_deg, 1, 3, "deg") + ")") +
-         row("PDE", with_unit(e.pde_m, 1e3, 2, "mm"));
+         row("PDE", with_unit(e.pde_m, 1e3, 2, "mm")) +
+         (e.scale_error_percent ? row("scale error", with_unit(e.scale_error_percent, 1, 2, "%"))
+                                : "") +
+         (e.gravity_error_deg ? row("up error", with_unit(e.gravity_error_deg, 1, 2, "deg")) : "");
 }
 
 std::string truth_text(const WindowTruth& truth) {
@@ -141,6 +162,7 @@ std::string to_text(const Inspection& inspection) {
             fmt::format(
                 "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
         uncertainty_text(result, inspection.recording->camera_source) +
+        inertial_text(inspection.inertial, result.plane) +
         row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) + solver_text(result.solver);
   }
   text += row("time",

@@ -4,6 +4,7 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/frontend/tracking/tracking.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/initializers/common/initializer_options.h"
 #include "engine/window/window.h"
@@ -34,6 +35,7 @@ struct Settings {
   /// Ids of tracks that are left out as if they had never been seen, ascending.
   std::vector<std::int64_t> exclude = {};
   InitializerOptions initializer = {};
+  Gravity gravity = Gravity::after;  ///< gravity and meters, where there is an accelerometer
 
   bool operator==(const Settings&) const = default;
 };

@@ -243,6 +243,14 @@ std::span<const Setting> settings_table() {
     std::vector<Setting> rows = window_rows();
     add_inlier_rows(rows);
     add_option_rows(rows);
+    rows.push_back(
+        row([](auto& s) -> auto& { return s.gravity; },
+            {.key = "gravity",
+             .title = "Gravity",
+             .help = "Gravity and meters by the accelerometer, where there is one, after "
+                     "the initialization and from its poses; or off",
+             .stage = SettingStage::initialization,
+             .advanced = true}));
     return rows;
   }();
   return table;

@@ -37,6 +37,7 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
   if (recording.truth) {
     const auto begin = recording.truth->poses.begin() + start;
     WindowTruth truth{recording.truth->source, {begin, begin + frames}, recording.plane};
+    truth.upright = recording.truth->upright;
     if (!truth.plane) truth.plane = plane_of_board(recording, start, truth.cameras.front());
     return std::make_shared<const WindowTruth>(std::move(truth));
   }

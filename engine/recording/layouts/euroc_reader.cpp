@@ -105,6 +105,7 @@ std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& f
   }
   recording.truth = camera_truth(
       path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
+  recording.truth->upright = true;  // as motion capture has it
   return path.mean_gyro_bias_rad_s;
 }
 

@@ -1,0 +1,147 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inertial/alignment_problem.h"
+
+#include "engine/geometry/pose.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+namespace gpo {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/// What of the residuals does not depend on scale, velocity and gravity.
+VectorXd measured(const AlignmentProblem& problem, const Vector3d& bias, const Vector3d& lever) {
+  VectorXd all(problem.centers.size());
+  const Matrix3d& R_first = problem.path.front().R;
+  for (std::size_t k = 1; k < problem.path.size(); ++k) {
+    const InertialFrame& frame = problem.path[k];
+    const Matrix3d by_acc = frame.by_biases.bottomRightCorner<3, 3>();
+    all.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) =
+        (frame.R - R_first) * lever + frame.position + by_acc * bias;
+  }
+  return all;
+}
+
+/// A solution of s c_k - v t_k - (g_0 + B y) t_k^2 / 2 = measured; (s, v, y).
+VectorXd linear_solution(const AlignmentProblem& problem, const Vector3d& g_0, const MatrixXd& B) {
+  const Eigen::Index rows = problem.centers.size();
+  MatrixXd A(rows, 4 + B.cols());
+  VectorXd b = measured(problem, Vector3d::Zero(), problem.lever_m);
+  A.col(0) = problem.centers;
+  for (std::size_t k = 1; k < problem.path.size(); ++k) {
+    const double t = problem.path[k].seconds;
+    const auto row = 3 * (static_cast<Eigen::Index>(k) - 1);
+    A.block<3, 3>(row, 1) = -t * Matrix3d::Identity();
+    A.block(row, 4, 3, B.cols()) = -0.5 * t * t * B;
+    b.segment<3>(row) += 0.5 * t * t * g_0;
+  }
+  return A.colPivHouseholderQr().solve(b);
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, 2> gravity_tangents(const Vector3d& gravity) {
+  const Vector3d g = gravity.normalized();
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents.col(0) = g.unitOrthogonal();
+  tangents.col(1) = g.cross(tangents.col(0));
+  return tangents;
+}
+
+AlignmentState stepped(const AlignmentState& state, const AlignmentVector& step) {
+  AlignmentState next = state;
+  next.velocity += step.head<3>();
+  const Vector3d turned =
+      state.gravity.normalized() + gravity_tangents(state.gravity) * step.segment<2>(3);
+  next.gravity = state.gravity.norm() * turned.normalized();
+  next.log_scale += step(kScaleUnknown);
+  next.bias += step.segment<3>(6);
+  next.lever += step.segment<3>(9);
+  return next;
+}
+
+VectorXd residuals(const AlignmentProblem& problem, const AlignmentState& state) {
+  VectorXd all =
+      std::exp(state.log_scale) * problem.centers - measured(problem, state.bias, state.lever);
+  for (std::size_t k = 1; k < problem.path.size(); ++k) {
+    const double t = problem.path[k].seconds;
+    all.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) -=
+        t * state.velocity + 0.5 * t * t * state.gravity;
+  }
+  return all;
+}
+
+AlignmentJacobian jacobian(const AlignmentProblem& problem,
+                           const AlignmentState& state,
+                           const VectorXd& meters) {
+  AlignmentJacobian J(meters.size(), kAlignmentUnknowns);
+  const auto tangents = gravity_tangents(state.gravity);
+  J.col(kScaleUnknown) = meters;
+  for (std::size_t k = 1; k < problem.path.size(); ++k) {
+    const InertialFrame& frame = problem.path[k];
+    const double t = frame.seconds;
+    const auto row = 3 * (static_cast<Eigen::Index>(k) - 1);
+    J.block<3, 3>(row, 0) = -t * Matrix3d::Identity();
+    J.block<3, 2>(row, 3) = -0.5 * t * t * state.gravity.norm() * tangents;
+    J.block<3, 3>(row, 6) = -frame.by_biases.bottomRightCorner<3, 3>();
+    J.block<3, 3>(row, 9) = problem.path.front().R - frame.R;
+  }
+  return J;
+}
+
+MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state) {
+  MatrixXd J(problem.centers.size(), 3);
+  for (std::size_t k = 1; k < problem.path.size(); ++k) {
+    const InertialFrame& frame = problem.path[k];
+    J.middleRows<3>(3 * (static_cast<Eigen::Index>(k) - 1)) =
+        skew(frame.R * state.lever) * frame.by_biases.topLeftCorner<3, 3>() -
+        frame.by_biases.bottomLeftCorner<3, 3>();
+  }
+  return J;
+}
+
+AlignmentState linear_start(const AlignmentProblem& problem, double gravity_m_s2) {
+  constexpr int kRounds = 3;
+  constexpr double kLeastScale = 1e-3;
+  VectorXd x = linear_solution(problem, Vector3d::Zero(), Matrix3d::Identity());
+  Vector3d g = gravity_m_s2 * x.tail<3>().normalized();
+  for (int round = 0; round < kRounds; ++round) {
+    const MatrixXd B = gravity_m_s2 * gravity_tangents(g);
+    x = linear_solution(problem, g, B);
+    g = gravity_m_s2 * (g + B * x.tail<2>()).normalized();
+  }
+  AlignmentState state;
+  state.velocity = x.segment<3>(1);
+  state.gravity = g;
+  state.log_scale = std::log(std::max(x(0), kLeastScale));
+  state.lever = problem.lever_m;
+  return state;
+}
+
+std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,
+                                            const AlignmentState& state) {
+  const Eigen::Index rows = problem.centers.size();
+  const double s = std::exp(state.log_scale);
+  const MatrixXd J = by_gyro_bias(problem, state);
+  ResidualNoise noise;
+  noise.of_path = s * s * problem.covariance.topLeftCorner(rows, rows);
+  noise.with_path = noise.of_path;
+  noise.with_path.noalias() += s * problem.covariance.topRightCorner(rows, 3) * J.transpose();
+  MatrixXd all = noise.with_path + problem.inertial_noise;
+  all.noalias() += J * (s * problem.covariance.bottomLeftCorner(3, rows) +
+                        problem.covariance.bottomRightCorner<3, 3>() * J.transpose());
+  noise.covariance.compute(all);
+  if (noise.covariance.info() != Eigen::Success) return std::nullopt;
+  return noise;
+}
+
+}  // namespace gpo

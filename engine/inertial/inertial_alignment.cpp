@@ -1,0 +1,267 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inertial/inertial_alignment.h"
+
+#include "engine/inertial/alignment_problem.h"
+#include "engine/inertial/imu_intervals.h"
+#include "engine/inertial/inertial_path.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr int kLeastFrames = 5;
+constexpr double kLeastForce_m_s2 = 5;  // of the mean specific force: less is free fall, or in g
+constexpr double kMostForce_m_s2 = 20;
+constexpr double kMostMisfit = 100;  // ten standard deviations: other axes, another clock
+constexpr const char* kNotDetermined = "not determined, move faster or longer";
+
+InertialAlignment refused(std::string reason) {
+  InertialAlignment result;
+  result.reason = std::move(reason);
+  return result;
+}
+
+/// The bias with which the gyroscope turns as the poses do, and what is not known of it then.
+struct TurnFit {
+  Vector3d bias_rad_s;
+  Matrix3d covariance;
+};
+
+/// One round of least squares over log((R_wc)^T R_gyro) = D db, the sensor's axes.
+TurnFit turn_fit(const UncertainPoses& poses,
+                 std::span<const Preintegration> between,
+                 const Matrix3d& R_sensor_camera,
+                 const Vector3d& bias_rad_s) {
+  constexpr double kAlike = 5;  // neighbors' errors are alike: so many count as one
+  const auto path = inertial_path(between, R_sensor_camera.transpose());
+  Matrix3d N = 1e-12 * Matrix3d::Identity();
+  Vector3d b = Vector3d::Zero();
+  double squares = 0;
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const Matrix3d R_w_sensor = poses.cameras[k].R_wc * R_sensor_camera.transpose();
+    const Vector3d error = so3_log(R_w_sensor * path[k].R.transpose());
+    const Matrix3d D = path[k].by_biases.topLeftCorner<3, 3>();
+    N += D.transpose() * D;
+    b += D.transpose() * error;
+    squares += error.squaredNorm();
+  }
+  const Vector3d step = N.ldlt().solve(b);
+  const double left = std::max(0.0, squares - step.dot(b));
+  const double freedom = std::max(1.0, 3.0 * static_cast<double>(path.size()) - 6);
+  return {bias_rad_s + step, kAlike * left / freedom * N.inverse()};
+}
+
+/// What of the log scale's information is due to noise: the path's errors that are left once the
+/// measurements have smoothed it, V = S - C Sigma^-1 C^T, count as motion. Expectation.
+double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_columns) {
+  const auto L = noise.covariance.matrixL();
+  const MatrixXd half = L.solve(noise.with_path.transpose());
+  MatrixXd V = noise.of_path;
+  V.noalias() -= half.transpose() * half;
+  const MatrixXd white = L.solve(L.solve(V).transpose());
+  const MatrixXd inside = other_columns.transpose() * white * other_columns;
+  const MatrixXd squares = other_columns.transpose() * other_columns;
+  return white.trace() - squares.ldlt().solve(inside).trace();
+}
+
+AlignmentMatrix prior_of(const AlignmentProblem& problem) {
+  AlignmentMatrix prior = AlignmentMatrix::Zero();
+  prior.diagonal().segment<3>(6).setConstant(std::pow(problem.bias_sigma_m_s2, -2));
+  prior.diagonal().segment<3>(9).setConstant(std::pow(problem.lever_sigma_m, -2));
+  return prior;
+}
+
+struct Refinement {
+  AlignmentState state;
+  AlignmentMatrix information = AlignmentMatrix::Zero();
+  AlignmentJacobian white;  ///< Jacobian in units of the residuals' noise
+  std::optional<ResidualNoise> noise;
+  double cost = 0;  ///< squared residuals, priors among them
+  int iterations = 0;
+};
+
+/// Where all is linear but the scale: Gauss-Newton. The path that the scale multiplies is the one
+/// that all measurements make likely (as total least squares has it): with the noisy one the scale
+/// would shrink.
+Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
+  constexpr int kMostIterations = 6;
+  constexpr double kConverged = 1e-3;  // of a standard deviation
+  const AlignmentMatrix prior = prior_of(problem);
+  Refinement result;
+  for (; result.iterations < kMostIterations; ++result.iterations) {
+    result.noise = residual_noise(problem, state);
+    if (!result.noise) return result;
+    const VectorXd r = residuals(problem, state);
+    const auto L = result.noise->covariance.matrixL();
+    const VectorXd white_r = L.solve(r);
+    const VectorXd path = std::exp(state.log_scale) * problem.centers -
+                          result.noise->with_path * L.transpose().solve(white_r);
+    result.white = L.solve(jacobian(problem, state, path));
+    result.information = prior;
+    result.information.noalias() += result.white.transpose() * result.white;
+    AlignmentVector off = AlignmentVector::Zero();
+    off.segment<3>(6) = state.bias;
+    off.segment<3>(9) = state.lever - problem.lever_m;
+    result.cost = white_r.squaredNorm() + off.dot(prior * off);
+    const AlignmentVector gradient = result.white.transpose() * white_r + prior * off;
+    AlignmentVector step = -result.information.ldlt().solve(gradient);
+    const double converged = step.dot(result.information * step);
+    step(kScaleUnknown) = std::clamp(step(kScaleUnknown), -1.0, 1.0);
+    state = stepped(state, step);
+    result.state = state;
+    if (converged < kConverged * kConverged) break;
+  }
+  return result;
+}
+
+/// Standard deviations from the information, less what of the scale's is noise.
+void tell_certainty(const Refinement& refined,
+                    const InertialOptions& options,
+                    InertialAlignment& result) {
+  const AlignmentMatrix rough = refined.information.inverse();
+  MatrixXd others(refined.white.rows(), kAlignmentUnknowns - 1);
+  others << refined.white.leftCols<kScaleUnknown>(),
+      refined.white.rightCols<kAlignmentUnknowns - 1 - kScaleUnknown>();
+  const double by_all = 1 / rough(kScaleUnknown, kScaleUnknown);
+  // At most a quarter of an observation's information is noise.
+  double by_noise = 0.25 * static_cast<double>(refined.white.rows());
+  constexpr double kNegligible = 100;
+  if (by_all < kNegligible * by_noise)
+    by_noise = information_of_noise(*refined.noise, others);
+  else
+    by_noise = 0;
+  const double by_motion = by_all - by_noise;
+  const double scatter = 2 * std::sqrt(0.5 * std::max(0.0, by_noise));
+  const double spread = std::max(1.0, result.misfit);
+  const AlignmentMatrix covariance = spread * rough;
+  const auto tangents = gravity_tangents(refined.state.gravity);
+  result.direction_covariance = tangents * covariance.block<2, 2>(3, 3) * tangents.transpose();
+  result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));
+  result.accelerometer_bias_covariance = covariance.block<3, 3>(6, 6);
+  result.log_scale_sigma =
+      by_motion > 0 ? std::sqrt(spread / by_motion) : std::numeric_limits<double>::infinity();
+  const double surely = by_motion - scatter;
+  result.scale_known = surely > 0 && std::sqrt(spread / surely) < options.most_scale_sigma;
+  if (!result.scale_known) result.scale_reason = kNotDetermined;
+}
+
+std::string why_no_gravity(const Gyroscope& gyroscope, std::span<const Preintegration> between) {
+  // In the sensor's axes at each interval's start: short ones, so that turning hardly matters.
+  double force = 0;
+  for (const Preintegration& step : between) force += step.velocity.norm() / step.seconds;
+  force /= static_cast<double>(between.size());
+  if (force > kLeastForce_m_s2 && force < kMostForce_m_s2) return "";
+  return fmt::format(
+      "{}: the accelerometer measures {:.2f} m/s^2 on average, where gravity alone is 9.8{}",
+      gyroscope.file.filename().string(),
+      force,
+      force > 0.8 && force < 1.25 ? "; are its values in g?" : "");
+}
+
+std::vector<Vector3d> velocities(const AlignmentProblem& problem, const AlignmentState& state) {
+  std::vector<Vector3d> all;
+  for (const InertialFrame& frame : problem.path)
+    all.emplace_back(state.velocity + frame.seconds * state.gravity + frame.velocity +
+                     frame.by_biases.block<3, 3>(3, 3) * state.bias);
+  return all;
+}
+
+/// The camera in the axes of the sensor, and how surely.
+void place_camera(const Gyroscope& gyroscope,
+                  const std::optional<Pose>& T_body_camera,
+                  const InertialOptions& options,
+                  AlignmentProblem& problem) {
+  const bool told = T_body_camera && T_body_camera->p_wc != Vector3d::Zero();
+  problem.lever_sigma_m = told ? options.told_lever_sigma_m : options.untold_lever_sigma_m;
+  problem.lever_m.setZero();
+  if (told)
+    problem.lever_m =
+        gyroscope.R_gyro_camera * T_body_camera->R_wc.transpose() * T_body_camera->p_wc;
+}
+
+void complete_covariance(const UncertainPoses& poses,
+                         const Matrix3d& of_bias,
+                         AlignmentProblem& problem) {
+  problem.covariance = poses.covariance;
+  if (poses.has_bias_covariance()) return;
+  const Eigen::Index rows = poses.center_rows();
+  problem.covariance.conservativeResizeLike(MatrixXd::Zero(rows + 3, rows + 3));
+  problem.covariance.bottomRightCorner<3, 3>() = of_bias;
+}
+
+}  // namespace
+
+InertialAlignment align_inertial(const UncertainPoses& poses,
+                                 std::span<const std::int64_t> frame_times_ns,
+                                 const Gyroscope& gyroscope,
+                                 const std::optional<Pose>& T_body_camera,
+                                 const InertialOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (static_cast<int>(poses.cameras.size()) < kLeastFrames)
+    return refused(fmt::format(
+        "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames));
+  const std::int64_t offset_ns =
+      gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
+  const auto shaken =
+      gyroscope.accelerations_m_s2.size() == gyroscope.timestamps_ns.size()
+          ? accelerometer_noise_density(
+                gyroscope, frame_times_ns.front() + offset_ns, frame_times_ns.back() + offset_ns)
+          : std::nullopt;
+  const ImuNoise noise{gyroscope.noise_density,
+                       std::max(options.noise_density, shaken.value_or(0))};
+  const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
+  ImuIntervals measured = imu_intervals(gyroscope, frame_times_ns, offset_ns, bias, noise);
+  if (!measured.reason.empty()) return refused(measured.reason);
+  if (std::string reason = why_no_gravity(gyroscope, measured.between); !reason.empty())
+    return refused(std::move(reason));
+  const TurnFit turns = turn_fit(poses, measured.between, gyroscope.R_gyro_camera, bias);
+  for (Preintegration& one : measured.between)
+    one = with_biases_moved(one, turns.bias_rad_s - bias, Vector3d::Zero());
+
+  AlignmentProblem problem;
+  problem.path = inertial_path(measured.between, gyroscope.R_gyro_camera.transpose());
+  problem.centers.resize(poses.center_rows());
+  for (std::size_t k = 1; k < poses.cameras.size(); ++k)
+    problem.centers.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) = poses.cameras[k].p_wc;
+  problem.inertial_noise = position_covariance(problem.path);
+  problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
+  place_camera(gyroscope, T_body_camera, options, problem);
+  complete_covariance(poses, turns.covariance, problem);
+
+  Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
+  if (!refined.noise) return refused("the poses' covariance is none");
+  InertialAlignment result;
+  const double freedom = static_cast<double>(problem.centers.size()) - 6;
+  result.misfit = refined.cost / freedom;
+  if (!(result.misfit < kMostMisfit))
+    return refused(fmt::format(
+        "accelerations and poses disagree by {:.0f} times what is expected: other axes or clock?",
+        std::sqrt(result.misfit)));
+  result.ok = true;
+  result.iterations = refined.iterations;
+  result.gravity_m_s2 = refined.state.gravity;
+  result.scale = std::exp(refined.state.log_scale);
+  result.accelerometer_bias_m_s2 = refined.state.bias;
+  result.velocities_m_s = velocities(problem, refined.state);
+  tell_certainty(refined, options, result);
+  result.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace gpo

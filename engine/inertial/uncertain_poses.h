@@ -1,0 +1,39 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/pose.h"
+#include "engine/initializers/common/initialization.h"
+#include "engine/window/window.h"
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// Poses up to scale, and what is not known of them.
+struct UncertainPoses {
+  std::vector<Pose> cameras;  ///< one a frame; the first one is the world [plane distance]
+  /// Of the centers of all frames but the first, stacked, then of the gyroscope's bias where that
+  /// is known with them (3 more rows).
+  Eigen::MatrixXd covariance;
+  std::optional<Eigen::Vector3d> bias_rad_s = {};  ///< the gyroscope's, with which they go
+  double time_offset_s = 0;                        ///< beyond what the gyroscope says of its clock
+
+  Eigen::Index center_rows() const { return 3 * (static_cast<Eigen::Index>(cameras.size()) - 1); }
+  bool has_bias_covariance() const { return covariance.rows() > center_rows(); }
+};
+
+/// Of a result that is ok. Without the covariance of all its centers at once it is made from each
+/// one's own (`covariance_from_single_ones`), without those from what its residuals say.
+UncertainPoses uncertain_poses(const Window& window, const Initialization& result);
+
+/// Neighbors' errors are alike: what the centers share (normal, bias, lens) grows smoothly with the
+/// motion. The least of the first few covariances is taken as each frame's own noise, and what a
+/// frame has beyond that as moving with all others; nothing of a frame without any. Of all frames
+/// but the first, stacked.
+Eigen::MatrixXd covariance_from_single_ones(const std::vector<Eigen::Matrix3d>& of_centers);
+
+}  // namespace gpo

@@ -1,0 +1,154 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inertial/inertial_alignment.h"
+
+#include "simulated_motion.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <Eigen/LU>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+InertialAlignment aligned(const SimulatedAlignment& made) {
+  return align_inertial(
+      made.poses, made.times_ns, made.gyroscope, made.T_body_camera, made.options);
+}
+
+/// Of gravity's direction by its covariance; 2 in the mean where that is honest.
+double squared_error(const InertialAlignment& result, const Vector3d& gravity) {
+  const Vector3d found = result.gravity_m_s2.normalized();
+  Vector3d error = found - gravity.normalized();
+  error -= found * found.dot(error);
+  const Eigen::Matrix3d full = result.direction_covariance + found * found.transpose();
+  return error.dot(full.inverse() * error);
+}
+
+TEST(InertialAlignment, IsExactWithoutNoise) {
+  for (const Pace pace : {Pace::gentle, Pace::brisk}) {
+    const auto made = simulated_alignment(pace, kPhone, 2, 21, 0);
+    const InertialAlignment result = aligned(made);
+    ASSERT_TRUE(result.ok) << result.reason;
+    EXPECT_TRUE(result.scale_known);
+    EXPECT_NEAR(result.scale, made.scale, 0.002 * made.scale);
+    EXPECT_LT(angle_deg(result.gravity_m_s2, made.gravity), 0.02);
+    EXPECT_LT(result.accelerometer_bias_m_s2.norm(), 0.005);
+    ASSERT_EQ(result.velocities_m_s.size(), made.velocities.size());
+    for (std::size_t i = 0; i < made.velocities.size(); ++i)
+      EXPECT_LT((result.velocities_m_s[i] - made.velocities[i]).norm(), 0.01) << i;
+  }
+}
+
+struct Statistics {
+  double gravity = 0, scale = 0;  // sums of normalized squared errors
+  int windows = 0, claims = 0;
+};
+
+// 40 windows of each kind; the mean of all is what is judged, of each kind within what so few tell.
+TEST(InertialAlignment, ErrorsAreAsLargeAsItSays) {
+  constexpr int kSeeds = 40;
+  Statistics all;
+  int seed = 500;
+  for (const SimulatedSensor& sensor : {kPhone, kEuroc}) {
+    for (const Pace pace : {Pace::gentle, Pace::brisk}) {
+      for (const double seconds : {1, 2, 4}) {
+        Statistics of;
+        for (int k = 0; k < kSeeds; ++k, ++of.windows) {
+          const auto made = simulated_alignment(pace, sensor, seconds, seed++);
+          const InertialAlignment result = aligned(made);
+          ASSERT_TRUE(result.ok) << result.reason;
+          of.gravity += squared_error(result, made.gravity);
+          if (!result.scale_known) continue;
+          const double z = std::log(result.scale / made.scale) / result.log_scale_sigma;
+          EXPECT_LT(std::abs(z), 4.5);
+          of.scale += z * z;
+          ++of.claims;
+        }
+        const std::string kind =
+            testing::PrintToString(static_cast<int>(pace)) + " " + testing::PrintToString(seconds);
+        EXPECT_NEAR(of.gravity / of.windows, 2, 1.1) << kind;
+        EXPECT_GT(of.claims, kSeeds / 2) << kind;
+        EXPECT_NEAR(of.scale / of.claims, 1, 0.8) << kind;
+        all.gravity += of.gravity;
+        all.scale += of.scale;
+        all.windows += of.windows;
+        all.claims += of.claims;
+      }
+    }
+  }
+  EXPECT_NEAR(all.gravity / all.windows, 2, 0.4);
+  EXPECT_NEAR(all.scale / all.claims, 1, 0.2);
+}
+
+TEST(InertialAlignment, AtRestTellsGravityAndNoScale) {
+  Statistics of;
+  for (const double seconds : {1, 2}) {
+    for (int k = 0; k < 30; ++k, ++of.windows) {
+      const auto made = simulated_alignment(Pace::still, kPhone, seconds, 3000 + k);
+      const InertialAlignment result = aligned(made);
+      ASSERT_TRUE(result.ok) << result.reason;
+      EXPECT_FALSE(result.scale_known) << result.log_scale_sigma;
+      EXPECT_EQ(result.scale_reason, "not determined, move faster or longer");
+      EXPECT_LT(angle_deg(result.gravity_m_s2, made.gravity), 4);
+      of.gravity += squared_error(result, made.gravity);
+    }
+  }
+  EXPECT_NEAR(of.gravity / of.windows, 2, 0.9);
+}
+
+TEST(InertialAlignment, AnUntoldLeverIsOneMoreUnknown) {
+  double squares = 0;
+  constexpr int kSeeds = 20;
+  for (int k = 0; k < kSeeds; ++k) {
+    const auto made = simulated_alignment(Pace::brisk, kPhone, 2, 4000 + k);
+    const InertialAlignment told = aligned(made);
+    const InertialAlignment untold =
+        align_inertial(made.poses, made.times_ns, made.gyroscope, std::nullopt, made.options);
+    ASSERT_TRUE(untold.ok) << untold.reason;
+    EXPECT_GT(untold.log_scale_sigma, told.log_scale_sigma);
+    const double z = std::log(untold.scale / made.scale) / untold.log_scale_sigma;
+    squares += z * z / kSeeds;
+  }
+  EXPECT_LT(squares, 2.5);
+}
+
+/// Why there is none, once something is done to the accelerations.
+template <class Change>
+std::string refusal(Change change) {
+  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
+  for (Vector3d& a : made.gyroscope.accelerations_m_s2) a = change(a);
+  const InertialAlignment result = aligned(made);
+  EXPECT_FALSE(result.ok);
+  return result.reason;
+}
+
+TEST(InertialAlignment, SaysWhatIsWrongWithTheAccelerations) {
+  EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return a / 9.80665; }),
+              HasSubstr("are its values in g?"));
+  EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return 0.001 * a; }),
+              HasSubstr("the accelerometer measures 0.01 m/s^2 on average"));
+  EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d {
+                return {a.y(), a.z(), a.x()};
+              }),
+              HasSubstr("other axes or clock?"));
+  EXPECT_THAT(refusal([](const Vector3d&) -> Vector3d {
+                return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+              }),
+              HasSubstr("no numbers"));
+  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
+  made.gyroscope.accelerations_m_s2.clear();
+  EXPECT_EQ(aligned(made).reason, "the recording has no accelerometer");
+  made.poses.cameras.resize(3);
+  EXPECT_EQ(aligned(made).reason, "3 frames, gravity and meters take 5 at least");
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,61 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// A sensor and a camera on an analytic path, and what they measure.
+#pragma once
+
+#include "engine/geometry/pose.h"
+#include "engine/inertial/inertial_alignment.h"
+#include "engine/window/gyroscope.h"
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// Of the sensor in a world whose z axis points up: sums of sines, some drawn at random.
+struct SimulatedMotion {
+  Eigen::Vector3d amplitude_m, speed_rad_s, phase;            ///< of the position, each axis
+  Eigen::Vector3d swing_rad, swing_speed_rad_s, swing_phase;  ///< of the rotation vector
+  Eigen::Matrix3d R_first;                                    ///< rotation at the swing's zero
+
+  Eigen::Vector3d position(double t) const;
+  Eigen::Vector3d velocity(double t) const;
+  Eigen::Vector3d acceleration(double t) const;
+  Eigen::Matrix3d rotation(double t) const;  ///< sensor's axes -> world's
+  Eigen::Vector3d rate(double t) const;      ///< in the sensor's axes [rad/s]
+};
+
+/// How far the sensor swings, its median at most.
+enum class Pace { still, gentle, brisk };
+struct SimulatedSensor {
+  double gyroscope_density = 0, accelerometer_density = 0;
+  double accelerometer_bias_sigma = 0.1, gyroscope_bias_sigma = 0.002;
+};
+inline constexpr SimulatedSensor kPhone{.gyroscope_density = 3e-4, .accelerometer_density = 2e-3};
+inline constexpr SimulatedSensor kEuroc{.gyroscope_density = 1.7e-4,
+                                        .accelerometer_density = 2e-3,
+                                        .accelerometer_bias_sigma = 0.1,
+                                        .gyroscope_bias_sigma = 0.001};
+
+/// What an alignment gets, and the truth.
+struct SimulatedAlignment {
+  UncertainPoses poses;
+  std::vector<std::int64_t> times_ns;
+  Gyroscope gyroscope;
+  Pose T_body_camera;
+  InertialOptions options;
+  Eigen::Vector3d gravity;  ///< in the first camera's axes [m/s^2]
+  double scale = 0;
+  std::vector<Eigen::Vector3d> velocities;  ///< of the sensor, first camera's axes [m/s]
+  Eigen::Vector3d accelerometer_bias;
+};
+
+SimulatedMotion simulated_motion(Pace pace, unsigned seed);
+/// 20 pictures and 200 samples a second. `noise` 0: exact measurements and poses, whose covariances
+/// are as of 1.
+SimulatedAlignment simulated_alignment(
+    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
+
+}  // namespace gpo

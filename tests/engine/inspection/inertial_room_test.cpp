@@ -1,0 +1,77 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Gravity and meters of a real flight, beside motion capture.
+#include "engine/inspection/inspector.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "engine/recording/layouts/open_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+class InertialRoom : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / "euroc-room";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the recording is not on this machine";
+    inspector_ = std::make_unique<Inspector>(open_recording(folder));
+  }
+  std::shared_ptr<const Inspection> inspected(const Settings& settings) {
+    return inspector_->inspect(settings);
+  }
+  std::unique_ptr<Inspector> inspector_;
+};
+
+TEST_F(InertialRoom, TwoSecondsTellGravityAndMeters) {
+  std::vector<double> errors_percent;
+  for (const int start : {0, 5, 10, 15, 20}) {
+    const auto inspection = inspected({.start = start, .frames = 40});
+    ASSERT_TRUE(inspection->inertial && inspection->inertial->ok) << start;
+    const InertialAlignment& inertial = *inspection->inertial;
+    ASSERT_TRUE(inertial.scale_known) << start;
+    const Evaluation& evaluation = *inspection->evaluation;
+    ASSERT_TRUE(evaluation.scale_error_percent && evaluation.gravity_error_deg) << start;
+    EXPECT_LT(*evaluation.gravity_error_deg, 1.5) << start;
+    EXPECT_LT(std::abs(std::log(inertial.scale / *evaluation.scale)), 3 * inertial.log_scale_sigma)
+        << start;
+    errors_percent.push_back(std::abs(*evaluation.scale_error_percent));
+  }
+  std::ranges::sort(errors_percent);
+  EXPECT_LT(errors_percent[2], 5);
+}
+
+TEST_F(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
+  int tried = 0;
+  for (int start = 0; start <= 40; start += 5) {
+    const auto inspection = inspected({.start = start, .frames = 20});
+    if (!inspection->inertial) continue;  // no initialization
+    const InertialAlignment& inertial = *inspection->inertial;
+    ASSERT_TRUE(inertial.ok) << start << ": " << inertial.reason;
+    ++tried;
+    EXPECT_LT(std::abs(std::log(inertial.scale / *inspection->evaluation->scale)),
+              4 * inertial.log_scale_sigma)
+        << start;
+    EXPECT_LT(*inspection->evaluation->gravity_error_deg, 4 * inertial.gravity_sigma_deg) << start;
+  }
+  EXPECT_GE(tried, 6);
+}
+
+TEST_F(InertialRoom, OffIsOffAndMovesNothingElse) {
+  const Settings on{.start = 20, .frames = 20};
+  const auto with = inspected(on);
+  const auto without = inspected(with_setting(on, "gravity", "off"));
+  EXPECT_TRUE(with->inertial);
+  EXPECT_FALSE(without->inertial);
+  EXPECT_FALSE(without->evaluation->gravity_error_deg);
+  EXPECT_EQ(with->initialization->plane.normal, without->initialization->plane.normal);
+}
+
+}  // namespace
+}  // namespace gpo
