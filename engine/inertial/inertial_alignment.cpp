@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -207,7 +208,6 @@ void complete_covariance(const UncertainPoses& poses,
 }  // namespace
 
 InertialAlignment align_inertial(const UncertainPoses& poses,
-                                 std::span<const std::int64_t> frame_times_ns,
                                  const Gyroscope& gyroscope,
                                  const std::optional<Pose>& T_body_camera,
                                  const InertialOptions& options) {
@@ -220,12 +220,12 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   const auto shaken =
       gyroscope.accelerations_m_s2.size() == gyroscope.timestamps_ns.size()
           ? accelerometer_noise_density(
-                gyroscope, frame_times_ns.front() + offset_ns, frame_times_ns.back() + offset_ns)
+                gyroscope, poses.times_ns.front() + offset_ns, poses.times_ns.back() + offset_ns)
           : std::nullopt;
   const ImuNoise noise{gyroscope.noise_density,
                        std::max(options.noise_density, shaken.value_or(0))};
   const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
-  ImuIntervals measured = imu_intervals(gyroscope, frame_times_ns, offset_ns, bias, noise);
+  ImuIntervals measured = imu_intervals(gyroscope, poses.times_ns, offset_ns, bias, noise);
   if (!measured.reason.empty()) return refused(measured.reason);
   if (std::string reason = why_no_gravity(gyroscope, measured.between); !reason.empty())
     return refused(std::move(reason));
@@ -257,6 +257,7 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   result.gravity_m_s2 = refined.state.gravity;
   result.scale = std::exp(refined.state.log_scale);
   result.accelerometer_bias_m_s2 = refined.state.bias;
+  result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
   tell_certainty(refined, options, result);
   result.milliseconds =

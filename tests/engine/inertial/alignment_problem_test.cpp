@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 AlignmentProblem problem_of(const SimulatedAlignment& made, const Vector3d& gyro_bias) {
-  const auto measured = imu_intervals(made.gyroscope, made.times_ns, 0, gyro_bias, {}).between;
+  const auto measured =
+      imu_intervals(made.gyroscope, made.poses.times_ns, 0, gyro_bias, {}).between;
   AlignmentProblem problem;
   problem.path = inertial_path(measured, made.gyroscope.R_gyro_camera.transpose());
   problem.centers.resize(made.poses.center_rows());

@@ -117,7 +117,7 @@ SimulatedAlignment simulated_alignment(
   made.poses.bias_rad_s = gyro_bias + bias_error;
   for (int i = 0; i < frames; ++i) {
     const double t = i / kFrameRate_hz;
-    made.times_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
+    made.poses.times_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
     Pose pose = T_first_world * camera(t);
     made.velocities.emplace_back(T_first_world.R_wc * motion.velocity(t));
     pose.p_wc /= made.scale;
@@ -130,7 +130,8 @@ SimulatedAlignment simulated_alignment(
   }
   // The rotations are the gyroscope's with the bias that was found.
   const Matrix3d& R_gc = gyro.R_gyro_camera;
-  const auto turned = imu_intervals(gyro, made.times_ns, 0, *made.poses.bias_rad_s, {}).between;
+  const auto turned =
+      imu_intervals(gyro, made.poses.times_ns, 0, *made.poses.bias_rad_s, {}).between;
   const std::vector<InertialFrame> path = inertial_path(turned, R_gc.transpose());
   for (int i = 0; i < frames; ++i) made.poses.cameras[i].R_wc = path[i].R * R_gc;
   made.poses.covariance = shared_sigma * shared_sigma * by_shared * by_shared.transpose();
