@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSampleRate_hz = 200;
 constexpr double kFrameRate_hz = 20;
 
@@ -93,7 +93,7 @@ SimulatedAlignment simulated_alignment(
     gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
                                   per_sample * sensor.gyroscope_density * dice.gaussian());
     gyro.accelerations_m_s2.emplace_back(
-        motion.rotation(t).transpose() * (motion.acceleration(t) + kGravity * Vector3d::UnitZ()) +
+        motion.rotation(t).transpose() * (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
         made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
   }
 
@@ -106,7 +106,7 @@ SimulatedAlignment simulated_alignment(
   };
   const Pose T_first_world = inverse(camera(0));
   made.scale = std::uniform_real_distribution<double>(0.8, 3)(dice.engine);
-  made.gravity = T_first_world.R_wc * Vector3d(0, 0, -kGravity);
+  made.gravity = T_first_world.R_wc * Vector3d(0, 0, -kGravity_m_s2);
   // What is wrong with the centers: noise of each frame, and what grows with time and travel.
   const double own_sigma = 4e-4;
   const double shared_sigma = 3e-3;
