@@ -93,7 +93,8 @@ SimulatedAlignment simulated_alignment(
     gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
                                   per_sample * sensor.gyroscope_density * dice.gaussian());
     gyro.accelerations_m_s2.emplace_back(
-        motion.rotation(t).transpose() * (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
+        motion.rotation(t).transpose() *
+            (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
         made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
   }
 

@@ -28,9 +28,10 @@ TEST(JointCenters, HaveEachCentersOwnCovarianceAndTheBias) {
       EXPECT_LT((all.block<3, 3>(3 * i - 3, 3 * i - 3) - one).norm(), 1e-6 * one.norm()) << i;
     }
     EXPECT_LT((all - all.transpose()).norm(), 1e-12 * all.norm());
-    if (u->bias_covariance)
+    if (u->bias_covariance) {
       EXPECT_LT((all.bottomRightCorner<3, 3>() - *u->bias_covariance).norm(),
                 1e-6 * u->bias_covariance->norm());
+    }
     // Neighbors share what is not known of the normal and the bias: how far the last camera is from
     // the one before is better known than where it is.
     const double last = all.block<3, 3>(54, 54).trace();
