@@ -50,7 +50,8 @@ Eigen::VectorXd residuals(const AlignmentProblem& problem, const AlignmentState&
 AlignmentJacobian jacobian(const AlignmentProblem& problem,
                            const AlignmentState& state,
                            const Eigen::VectorXd& meters);
-/// Derivatives of the residuals by the gyroscope's bias, rows x 3.
+/// Derivatives of the residuals by the gyroscope's bias, rows x 3. Without what it does to the
+/// accelerometer's bias, which is of second order.
 Eigen::MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
 
 /// Scale, gravity and velocity from linear equations (as Qin and Shen 2018 do): gravity free, then

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -80,7 +81,9 @@ double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_co
 }
 
 AlignmentMatrix prior_of(const AlignmentProblem& problem) {
+  constexpr double kHardlyAny = 1e-6;  // so that it can be inverted where nothing moves
   AlignmentMatrix prior = AlignmentMatrix::Zero();
+  prior(kScaleUnknown, kScaleUnknown) = kHardlyAny;
   prior.diagonal().segment<3>(6).setConstant(std::pow(problem.bias_sigma_m_s2, -2));
   prior.diagonal().segment<3>(9).setConstant(std::pow(problem.lever_sigma_m, -2));
   return prior;
@@ -100,7 +103,7 @@ struct Refinement {
 /// would shrink.
 Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   constexpr int kMostIterations = 6;
-  constexpr double kConverged = 1e-3;  // of a standard deviation
+  constexpr double kConverged = 1e-2;  // of a standard deviation
   const AlignmentMatrix prior = prior_of(problem);
   Refinement result;
   for (; result.iterations < kMostIterations; ++result.iterations) {
@@ -204,10 +207,41 @@ void complete_covariance(const UncertainPoses& poses,
   problem.covariance.bottomRightCorner<3, 3>() = of_bias;
 }
 
+AlignmentProblem alignment_problem(const UncertainPoses& poses,
+                                   std::span<const Preintegration> between,
+                                   const Gyroscope& gyroscope,
+                                   const TurnFit& turns,
+                                   const std::optional<Pose>& T_body_camera,
+                                   const InertialOptions& options) {
+  AlignmentProblem problem;
+  problem.path = inertial_path(between, gyroscope.R_gyro_camera.transpose());
+  problem.centers.resize(poses.center_rows());
+  for (std::size_t k = 1; k < poses.cameras.size(); ++k)
+    problem.centers.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) = poses.cameras[k].p_wc;
+  problem.inertial_noise = position_covariance(problem.path);
+  problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
+  place_camera(gyroscope, T_body_camera, options, problem);
+  complete_covariance(poses, turns.covariance, problem);
+  return problem;
+}
+
+/// White noise of both sensors in the window.
+ImuNoise noise_of(const Gyroscope& gyroscope,
+                  const UncertainPoses& poses,
+                  std::int64_t offset_ns,
+                  const InertialOptions& options) {
+  ImuNoise noise{gyroscope.noise_density, options.noise_density};
+  if (gyroscope.accelerations_m_s2.size() != gyroscope.timestamps_ns.size()) return noise;
+  const auto shaken = accelerometer_noise_density(
+      gyroscope, poses.times_ns.front() + offset_ns, poses.times_ns.back() + offset_ns);
+  // Values that are no numbers are told later.
+  if (shaken && *shaken > noise.accelerometer) noise.accelerometer = *shaken;
+  return noise;
+}
+
 }  // namespace
 
 InertialAlignment align_inertial(const UncertainPoses& poses,
-                                 std::span<const std::int64_t> frame_times_ns,
                                  const Gyroscope& gyroscope,
                                  const std::optional<Pose>& T_body_camera,
                                  const InertialOptions& options) {
@@ -217,15 +251,9 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
         "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames));
   const std::int64_t offset_ns =
       gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
-  const auto shaken =
-      gyroscope.accelerations_m_s2.size() == gyroscope.timestamps_ns.size()
-          ? accelerometer_noise_density(
-                gyroscope, frame_times_ns.front() + offset_ns, frame_times_ns.back() + offset_ns)
-          : std::nullopt;
-  const ImuNoise noise{gyroscope.noise_density,
-                       std::max(options.noise_density, shaken.value_or(0))};
+  const ImuNoise noise = noise_of(gyroscope, poses, offset_ns, options);
   const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
-  ImuIntervals measured = imu_intervals(gyroscope, frame_times_ns, offset_ns, bias, noise);
+  ImuIntervals measured = imu_intervals(gyroscope, poses.times_ns, offset_ns, bias, noise);
   if (!measured.reason.empty()) return refused(measured.reason);
   if (std::string reason = why_no_gravity(gyroscope, measured.between); !reason.empty())
     return refused(std::move(reason));
@@ -233,17 +261,9 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   for (Preintegration& one : measured.between)
     one = with_biases_moved(one, turns.bias_rad_s - bias, Vector3d::Zero());
 
-  AlignmentProblem problem;
-  problem.path = inertial_path(measured.between, gyroscope.R_gyro_camera.transpose());
-  problem.centers.resize(poses.center_rows());
-  for (std::size_t k = 1; k < poses.cameras.size(); ++k)
-    problem.centers.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) = poses.cameras[k].p_wc;
-  problem.inertial_noise = position_covariance(problem.path);
-  problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
-  place_camera(gyroscope, T_body_camera, options, problem);
-  complete_covariance(poses, turns.covariance, problem);
-
-  Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
+  const AlignmentProblem problem =
+      alignment_problem(poses, measured.between, gyroscope, turns, T_body_camera, options);
+  const Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
   if (!refined.noise) return refused("the poses' covariance is none");
   InertialAlignment result;
   const double freedom = static_cast<double>(problem.centers.size()) - 6;
@@ -257,6 +277,7 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   result.gravity_m_s2 = refined.state.gravity;
   result.scale = std::exp(refined.state.log_scale);
   result.accelerometer_bias_m_s2 = refined.state.bias;
+  result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
   tell_certainty(refined, options, result);
   result.milliseconds =

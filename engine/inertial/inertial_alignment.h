@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +46,10 @@ struct InertialAlignment {
   double scale = 0;            ///< meters per unit of the poses (plane distance)
   double log_scale_sigma = 0;  ///< infinite where nothing tells it [-]
   bool scale_known = false;
-  std::string scale_reason;                     ///< why it is not, for people
-  std::vector<Eigen::Vector3d> velocities_m_s;  ///< of the sensor, one a frame, world's axes
+  std::string scale_reason;  ///< why it is not, for people
+  /// Of the sensor in the world's axes, at the times of the poses that were taken.
+  std::vector<Eigen::Vector3d> velocities_m_s;
+  std::vector<std::int64_t> times_ns;
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();  ///< in the sensor's axes
   Eigen::Matrix3d accelerometer_bias_covariance = Eigen::Matrix3d::Zero();
   /// Squared residuals by what their covariances say, per degree of freedom. Above one, all
@@ -62,7 +63,6 @@ struct InertialAlignment {
 /// eq. 21 to 24). `T_sensor_camera` is the camera in the sensor's axes [m]; where it is not told,
 /// or its translation is zero as loggers leave it, the translation is one more unknown.
 InertialAlignment align_inertial(const UncertainPoses& poses,
-                                 std::span<const std::int64_t> frame_times_ns,
                                  const Gyroscope& gyroscope,
                                  const std::optional<Pose>& T_body_camera,
                                  const InertialOptions& options = {});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Eigenvalues>
 
@@ -49,27 +50,41 @@ Eigen::MatrixXd covariance_from_single_ones(const std::vector<Matrix3d>& of_cent
 }
 
 UncertainPoses uncertain_poses(const Window& window, const Initialization& result) {
-  UncertainPoses poses{.cameras = result.cameras, .covariance = {}};
+  const int all = window.frame_count();
+  const int step = (all - 1 + kMostAlignedFrames - 1) / kMostAlignedFrames;
+  UncertainPoses poses;
+  std::vector<int> rows;  // of the centers that are taken, in a covariance of all
+  for (int i = 0; i < all; i += std::max(1, step)) {
+    poses.cameras.push_back(result.cameras[i]);
+    poses.times_ns.push_back(window.timestamps_ns[i]);
+    for (int axis = 0; i > 0 && axis < 3; ++axis) rows.push_back(3 * (i - 1) + axis);
+  }
   poses.bias_rad_s = result.bias_rad_s;
   if (!poses.bias_rad_s && window.gyro) poses.bias_rad_s = window.gyro->bias_rad_s;
   poses.time_offset_s = result.time_offset_s.value_or(0);
-  const Eigen::Index rows = poses.center_rows();
   if (!result.uncertainty) {
     const double sigma = center_sigma(window, result);
-    poses.covariance = sigma * sigma * Eigen::MatrixXd::Identity(rows, rows);
+    poses.covariance =
+        sigma * sigma * Eigen::MatrixXd::Identity(std::ssize(rows), std::ssize(rows));
     return poses;
   }
   const Uncertainty& u = *result.uncertainty;
-  if (u.joint_covariance.rows() >= rows) {
-    poses.covariance = u.joint_covariance;
+  const int centers = 3 * (all - 1);
+  if (u.joint_covariance.rows() >= centers) {
+    for (int k = centers; k < u.joint_covariance.rows(); ++k) rows.push_back(k);
+    poses.covariance = u.joint_covariance(rows, rows);
     return poses;
   }
-  poses.covariance = covariance_from_single_ones(u.center_covariances);
+  std::vector<Matrix3d> single = {Matrix3d::Zero()};
+  for (std::size_t k = 0; k < rows.size(); k += 3)
+    single.push_back(u.center_covariances[rows[k] / 3 + 1]);
+  poses.covariance = covariance_from_single_ones(single);
   const auto& of_bias = u.bias_covariance || !window.gyro || u.rotations != RotationModel::known
                             ? u.bias_covariance
                             : std::optional<Matrix3d>(window.gyro->bias_covariance);
   if (!of_bias) return poses;
-  poses.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + 3, rows + 3));
+  const Eigen::Index with_bias = poses.center_rows() + 3;
+  poses.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(with_bias, with_bias));
   poses.covariance.bottomRightCorner<3, 3>() = *of_bias;
   return poses;
 }

@@ -6,6 +6,7 @@
 #include "engine/initializers/common/initialization.h"
 #include "engine/window/window.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace gpo {
 /// Poses up to scale, and what is not known of them.
 struct UncertainPoses {
   std::vector<Pose> cameras;  ///< one a frame; the first one is the world [plane distance]
+  std::vector<std::int64_t> times_ns = {};  ///< of the frames, on the camera's clock
   /// Of the centers of all frames but the first, stacked, then of the gyroscope's bias where that
   /// is known with them (3 more rows).
   Eigen::MatrixXd covariance;
@@ -26,8 +28,12 @@ struct UncertainPoses {
   bool has_bias_covariance() const { return covariance.rows() > center_rows(); }
 };
 
-/// Of a result that is ok. Without the covariance of all its centers at once it is made from each
-/// one's own (`covariance_from_single_ones`), without those from what its residuals say.
+/// The most frames that an alignment takes; more tell hardly more and take the cube of the time.
+inline constexpr int kMostAlignedFrames = 60;
+
+/// Of a result that is ok, of every second, third, ... frame where there are too many. Without the
+/// covariance of all its centers at once it is made from each one's own
+/// (`covariance_from_single_ones`), without those from what its residuals say.
 UncertainPoses uncertain_poses(const Window& window, const Initialization& result);
 
 /// Neighbors' errors are alike: what the centers share (normal, bias, lens) grows smoothly with the

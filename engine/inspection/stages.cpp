@@ -95,10 +95,8 @@ std::optional<InertialAlignment> inertial_of(const Recording& recording,
                                              const Window& window,
                                              const Initialization& initialization) {
   if (!recording.gyroscope || recording.gyroscope->accelerations_m_s2.empty()) return std::nullopt;
-  return align_inertial(uncertain_poses(window, initialization),
-                        window.timestamps_ns,
-                        *recording.gyroscope,
-                        recording.T_body_camera);
+  return align_inertial(
+      uncertain_poses(window, initialization), *recording.gyroscope, recording.T_body_camera);
 }
 
 }  // namespace

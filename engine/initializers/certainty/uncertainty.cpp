@@ -23,6 +23,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr int kMostJointFrames = 121;  // 360 rows; the time grows with their square
+
 int tracks_of(const PlaneObservations& observations) {
   std::set<int> tracks;
   for (int k = 0; k <= static_cast<int>(observations.others.size()); ++k)
@@ -170,7 +172,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < frames; ++i) add_frame(motion, i, bread.frames[i], spread, result);
-  if (centers == Centers::jointly) {
+  if (centers == Centers::jointly && frames <= kMostJointFrames) {
     const auto moves = all_moves(window, observations, motion, bread, *inverse, degrees_of_freedom);
     result.joint_covariance = joint_covariance(motion, bread, moves, covariance);
   }

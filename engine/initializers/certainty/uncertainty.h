@@ -17,7 +17,7 @@
 namespace gpo {
 
 /// Whether the covariance of all centers at once is computed, too, which takes a millisecond or
-/// two.
+/// two; not of windows of more than 121 frames.
 enum class Centers { one_by_one, jointly };
 
 /// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.

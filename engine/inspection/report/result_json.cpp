@@ -146,6 +146,7 @@ ordered_json inertial_json(const InertialAlignment& inertial) {
           {"sigma", told ? ordered_json(inertial.log_scale_sigma) : ordered_json(nullptr)},
           {"scale_known", inertial.scale_known},
           {"velocities", velocities},
+          {"timestamps_ns", inertial.times_ns},
           {"accelerometer_bias", vector_json(inertial.accelerometer_bias_m_s2)},
           {"accelerometer_bias_covariance", matrix_json(inertial.accelerometer_bias_covariance)},
           {"misfit", inertial.misfit}};

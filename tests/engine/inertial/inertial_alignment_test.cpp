@@ -19,8 +19,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 InertialAlignment aligned(const SimulatedAlignment& made) {
-  return align_inertial(
-      made.poses, made.times_ns, made.gyroscope, made.T_body_camera, made.options);
+  return align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);
 }
 
 /// Of gravity's direction by its covariance; 2 in the mean where that is honest.
@@ -111,7 +110,7 @@ TEST(InertialAlignment, AnUntoldLeverIsOneMoreUnknown) {
     const auto made = simulated_alignment(Pace::brisk, kPhone, 2, 4000 + k);
     const InertialAlignment told = aligned(made);
     const InertialAlignment untold =
-        align_inertial(made.poses, made.times_ns, made.gyroscope, std::nullopt, made.options);
+        align_inertial(made.poses, made.gyroscope, std::nullopt, made.options);
     ASSERT_TRUE(untold.ok) << untold.reason;
     EXPECT_GT(untold.log_scale_sigma, told.log_scale_sigma);
     const double z = std::log(untold.scale / made.scale) / untold.log_scale_sigma;

@@ -137,7 +137,9 @@ TEST(Preintegration, FollowsAnAnalyticPath) {
     EXPECT_LT(so3_log((R * sum.R).transpose() * motion.rotation(1)).norm(), 0.5 * dt * dt);
     EXPECT_LT((v - motion.velocity(1)).norm(), 20 * dt * dt);
     EXPECT_LT(error_m, 10 * dt * dt);
-    if (error_before_m > 0) EXPECT_LT(error_m, 0.3 * error_before_m);  // second order: a quarter
+    if (error_before_m > 0) {
+      EXPECT_LT(error_m, 0.3 * error_before_m);  // second order: a quarter
+    }
     error_before_m = error_m;
   }
 }

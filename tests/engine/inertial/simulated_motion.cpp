@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSampleRate_hz = 200;
 constexpr double kFrameRate_hz = 20;
 
@@ -93,7 +93,8 @@ SimulatedAlignment simulated_alignment(
     gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
                                   per_sample * sensor.gyroscope_density * dice.gaussian());
     gyro.accelerations_m_s2.emplace_back(
-        motion.rotation(t).transpose() * (motion.acceleration(t) + kGravity * Vector3d::UnitZ()) +
+        motion.rotation(t).transpose() *
+            (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
         made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
   }
 
@@ -106,7 +107,7 @@ SimulatedAlignment simulated_alignment(
   };
   const Pose T_first_world = inverse(camera(0));
   made.scale = std::uniform_real_distribution<double>(0.8, 3)(dice.engine);
-  made.gravity = T_first_world.R_wc * Vector3d(0, 0, -kGravity);
+  made.gravity = T_first_world.R_wc * Vector3d(0, 0, -kGravity_m_s2);
   // What is wrong with the centers: noise of each frame, and what grows with time and travel.
   const double own_sigma = 4e-4;
   const double shared_sigma = 3e-3;
@@ -117,7 +118,7 @@ SimulatedAlignment simulated_alignment(
   made.poses.bias_rad_s = gyro_bias + bias_error;
   for (int i = 0; i < frames; ++i) {
     const double t = i / kFrameRate_hz;
-    made.times_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
+    made.poses.times_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
     Pose pose = T_first_world * camera(t);
     made.velocities.emplace_back(T_first_world.R_wc * motion.velocity(t));
     pose.p_wc /= made.scale;
@@ -130,7 +131,8 @@ SimulatedAlignment simulated_alignment(
   }
   // The rotations are the gyroscope's with the bias that was found.
   const Matrix3d& R_gc = gyro.R_gyro_camera;
-  const auto turned = imu_intervals(gyro, made.times_ns, 0, *made.poses.bias_rad_s, {}).between;
+  const auto turned =
+      imu_intervals(gyro, made.poses.times_ns, 0, *made.poses.bias_rad_s, {}).between;
   const std::vector<InertialFrame> path = inertial_path(turned, R_gc.transpose());
   for (int i = 0; i < frames; ++i) made.poses.cameras[i].R_wc = path[i].R * R_gc;
   made.poses.covariance = shared_sigma * shared_sigma * by_shared * by_shared.transpose();

@@ -42,7 +42,6 @@ inline constexpr SimulatedSensor kEuroc{.gyroscope_density = 1.7e-4,
 /// What an alignment gets, and the truth.
 struct SimulatedAlignment {
   UncertainPoses poses;
-  std::vector<std::int64_t> times_ns;
   Gyroscope gyroscope;
   Pose T_body_camera;
   InertialOptions options;
