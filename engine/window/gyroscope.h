@@ -17,8 +17,8 @@ struct Gyroscope {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<int> lines;                    ///< of each sample in `file`, for messages about a gap
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< in the gyroscope's own axes
-  /// As many, or none: specific force, in the same axes; tell gravity and meters.
-  std::vector<Eigen::Vector3d> accelerations_m_s2;
+  std::vector<Eigen::Vector3d>
+      accelerations_m_s2;  ///< as many, or none: specific force; tells gravity and meters
   Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
