@@ -102,7 +102,7 @@ struct Refinement {
 /// that all measurements make likely (as total least squares has it): with the noisy one the scale
 /// would shrink.
 Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
-  constexpr int kMostIterations = 6;
+  constexpr int kMostIterations = 12;
   constexpr double kConverged = 1e-2;  // of a standard deviation
   const AlignmentMatrix prior = prior_of(problem);
   Refinement result;
