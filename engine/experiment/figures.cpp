@@ -28,6 +28,11 @@ constexpr std::array kAxes{
     Axis{"pne_deg", "Plane normal error", "PNE [deg]", 1, true},
     Axis{"pde_m", "Plane distance error", "PDE [mm]", 1e3, false},
 };
+/// Where an accelerometer told them.
+constexpr std::array kInertialAxes{
+    Axis{"scale_error_percent", "Scale error", "scale error [%]", 1, false},
+    Axis{"gravity_error_deg", "Gravity error", "gravity error [deg]", 1, false},
+};
 constexpr Axis kRmsAxis{"rms_px", "Reprojection error", "RMS [px]", 1, false};
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
@@ -127,6 +132,18 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
   return figure;
 }
 
+Figure figure_of_meters(std::span<const Row> rows, const FigurePlan& plan) {
+  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
+  Figure figure{
+      plan.name + "_meters", plan.title + ": gravity and meters by the accelerometer", {}};
+  for (const Axis& axis : kInertialAxes) {
+    const bool known = std::ranges::any_of(
+        cells, [&](const Cell& cell) { return cell.values.at(axis.column).count > 0; });
+    if (known) figure.charts.push_back(chart_of(cells, plan, axis));
+  }
+  return figure;
+}
+
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
   return {plan.name, plan.title, {chart_of(cells, plan, kRmsAxis)}};
@@ -137,6 +154,8 @@ std::vector<Figure> figures(std::span<const Row> rows,
   std::vector<Figure> all;
   for (const FigurePlan& plan : figure_plans(configurations)) {
     all.push_back(figure_over_length(rows, plan));
+    Figure meters = figure_of_meters(rows, plan);
+    if (!meters.charts.empty()) all.push_back(std::move(meters));
   }
   return all;
 }

@@ -17,6 +17,10 @@ namespace gpo {
 /// configuration. `rows` may have others.
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
+/// The same of what an accelerometer tells: the errors of the scale (its size, over the windows
+/// that claim to know it) and of gravity. Without charts where nothing is known of them.
+Figure figure_of_meters(std::span<const Row> rows, const FigurePlan& plan);
+
 /// The same where no truth is known: the root mean square error in the picture over the length.
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);
 

@@ -73,6 +73,8 @@ void add_evaluation(Row& row, const Evaluation& evaluation) {
   row.pne_aligned_deg = evaluation.pne_aligned_deg;
   row.pde_m = evaluation.pde_m;
   row.pne_bound_deg = evaluation.pne_bound_deg;
+  row.scale_error_percent = evaluation.scale_error_percent;
+  row.gravity_error_deg = evaluation.gravity_error_deg;
 }
 
 void add_timing(Row& row, const Timing& timing) {

@@ -33,6 +33,7 @@ struct Row {
   std::string termination;
   std::string alignment;  ///< ok | degenerate; empty without ground truth
   std::optional<double> scale, ate_m, pne_deg, pne_aligned_deg, pde_m, pne_bound_deg;
+  std::optional<double> scale_error_percent, gravity_error_deg;  ///< of an accelerometer's
   std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
   std::optional<int> jobs;  ///< windows that were computed at once when these were measured
   std::string processor;    ///< on which
@@ -89,6 +90,8 @@ void visit_row(R& row, Visitor&& visit) {
   visit("pne_aligned_deg", row.pne_aligned_deg);
   visit("pde_m", row.pde_m);
   visit("pne_bound_deg", row.pne_bound_deg);
+  visit("scale_error_percent", row.scale_error_percent);
+  visit("gravity_error_deg", row.gravity_error_deg);
   visit("track_ms", row.track_ms);
   visit("ransac_ms", row.ransac_ms);
   visit("rotations_ms", row.rotations_ms);

@@ -36,7 +36,7 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
     ++cell.ok;
     visit_row(row, [&](const std::string& name, const auto& value) {
       if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<double>>) {
-        if (value) values[name].push_back(*value);
+        if (value) values[name].push_back(std::abs(*value));
       }
     });
   }

@@ -21,13 +21,15 @@ struct Distribution {
 };
 Distribution distribution(std::vector<double> values);
 
-/// The columns of results.csv that are summarized.
-inline constexpr std::array<const char*, 12> kSummaryColumns{"rms_px",
+/// The columns of results.csv that are summarized: by their size, whatever the sign of an error.
+inline constexpr std::array<const char*, 14> kSummaryColumns{"rms_px",
                                                              "ate_m",
                                                              "pne_deg",
                                                              "pne_aligned_deg",
                                                              "pde_m",
                                                              "pne_bound_deg",
+                                                             "scale_error_percent",
+                                                             "gravity_error_deg",
                                                              "track_ms",
                                                              "ransac_ms",
                                                              "rotations_ms",

@@ -105,10 +105,17 @@ std::string measured_text(std::span<const Row> rows, int frames) {
   return text;
 }
 
-std::vector<NumberColumn> error_columns() {
-  return {{"PNE [deg]", {"pne_deg"}, 1, false, 3},
-          {"ATE [mm]", {"ate_m"}, 1e3, false, kSignificant},
-          {"PDE [mm]", {"pde_m"}, 1e3, false, kSignificant}};
+/// Those of an accelerometer only where there is one.
+std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
+  std::vector<NumberColumn> columns{{"PNE [deg]", {"pne_deg"}, 1, false, 3},
+                                    {"ATE [mm]", {"ate_m"}, 1e3, false, kSignificant},
+                                    {"PDE [mm]", {"pde_m"}, 1e3, false, kSignificant}};
+  const bool inertial = std::ranges::any_of(
+      cells, [](const Cell& cell) { return cell.values.at("gravity_error_deg").count > 0; });
+  if (!inertial) return columns;
+  columns.push_back({"scale error [%]", {"scale_error_percent"}, 1, false, kSignificant});
+  columns.push_back({"gravity error [deg]", {"gravity_error_deg"}, 1, false, kSignificant});
+  return columns;
 }
 
 /// `solved(cell)`: the cells for how many windows were solved.
@@ -117,16 +124,18 @@ Table errors_table(std::span<const Row> rows,
                    const std::vector<std::string>& header,
                    const Solved& solved) {
   const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  const std::vector<Cell> cells = summarize(rows);
+  const std::vector<NumberColumn> columns = error_columns(cells);
   Table table;
   table.caption = "Medians over the solved windows";
   table.header = {"method", "frames"};
   table.header.insert(table.header.end(), header.begin(), header.end());
-  for (const NumberColumn& column : error_columns()) table.header.emplace_back(column.title);
-  for (const Cell& cell : summarize(rows)) {
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : cells) {
     if (!shown.contains(cell.frames)) continue;
     std::vector<std::string> line{cell.configuration, std::to_string(cell.frames)};
     for (const std::string& text : solved(cell)) line.push_back(text);
-    for (const NumberColumn& column : error_columns()) line.push_back(number(cell, column));
+    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
     table.lines.push_back(std::move(line));
   }
   return table;

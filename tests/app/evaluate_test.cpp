@@ -81,7 +81,7 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_THAT(csv, ::testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
   EXPECT_THAT(csv,
               HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
-                        "1,schur,,,,,,ok,,"))
+                        "1,schur,,,,,,after,ok,,"))
       << "gpo reads the solver only";
   EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
   EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));
@@ -89,6 +89,9 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_THAT(read_file(folder / "running_time.csv"), HasSubstr("\nGPO,1/1,"));
   EXPECT_THAT(read_file(folder / "errors.csv"), HasSubstr("\ngpo+no-ransac,6,1,1,"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.png"), HasSubstr("PNG"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac_meters.png"), HasSubstr("PNG"));
+  EXPECT_THAT(read_file(folder / "errors.csv"),
+              HasSubstr(",scale error [%],gravity error [deg]\n"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("<svg"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), ::testing::StartsWith("%PDF-"));
 }

@@ -179,7 +179,7 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   const ScreenRect side = screen_rect(layout_.side);
   ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
       << on_scene(to).transpose();
-  click(on_scene(to));
+  click(on_scene(to), 1);
   ASSERT_TRUE(state_.cube_ray.has_value());
   const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.cube_ray);
   EXPECT_LT((there - to).norm(), 0.01);
