@@ -103,6 +103,10 @@ void add_run(CLI::App& app, RunArguments& arguments) {
   add_choice<TrajectoryFormat>(
       *command, "--trajectory-format", "Of both; default: tum", arguments.trajectory_format);
   command->add_option("--points", arguments.points, "Write the map points as PLY");
+  command->add_flag(
+      "--metric",
+      arguments.metric,
+      "Trajectory and points in meters, by the accelerometer; default: in distances of the plane");
   command->add_option("--tracks-out",
                       arguments.tracks_out,
                       "Write every track's pixels, plane, verdict, residual and reason a frame as "

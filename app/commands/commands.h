@@ -58,6 +58,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> true_trajectory;
   std::optional<TrajectoryFormat> trajectory_format;  ///< of both; default: tum
   std::optional<std::filesystem::path> points;
+  bool metric = false;  ///< trajectory and points in meters
   std::optional<std::filesystem::path> tracks_out;
 };
 

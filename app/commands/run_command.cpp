@@ -6,6 +6,7 @@
 #include "app/terminal/output.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
@@ -64,16 +65,20 @@ int run_command(const RunArguments& arguments) {
   if (arguments.trajectory_format && !arguments.trajectory && !arguments.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   fmt::print(table_stream(outputs), "{}", to_text(*inspection));
+  if (arguments.metric && !arguments.trajectory && !arguments.points)
+    fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
   if (arguments.json) write_output(*arguments.json, json_text(to_json(*inspection), 2));
   const auto write_trajectory = [&](const auto& file, const CameraPath& path) {
     write_output(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
   };
+  const auto meters =
+      ok && arguments.metric ? std::optional(meters_a_unit(*inspection)) : std::nullopt;
   if (ok && arguments.trajectory)
-    write_trajectory(*arguments.trajectory, estimated_path(*inspection));
+    write_trajectory(*arguments.trajectory, estimated_path(*inspection, meters));
   if (arguments.true_trajectory)
     write_trajectory(*arguments.true_trajectory, true_path(*inspection));
   if (arguments.tracks_out) write_output(*arguments.tracks_out, tracks_csv(*inspection));
-  if (ok && arguments.points) write_output(*arguments.points, to_ply(*inspection));
+  if (ok && arguments.points) write_output(*arguments.points, to_ply(*inspection, meters));
   return ok ? kDone : kFailed;
 }
 

@@ -117,6 +117,22 @@ void add_methods(std::vector<Method> own) {
   registry().own = std::move(own);
 }
 
+namespace {
+
+/// Where a method is much less sure than its window allows, since it holds rotations or is none of
+/// the best: two numbers that differ need a word.
+void say_what_is_lost(const std::optional<Uncertainty>& result, Verdict& verdict) {
+  constexpr double kMuch = 1.5;
+  if (verdict.readiness != Readiness::ready || !result || !verdict.normal_sigma_deg) return;
+  if (result->normal_sigma_deg < kMuch * *verdict.normal_sigma_deg) return;
+  verdict.reason +=
+      fmt::format("; this result{} to {:.2f} deg",
+                  result->rotations == RotationModel::known ? ", with rotations held," : "",
+                  result->normal_sigma_deg);
+}
+
+}  // namespace
+
 Initialization assessed(const Method& method, const Window& window, Initialization result) {
   if (!result.ok) return result;
   const auto judged_by =
@@ -136,6 +152,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   if (method.rotations)
     result.uncertainty =
         uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
+  say_what_is_lost(result.uncertainty, *result.verdict);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   Initialization refused = failed(result.verdict->reason, result.solver);
   refused.candidates = std::move(result.candidates);

@@ -22,10 +22,13 @@ using nlohmann::json;
 
 fs::path real(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
 
-json run(const std::string& name, int start) {
+json run(const std::string& name, int start, int frames = 20) {
   const fs::path file = test::fresh_folder() / "result.json";
-  test::program(fmt::format(
-      "run {} --start {} --frames 20 --json {}", real(name).string(), start, file.string()));
+  test::program(fmt::format("run {} --start {} --frames {} --json {}",
+                            real(name).string(),
+                            start,
+                            frames,
+                            file.string()));
   return fs::exists(file) ? json::parse(test::read_file(file)) : json{};
 }
 
@@ -49,6 +52,29 @@ TEST(RealRooms, EurocsFloorIsFoundFirst) {
   std::ranges::sort(path_m);
   EXPECT_LT(normal_deg[normal_deg.size() / 2], 1.5);
   EXPECT_LT(path_m[path_m.size() / 2], 0.003);
+}
+
+TEST(RealRooms, GravityAndMetersAreWithinTheirSigmasAndFloorAndWallHaveTheirNames) {
+  if (!fs::exists(real("euroc-room"))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  std::vector<double> scale_percent;
+  int named_walls = 0;
+  for (const int start : {0, 5, 10, 15, 20}) {
+    const json result = run("euroc-room", start, 40);
+    const json &metrics = result["metrics"], &inertial = result["inertial"];
+    EXPECT_LT(metrics["gravity_error_deg"], 1.5) << start;
+    const double error = metrics["scale_error_percent"];
+    EXPECT_LT(std::abs(std::log1p(error / 100)), 3 * inertial["sigma"].get<double>()) << start;
+    scale_percent.push_back(std::abs(error));
+    EXPECT_EQ(result["planes"][0]["name"], "floor") << start;
+    for (std::size_t k = 1; k < result["planes"].size(); ++k) {
+      const json& plane = result["planes"][k];
+      EXPECT_EQ(plane.value("name", "wall"), "wall") << start;
+      named_walls += plane.contains("name");
+    }
+  }
+  EXPECT_GE(named_walls, 4);  // from 15 on the wall's normal is certain to 41 deg only
+  std::ranges::sort(scale_percent);
+  EXPECT_LT(scale_percent[2], 5);
 }
 
 /// Error of the normal over its standard deviation, with the truth's own.

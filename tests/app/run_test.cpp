@@ -144,6 +144,34 @@ TEST(Run, TrajectoryIsTumAndPointsArePly) {
               HasSubstr("element vertex " + std::to_string(j["points"].size())));
 }
 
+TEST(Run, TrajectoryAndPointsAreInMetersWhereTheAccelerometerTells) {
+  const fs::path folder = fresh_folder();
+  const auto z_of_first_point = [&](const std::string& options) {
+    const fs::path ply = folder / "p.ply", path = folder / "t.txt";
+    const Outcome outcome = program("run " + desk().string() + options + " --points " +
+                                    ply.string() + " --trajectory " + path.string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string unit = options.empty() ? "unit = distance of the plane" : "unit = meter";
+    EXPECT_THAT(read_file(path), HasSubstr(unit));
+    const std::string text = read_file(ply);
+    EXPECT_THAT(text, HasSubstr(unit));
+    std::istringstream points(text.substr(text.find("end_header\n") + 11));
+    double x = 0, y = 0, z = 0;
+    points >> x >> y >> z;
+    return z;
+  };
+  const double scale = run_json(desk().string())["inertial"]["scale"];
+  EXPECT_NEAR(z_of_first_point(" --metric"), scale * z_of_first_point(""), 1e-8);
+  const Outcome without = program("run " + desk().string() + " --gravity off --metric --points " +
+                                  (folder / "none.ply").string());
+  EXPECT_NE(without.exit_code, 0);
+  EXPECT_THAT(without.err,
+              HasSubstr("meters: found no scale (no accelerometer is used), expected one"));
+  EXPECT_FALSE(fs::exists(folder / "none.ply"));
+  EXPECT_THAT(program("run " + desk().string() + " --metric").err,
+              HasSubstr("--metric is not used"));
+}
+
 TEST(Run, TableHasUnits) {
   const Outcome outcome = program("run " + desk().string());
   EXPECT_EQ(outcome.exit_code, 0);

@@ -182,10 +182,10 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   click(on_scene(to), 1);
   ASSERT_TRUE(state_.cube_ray.has_value());
   const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.cube_ray);
-  EXPECT_LT((there - to).norm(), 0.01);
+  EXPECT_LT((there - to).norm(), 0.02);  // the mouse is on whole pixels
   Inspection moved = *inspection_;
   move_cubes(moved, *state_.cube_ray);
-  EXPECT_LT((moved.cube->origin - to).norm(), 0.01);
+  EXPECT_LT((moved.cube->origin - to).norm(), 0.02);
   EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
 }
 

@@ -31,6 +31,7 @@ constexpr Colors kThemes[] = {
     {Role::axis_x, 0xEF5B50, 0xEF5B50},
     {Role::axis_y, 0x4CC26B, 0x4CC26B},
     {Role::axis_z, 0x4A90F0, 0x4A90F0},
+    {Role::gravity, 0xFFB3E6, 0x9A2A77},  // pink
     {Role::tracking, 0x56B4E9, 0x56B4E9},
     {Role::ransac, 0xE69F00, 0xE69F00},
     {Role::rotations, 0xCC79A7, 0xCC79A7},

@@ -30,6 +30,7 @@ enum class Role {
   axis_x,
   axis_y,
   axis_z,
+  gravity,  ///< up, and the horizon
   // Stages of an inspection.
   tracking,
   ransac,

@@ -10,6 +10,7 @@
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
 #include "ui/look/picture_zoom.h"
+#include "ui/look/viewpoint.h"
 #include "ui/workbench/division.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
@@ -120,13 +121,15 @@ struct WorkbenchState {
   std::vector<std::string> hidden_curves;  ///< keys of Configurations
   /// Of a results.csv, whose curves take the place of the survey's; null: none is open.
   std::shared_ptr<const std::vector<Row>> experiment;
-  std::string experiment_name;              ///< of that file, for people
-  double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera: where the cube stands on
-                                            ///< the plane; nothing: where the inspection puts it
-  PictureZoom picture_zoom;                 ///< of the picture
-  NormalsZoom normals_zoom;                 ///< of the disc of normals
-  std::optional<OrbitCamera> orbit;         ///< of the scene; nothing: everything in view
+  std::string experiment_name;               ///< of that file, for people
+  bool metric = false;                       ///< poses and points are exported in meters
+  double cube_side = 0;                      ///< in plane distances; 0: automatic
+  std::optional<Eigen::Vector3d> cube_ray;   ///< of the reference camera: where the cube stands on
+                                             ///< the plane; nothing: where the inspection puts it
+  PictureZoom picture_zoom;                  ///< of the picture
+  NormalsZoom normals_zoom;                  ///< of the disc of normals
+  Viewpoint viewpoint = Viewpoint::oblique;  ///< of the scene
+  std::optional<OrbitCamera> orbit;  ///< of the scene where it was dragged; nothing: `viewpoint`
   Selection selection;
   Hover hover;
   bool show_help = false;

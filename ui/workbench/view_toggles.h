@@ -13,6 +13,7 @@ struct ViewToggles {
   bool residuals = false;
   bool cube = true;
   bool truth = true;
+  bool gravity = true;
   int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
 
   bool operator==(const ViewToggles&) const = default;
@@ -46,6 +47,12 @@ inline constexpr std::array kViewToggles = {
                "Ground truth",
                'G',
                &ViewToggles::truth,
-               "True cameras, plane and cube in gray, where they are known"}};
+               "True cameras, plane and cube in gray, where they are known"},
+    ViewToggle{
+        "gravity",
+        "Gravity",
+        0,
+        &ViewToggles::gravity,
+        "Which way is up in the scene, and the horizon in the picture, by the accelerometer"}};
 
 }  // namespace gpo

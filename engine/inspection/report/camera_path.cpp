@@ -58,15 +58,19 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
 
 }  // namespace
 
-CameraPath estimated_path(const Inspection& inspection) {
+CameraPath estimated_path(const Inspection& inspection,
+                          const std::optional<double>& meters_a_unit) {
   if (!inspection.initialization->ok) {
     throw InputError(fmt::format("{}: found a failed initialization ({}), expected one with poses",
                                  inspection.recording->name,
                                  inspection.initialization->reason));
   }
-  return {inspection.window->timestamps_ns,
-          inspection.initialization->cameras,
-          "world = reference camera (x right, y down, z forward); unit = distance of the plane"};
+  CameraPath path{inspection.window->timestamps_ns,
+                  inspection.initialization->cameras,
+                  "world = reference camera (x right, y down, z forward); unit = "};
+  path.world += meters_a_unit ? "meter" : "distance of the plane";
+  for (Pose& camera : path.cameras) camera.p_wc *= meters_a_unit.value_or(1);
+  return path;
 }
 
 CameraPath true_path(const Inspection& inspection) {

@@ -6,6 +6,7 @@
 #include "engine/inspection/inspection.h"
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace gpo {
@@ -28,9 +29,10 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
-/// World = reference camera, unit = distance of the plane. Throws InputError for an initialization
-/// that failed.
-CameraPath estimated_path(const Inspection& inspection);
+/// World = reference camera, unit = distance of the plane, or the meter. Throws InputError for an
+/// initialization that failed.
+CameraPath estimated_path(const Inspection& inspection,
+                          const std::optional<double>& meters_a_unit = {});
 
 /// The true poses of the same window, of the frames that have one [m]. Throws InputError where no
 /// truth is known.

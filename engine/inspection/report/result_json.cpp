@@ -4,6 +4,7 @@
 
 #include "engine/files/json_text.h"
 #include "engine/initializers/methods.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
@@ -119,6 +120,11 @@ ordered_json planes_json(const Inspection& inspection) {
       plane["distance"] = estimate->plane.distance;
       plane["normal_covariance_rad2"] = optional_matrix_json(estimate->normal_covariance);
       plane["distance_sigma"] = optional_json(estimate->distance_sigma);
+    }
+    if (const auto name = plane_name(inspection, number)) {
+      plane["name"] = name->name;
+      plane["tilt_deg"] = name->tilt_deg;
+      plane["tilt_sigma_deg"] = name->sigma_deg;
     }
     plane["share"] = static_cast<double>(ids.size()) / window.track_count();
     plane["tracks"] = ids;

@@ -3,9 +3,12 @@
 #include "engine/inspection/report/result_text.h"
 
 #include "engine/initializers/methods.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -67,8 +70,26 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   return text;
 }
 
+/// What gravity says of the window's planes: "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
+std::string planes_text(const Inspection& inspection) {
+  std::string text;
+  for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
+    const auto name = plane_name(inspection, k);
+    if (!name) continue;
+    text += fmt::format("{}{} {} ({:.1f} +- {:.1f} deg from up)",
+                        text.empty() ? "" : ", ",
+                        k + 1,
+                        name->name,
+                        name->tilt_deg,
+                        name->sigma_deg);
+  }
+  return text.empty() ? "" : row("planes", text);
+}
+
 /// Gravity's direction and the scale, or why there are none.
-std::string inertial_text(const std::optional<InertialAlignment>& inertial, const Plane& plane) {
+std::string inertial_text(const Inspection& inspection) {
+  const std::optional<InertialAlignment>& inertial = inspection.inertial;
+  const Plane& plane = inspection.initialization->plane;
   if (!inertial) return "";
   if (!inertial->ok) return row("gravity", "not found: " + inertial->reason);
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
@@ -82,7 +103,8 @@ std::string inertial_text(const std::optional<InertialAlignment>& inertial, cons
              inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away",
                                                  100 * inertial->log_scale_sigma,
                                                  inertial->scale * plane.distance)
-                                   : inertial->scale_reason);
+                                   : inertial->scale_reason) +
+         planes_text(inspection);
 }
 
 /// Nothing of a method that solves nothing.
@@ -151,9 +173,10 @@ std::string to_text(const Inspection& inspection) {
                                      window.track_count(),
                                      inliers_note(inspection)));
   if (result.verdict) {
-    text +=
-        row("verdict",
-            fmt::format("{}: {}", to_string(result.verdict->readiness), result.verdict->reason));
+    const std::string word = to_string(result.verdict->readiness);
+    text += row("verdict",
+                result.verdict->reason.starts_with(word) ? result.verdict->reason
+                                                         : word + ": " + result.verdict->reason);
   }
   if (result.ok) {
     const Eigen::Vector3d& n = result.plane.normal;
@@ -161,8 +184,7 @@ std::string to_text(const Inspection& inspection) {
         row("normal",
             fmt::format(
                 "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
-        uncertainty_text(result, inspection.recording->camera_source) +
-        inertial_text(inspection.inertial, result.plane) +
+        uncertainty_text(result, inspection.recording->camera_source) + inertial_text(inspection) +
         row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) + solver_text(result.solver);
   }
   text += row("time",
@@ -180,20 +202,19 @@ std::string to_text(const Inspection& inspection) {
   return text;
 }
 
-std::string to_ply(const Inspection& inspection) {
+std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_a_unit) {
   const auto& points = inspection.initialization->points;
   std::string text = fmt::format(
       "ply\nformat ascii 1.0\ncomment world = reference camera (x right, y down, z forward); unit "
-      "= distance of the plane\n"
+      "= {}\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
       "track\nend_header\n",
+      meters_a_unit ? "meter" : "distance of the plane",
       points.size());
   for (const MapPoint& point : points) {
-    text += fmt::format("{:.9f} {:.9f} {:.9f} {}\n",
-                        point.position.x(),
-                        point.position.y(),
-                        point.position.z(),
-                        inspection.tracks->ids[point.track]);
+    const Eigen::Vector3d at = meters_a_unit.value_or(1) * point.position;
+    text += fmt::format(
+        "{:.9f} {:.9f} {:.9f} {}\n", at.x(), at.y(), at.z(), inspection.tracks->ids[point.track]);
   }
   return text;
 }

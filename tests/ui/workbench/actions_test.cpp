@@ -43,13 +43,19 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
   EXPECT_EQ(state.settings.method, "pba");
   run_line(state, "set ransac_threshold_px 3.5");
   EXPECT_EQ(state.settings.ransac_threshold_px, 3.5);
+  run_line(state, "ransac_threshold_px 2.5");  // a setting's name is enough
+  EXPECT_EQ(state.settings.ransac_threshold_px, 2.5);
+  run_line(state, "viewpoint top");
+  EXPECT_EQ(state.viewpoint, Viewpoint::top);
   run_line(state, "tails off");
   EXPECT_FALSE(state.view.tails);
   for (const auto& [line, what] :
        {std::pair{"frame", "frame: expected one word after it"},
         {"frame x", "frame: 'x', expected a number"},
-        {"frame 1 2", "frame: '2' is too much"},
-        {"method nobody", "no action is called \"method\"; F1 lists them"},
+        {"frame 1 2", "frame: '2' is one word too many"},
+        {"method nobody", "method: unknown value 'nobody', expected one of gpo"},
+        {"start x", "start: 'x', expected"},
+        {"nobody 3", "no action is called \"nobody\"; F1 lists them"},
         {"set seed -1", "seed: '-1', expected a number from 0 to 1e+09"},
         {"set colour red", "no setting is called 'colour'"},
         {"tails perhaps", "tails: 'perhaps', expected on or off"},

@@ -14,12 +14,62 @@
 namespace gpo {
 namespace {
 
+/// Ascending, descending, as it was.
+TableOrder clicked(const TableOrder& order, int column) {
+  if (order.column != column) return {column, false};
+  return order.descending ? TableOrder{} : TableOrder{column, true};
+}
+
 void header_cell(const char* title, const char* meaning) {
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
   ImGui::TextUnformatted(title);
   ImGui::PopStyleColor();
   tooltip(meaning);
+}
+
+/// A click on it puts the rows in order.
+void number_header(int index, const ComparedColumn& column, TableOrder& order) {
+  ImGui::TableNextColumn();
+  const bool orders = order.column == index;
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(orders ? Role::accent : Role::text_dim));
+  ImGui::TextUnformatted(column.title);
+  ImGui::PopStyleColor();
+  const bool pressed = ImGui::IsItemClicked();
+  tooltip(std::string(column.meaning) + ". Click: puts the rows in order");
+  if (orders) {
+    const float size = font(Font::small)->FontSize;
+    ImGui::SameLine(0, size / 3);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float low = at.y + size * 0.85F, high = at.y + size * 0.35F, half = size * 0.3F;
+    const float tip = order.descending ? low : high, base = order.descending ? high : low;
+    ImGui::GetWindowDrawList()->AddTriangleFilled(
+        {at.x, base}, {at.x + 2 * half, base}, {at.x + half, tip}, imgui_color(Role::accent));
+    ImGui::Dummy({2 * half, size});
+  }
+  if (pressed) order = clicked(order, index);
+}
+
+/// Kept with the window that the table is in.
+TableOrder kept_order() {
+  const int kept = ImGui::GetStateStorage()->GetInt(ImGui::GetID("order"));
+  return {std::abs(kept) - 1, kept < 0};
+}
+
+void keep_order(const TableOrder& order) {
+  const int code = order.column + 1;
+  ImGui::GetStateStorage()->SetInt(ImGui::GetID("order"), order.descending ? -code : code);
+}
+
+/// Right click anywhere in the table.
+void copy_menu(const std::vector<ComparedRow>& rows) {
+  if (!ImGui::BeginPopupContextWindow("copy")) return;
+  if (ImGui::MenuItem("Copy the table as CSV")) ImGui::SetClipboardText(to_csv(rows).c_str());
+  for (const ComparedRow& row : rows) {
+    const std::string title = "Copy " + title_of(row.configuration) + " as CSV";
+    if (ImGui::MenuItem(title.c_str())) ImGui::SetClipboardText(to_csv({&row, 1}).c_str());
+  }
+  ImGui::EndPopup();
 }
 
 float widest_name(const std::vector<ComparedRow>& rows) {
@@ -29,7 +79,7 @@ float widest_name(const std::vector<ComparedRow>& rows) {
   return widest + 1.5F * ImGui::GetTextLineHeight();
 }
 
-void header(const std::vector<ComparedRow>& rows) {
+void header(const std::vector<ComparedRow>& rows, TableOrder& order) {
   ImGui::TableSetupScrollFreeze(1, 1);
   ImGui::TableSetupColumn("method", ImGuiTableColumnFlags_WidthFixed, widest_name(rows));
   ImGui::TableSetupColumn("status");
@@ -37,9 +87,10 @@ void header(const std::vector<ComparedRow>& rows) {
   // Not a row of headers: of those ImGui does not count the text when it chooses widths.
   ImGui::TableNextRow();
   ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(Role::raised));
-  header_cell("Method", "Click a row: makes it the current method");
+  header_cell("Method", "Click a row: makes it the current method. Right click: copies as CSV");
   header_cell("Status", "Whether it solved the window, and how fit the window is by its result");
-  for (const ComparedColumn& column : compared_columns()) header_cell(column.title, column.meaning);
+  int index = 0;
+  for (const ComparedColumn& column : compared_columns()) number_header(index++, column, order);
 }
 
 void draw_name(const ComparedRow& row, bool current, float height, Commands& commands) {
@@ -144,10 +195,13 @@ void table_drawer(const PanelInput& input,
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 1});
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {9 * s, 3 * s});
   if (ImGui::BeginTable("compared", columns, flags, {place.width - 12 * s, place.height - 6 * s})) {
-    header(rows);
+    TableOrder order = kept_order();
+    header(rows, order);
+    keep_order(order);
     const Configuration current = called_among_compared(input.state, input.state.settings);
-    for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const std::size_t i : in_order(rows, order))
       draw_row(rows[i], results[i], rows[i].configuration == current, commands);
+    copy_menu(rows);
     ImGui::EndTable();
   }
   ImGui::PopStyleVar(2);

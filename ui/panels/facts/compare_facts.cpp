@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -46,47 +47,53 @@ Value iterations(const Inspection& inspection) {
 }
 
 constexpr std::array kReadings{
-    Reading{{"Inliers", "Tracks that agree with the plane's homographies"},
+    Reading{{"Inliers", "Tracks that agree with the plane's homographies", ""},
             [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
             count_text,
             Better::neither},
-    Reading{{"RMS", "Root mean square reprojection error of the observations that it used [px]"},
-            [](const Inspection& i) -> Value { return i.initialization->rms_px; },
-            pixel_text,
-            Better::less},
-    Reading{{"Iterations", "Of the solver; a dash where the method does not optimize"},
+    Reading{
+        {"RMS", "Root mean square reprojection error of the observations that it used [px]", "px"},
+        [](const Inspection& i) -> Value { return i.initialization->rms_px; },
+        pixel_text,
+        Better::less},
+    Reading{{"Iterations", "Of the solver; a dash where the method does not optimize", ""},
             iterations,
             count_text,
             Better::neither},
-    Reading{{"Initialize", "The method, with checks and map points [ms]"},
+    Reading{{"Initialize", "The method, with checks and map points [ms]", "ms"},
             [](const Inspection& i) -> Value { return i.timing.initialize; },
             milliseconds_text,
             Better::less,
             false,
             true},
-    Reading{{"PNE", "Plane normal error: angle to the true normal, in the reference camera [deg]"},
+    Reading{{"PNE",
+             "Plane normal error: angle to the true normal, in the reference camera [deg]",
+             "deg"},
             [](const Inspection& i) { return evaluation_of(i).pne_deg; },
             angle_text,
             Better::less,
             true},
     Reading{{"PNE aligned",
-             "Plane normal error after aligning the camera paths, the paper's way [deg]"},
+             "Plane normal error after aligning the camera paths, the paper's way [deg]",
+             "deg"},
             [](const Inspection& i) { return evaluation_of(i).pne_aligned_deg; },
             angle_text,
             Better::less,
             true},
-    Reading{{"PDE", "Plane distance error, in the scale of the alignment [mm]"},
+    Reading{{"PDE", "Plane distance error, in the scale of the alignment [mm]", "m"},
             [](const Inspection& i) { return evaluation_of(i).pde_m; },
             length_text,
             Better::less,
             true},
-    Reading{{"ATE", "Absolute trajectory error, root mean square over the aligned cameras [mm]"},
-            [](const Inspection& i) { return evaluation_of(i).ate_m; },
-            length_text,
-            Better::less,
-            true},
+    Reading{
+        {"ATE", "Absolute trajectory error, root mean square over the aligned cameras [mm]", "m"},
+        [](const Inspection& i) { return evaluation_of(i).ate_m; },
+        length_text,
+        Better::less,
+        true},
     Reading{{"Normal \u03c3",
-             "Standard deviation of the plane's normal, first order; needs no truth [deg]"},
+             "Standard deviation of the plane's normal, first order; needs no truth [deg]",
+             "deg"},
             normal_sigma,
             angle_text,
             Better::less},
@@ -127,6 +134,7 @@ ComparedNumber number(const Reading& reading,
                       bool timings) {
   ComparedNumber number;
   const Value value = value_of(reading, inspection, timings);
+  number.value = value;
   number.text = value ? reading.text(*value) : "\u2013";
   // Not assigned as it is returned: GCC 14 sees a copy out of bounds in that.
   if (!value) {
@@ -173,6 +181,40 @@ std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, boo
     rows.push_back(row_of(one, first, timings));
   }
   return rows;
+}
+
+std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const TableOrder& order) {
+  std::vector<std::size_t> indices(rows.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  if (order.column < 0) return indices;
+  const auto value = [&](std::size_t i) {
+    const auto& numbers = rows[i].numbers;
+    const bool there = order.column < static_cast<int>(numbers.size());
+    return there ? numbers[order.column].value : std::nullopt;
+  };
+  std::ranges::stable_sort(indices, [&](std::size_t a, std::size_t b) {
+    const Value x = value(a), y = value(b);
+    if (!x || !y) return x.has_value() && !y;
+    return order.descending ? *x > *y : *x < *y;
+  });
+  return indices;
+}
+
+std::string to_csv(std::span<const ComparedRow> rows) {
+  std::string text = "method,status";
+  for (const ComparedColumn& column : compared_columns())
+    text += fmt::format(
+        ",{}{}", column.title, *column.unit == '\0' ? "" : fmt::format(" [{}]", column.unit));
+  text += "\n";
+  for (const ComparedRow& row : rows) {
+    text += key_of(row.configuration) + "," + row.status;
+    for (std::size_t k = 0; k < compared_columns().size(); ++k) {
+      const bool known = k < row.numbers.size() && row.numbers[k].value;
+      text += known ? fmt::format(",{}", *row.numbers[k].value) : ",";
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace gpo

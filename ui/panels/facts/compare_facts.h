@@ -4,6 +4,8 @@
 
 #include "ui/workbench/compared.h"
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@ namespace gpo {
 struct ComparedColumn {
   const char* title;
   const char* meaning;  ///< with the unit; for the header's tooltip
+  const char* unit;     ///< of `ComparedNumber::value`; empty: a count
 };
 
 /// Of the table of compared results, from the left; what they are called stands before them.
@@ -21,6 +24,7 @@ std::span<const ComparedColumn> compared_columns();
 
 /// A cell of the table.
 struct ComparedNumber {
+  std::optional<double> value;
   std::string text;        ///< with its unit; a dash where it is not known
   std::string difference;  ///< to the first row: "+0.12° +63 %"; empty: there is none to tell
   /// How much better (to -1) or worse (to 1) than the first row: 1 where it is twice as large or
@@ -40,5 +44,16 @@ struct ComparedRow {
 /// One row each, the first of which the others are compared to. Without `timings` the milliseconds
 /// are dashes.
 std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
+
+/// By which column rows are put in order, and how.
+struct TableOrder {
+  int column = -1;  ///< of `compared_columns()`; -1: as they are
+  bool descending = false;
+};
+/// The rows' indices in that order; what is not known comes last either way.
+std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const TableOrder& order);
+
+/// A header with units, and a line a row, for spreadsheets; what is not known is empty.
+std::string to_csv(std::span<const ComparedRow> rows);
 
 }  // namespace gpo

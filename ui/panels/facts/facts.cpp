@@ -8,7 +8,9 @@
 #include "engine/recording/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
+#include "ui/panels/facts/gravity_facts.h"
 #include "ui/panels/facts/uncertainty_facts.h"
+#include "ui/views/picture/image_view.h"
 
 #include <algorithm>
 #include <optional>
@@ -88,6 +90,16 @@ ResultGroup metrics_group(const Inspection& inspection) {
               "Absolute trajectory error: root mean square distance of the aligned camera "
               "centers to the true ones",
               why_unaligned)}};
+  if (e.scale_error_percent)
+    group.rows.push_back({"Scale error",
+                          fmt::format("{:+.1f} %", *e.scale_error_percent),
+                          "",
+                          "The accelerometer's meters over the true ones, less one"});
+  if (e.gravity_error_deg)
+    group.rows.push_back({"Up error",
+                          angle_text(*e.gravity_error_deg),
+                          "",
+                          "Angle of gravity, as the accelerometer tells it, to the true vertical"});
   if (const auto row = truth_row(inspection)) group.rows.push_back(*row);
   return group;
 }
@@ -185,7 +197,9 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   return facts;
 }
 
-std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings) {
+std::vector<ResultGroup> result_groups(const Inspection* inspection,
+                                       bool timings,
+                                       double chosen_side) {
   if (!inspection || !inspection->initialization || !inspection->window) {
     return {nothing(kVerdictTitle, {"Rotation alone", "Moved"}),
             nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
@@ -194,11 +208,15 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timing
                     {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             nothing("TIME", {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
   }
-  return {verdict_group(*inspection),
-          result_group(*inspection),
-          metrics_group(*inspection),
-          uncertainty_group(*inspection),
-          timing_group(inspection->timing, timings)};
+  const double side = cube_side(*inspection, chosen_side);
+  std::vector<ResultGroup> groups{verdict_group(*inspection),
+                                  result_group(*inspection),
+                                  metrics_group(*inspection),
+                                  uncertainty_group(*inspection),
+                                  gravity_group(*inspection, side),
+                                  timing_group(inspection->timing, timings)};
+  std::erase_if(groups, [](const ResultGroup& group) { return group.rows.empty(); });
+  return groups;
 }
 
 }  // namespace gpo

@@ -15,6 +15,9 @@ namespace gpo {
 std::vector<std::string> recording_facts(const Recording& recording);
 
 /// The results of an inspection, or of none (null). Without `timings` the milliseconds are dashes.
-std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings);
+/// `chosen_side`: of the cube, 0: the default [unit of the estimate].
+std::vector<ResultGroup> result_groups(const Inspection* inspection,
+                                       bool timings,
+                                       double chosen_side = 0);
 
 }  // namespace gpo

@@ -74,8 +74,13 @@ void draw_pairs(const ResultGroup& group, float left, float right, float gap) {
   ImGui::PopFont();
 }
 
-/// Sign and word to the left, the normal's standard deviation to the right; the reason below.
-void draw_verdict(const Verdict& verdict, float left, float right, float gap, float scale) {
+/// Sign and word to the left, the standard deviation of the result's normal to the right (of the
+/// window's, where there is no result); the reason, which tells the window's, below.
+void draw_verdict(const Initialization& result, float left, float right, float gap, float scale) {
+  const Verdict& verdict = *result.verdict;
+  const std::optional<double> sigma_deg = result.uncertainty
+                                              ? std::optional(result.uncertainty->normal_sigma_deg)
+                                              : verdict.normal_sigma_deg;
   const ReadinessLook look = look_of(verdict.readiness);
   ImGui::SetCursorPosX(left);
   ImGui::BeginGroup();
@@ -88,8 +93,7 @@ void draw_verdict(const Verdict& verdict, float left, float right, float gap, fl
   ImGui::TextUnformatted(to_string(verdict.readiness));
   ImGui::PopStyleColor();
   ImGui::PopFont();
-  if (verdict.normal_sigma_deg)
-    draw_value({"", "\u00b1" + angle_text(*verdict.normal_sigma_deg), "normal", ""}, right, gap);
+  if (sigma_deg) draw_value({"", "\u00b1" + angle_text(*sigma_deg), "normal", ""}, right, gap);
   ImGui::PushFont(font(Font::small));
   ImGui::PushTextWrapPos(right);
   ImGui::TextUnformatted(verdict.reason.c_str());
@@ -122,12 +126,13 @@ void results_panel(const PanelInput& input, const Rectangle& place) {
   const Initialization* result =
       input.inspection() ? input.inspection()->initialization.get() : nullptr;
   bool first = true;
-  for (const ResultGroup& group : result_groups(input.inspection(), input.timings)) {
+  for (const ResultGroup& group :
+       result_groups(input.inspection(), input.timings, input.state.cube_side)) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(input, right);
     if (group.title == kVerdictTitle && result && result->verdict)
-      draw_verdict(*result->verdict, left, right, gap, s);
+      draw_verdict(*result, left, right, gap, s);
     if (group.title == "TIME") {
       draw_pairs(group, left, right, gap);
     } else {

@@ -117,7 +117,8 @@ void draw_columns(const PanelInput& input,
   const CompareOptions options = compare_options(state);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_compare_view(list, rect, columns, *state.recording, frame, shown_picture(views), options);
-  const auto places = compare_places(rect, count, options.top_line);
+  const auto places =
+      compare_places(rect, count, aspect_of(state.recording->camera), options.top_line);
   const PictureZoom zoom =
       compare_zoom(columns, *state.recording, frame, places.front().picture.size, options);
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -89,8 +89,8 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
                          {place.width, place.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
   const double side = cube_side(inspection, state.cube_side);
-  const OrbitCamera camera =
-      state.orbit.value_or(default_scene_camera(inspection, side, place.width / place.height));
+  const OrbitCamera camera = state.orbit.value_or(
+      scene_camera(inspection, side, place.width / place.height, state.viewpoint, state.frame));
   const ScreenRect rect = screen_rect(place);
   orbit_and_zoom(camera, place.height, commands);
   const Hover hover = hover_in(inspection, rect, camera, input.scale);

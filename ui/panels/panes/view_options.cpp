@@ -22,6 +22,7 @@ ImageViewOptions image_options(const WorkbenchState& state, const Inspection* in
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
   options.truth = state.view.truth;
+  options.gravity = state.view.gravity;
   options.legend = inspection != nullptr;
   return options;
 }
@@ -31,6 +32,7 @@ SceneViewOptions scene_options(const WorkbenchState& state) {
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
   options.truth = state.view.truth;
+  options.gravity = state.view.gravity;
   options.uncertainty = state.view.uncertainty;
   return options;
 }

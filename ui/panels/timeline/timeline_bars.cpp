@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/timeline/timeline_bars.h"
 
+#include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/plane_look.h"
@@ -169,7 +170,7 @@ void draw_verdict_legend(
               {left + 12 * scale, top + f->FontSize / 2},
               plane_color(*inspection.window, k));
     left += 20 * scale;
-    write(fmt::format("plane {}", k + 1).c_str(), color_of(Role::text_dim));
+    write(plane_title(inspection, k).c_str(), color_of(Role::text_dim));
   }
   left += 8 * scale;
   write("gray: outliers", color_of(Role::text_dim));

@@ -30,7 +30,8 @@ struct Grid {
   int columns, rows;
 };
 
-Grid grid(int wanted) {
+/// Of a picture that nobody gave a size.
+Grid default_grid(int wanted) {
   const int count = std::max(1, wanted);
   const int rows = (count + kMostColumns - 1) / kMostColumns;
   return {(count + rows - 1) / rows, rows};
@@ -50,6 +51,21 @@ ColumnPlace column_at(
   return {{at, {inner, heading}},
           {at + Vector2d(0, heading), {inner, picture}},
           {at + Vector2d(0, heading + picture), {inner, caption}}};
+}
+
+/// The one whose pictures are largest; of equal ones the one with fewest rows.
+Grid best_grid(const ScreenRect& rect, int count, double aspect, double top, double scale) {
+  Grid best{std::max(1, count), 1};
+  double widest = 0;
+  for (int rows = 1; rows <= count; ++rows) {
+    const Grid one{(count + rows - 1) / rows, rows};
+    const Vector2d size = column_at(rect, one, 0, top, scale).picture.size;
+    const double width = std::min(size.x(), size.y() * aspect);
+    if (width <= widest) continue;
+    widest = width;
+    best = one;
+  }
+  return best;
 }
 
 using Columns = std::span<const CompareColumn>;
@@ -165,11 +181,20 @@ std::vector<CompareColumn> columns_of(Comparison inspections) {
 
 }  // namespace
 
-std::vector<ColumnPlace> compare_places(const ScreenRect& rect, int count, bool top_line) {
+double aspect_of(const Camera& camera) {
+  if (camera.width <= 0) return 4.0 / 3;
+  return std::clamp(static_cast<double>(camera.width) / camera.height, 1 / 1.5, 1 / 0.4);
+}
+
+std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
+                                        int count,
+                                        double aspect,
+                                        bool top_line) {
   const double scale = overlay_scale();
   const double top = scale * (top_line ? kTopLine : 0);
+  const Grid grid = best_grid(rect, count, aspect, top, scale);
   std::vector<ColumnPlace> places;
-  for (int i = 0; i < count; ++i) places.push_back(column_at(rect, grid(count), i, top, scale));
+  for (int i = 0; i < count; ++i) places.push_back(column_at(rect, grid, i, top, scale));
   return places;
 }
 
@@ -198,8 +223,10 @@ void draw_compare_view(ImDrawList& list,
       .tracks = !recording.pictures, .tail_frames = 0, .residuals = options.residuals};
   image.cube = options.cube;
   image.truth = options.truth;
+  image.gravity = false;
   image.legend = false;
-  const auto places = compare_places(rect, static_cast<int>(columns.size()), options.top_line);
+  const auto places = compare_places(
+      rect, static_cast<int>(columns.size()), aspect_of(recording.camera), options.top_line);
   const PictureZoom zoom =
       compare_zoom(columns, recording, frame, places.front().picture.size, options);
   const Inspection nothing = nothing_inspected({std::shared_ptr<const Recording>(), &recording});
@@ -255,14 +282,12 @@ cv::Size default_compare_size(Comparison inspections) {
 }
 
 cv::Size default_compare_size(int columns, const Recording& recording) {
-  const Grid cells = grid(columns);
-  const Camera& camera = recording.camera;
-  const double aspect =
-      camera.width > 0 ? std::clamp(static_cast<double>(camera.height) / camera.width, 0.4, 1.5)
-                       : 0.75;
-  return {static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
-          static_cast<int>(cells.rows * (kHeading + std::round(kColumn * aspect) + kCaption) +
-                           kTopLine)};
+  const Grid cells = default_grid(columns);
+  return {
+      static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
+      static_cast<int>(
+          cells.rows * (kHeading + std::round(kColumn / aspect_of(recording.camera)) + kCaption) +
+          kTopLine)};
 }
 
 double compare_text_scale(Comparison inspections, cv::Size size) {

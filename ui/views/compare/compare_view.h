@@ -36,8 +36,15 @@ struct ColumnPlace {
   ScreenRect heading, picture, caption;
 };
 
-/// Of `count` columns, at most four side by side, then rows; at the size of the current font.
-std::vector<ColumnPlace> compare_places(const ScreenRect& rect, int count, bool top_line);
+/// Width / height of its pictures, within what a column can show well; 4:3 where it is not known.
+double aspect_of(const Camera& camera);
+
+/// Of `count` columns, in so many rows that pictures of this aspect (width / height) are largest;
+/// at the size of the current font.
+std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
+                                        int count,
+                                        double aspect,
+                                        bool top_line);
 
 /// The part of the picture that all columns show, whose pictures are as large as `picture_size`
 /// [screen px].

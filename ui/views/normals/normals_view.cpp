@@ -3,6 +3,7 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
+#include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
@@ -264,7 +265,7 @@ std::vector<LegendRow> legend_of(const NormalsContent& content) {
   for (const PlaneEstimate& plane : other_estimates(content))
     add(Sign::disc,
         plane_color(*content.study->window, plane.number),
-        fmt::format("plane {}", plane.number + 1));
+        plane_title(*content.answers.front().inspection, plane.number));
   add(Sign::dot, color_of(Role::selected), "readings, this frame's larger");
   add(Sign::circle, color_of(Role::text), "rejected");
   if (!content.study->clusters.empty())

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -115,6 +117,35 @@ std::optional<CubePicture> true_cube(const Inspection& inspection,
   return cube_in_picture(inspection.recording->camera,
                          *inspection.truth->cameras[frame_in_window],
                          cube_corners(*inspection.true_cube, true_side));
+}
+
+std::vector<std::vector<Vector2d>> horizon_in_picture(const Camera& camera,
+                                                      const Pose& pose,
+                                                      const Vector3d& up_w) {
+  constexpr int kDirections = 720;  // around the whole horizon
+  constexpr double kLeastDepth = 0.05;
+  const Vector3d up_c = (pose.R_wc.transpose() * up_w).normalized();
+  // Begins behind the camera, so that what it sees is in one piece.
+  Vector3d ahead = Vector3d::UnitZ() - up_c * up_c.z();
+  if (ahead.norm() < 1e-9) return {};
+  ahead.normalize();
+  const Vector3d side = ahead.cross(up_c);
+  const Eigen::AlignedBox2d inside(Vector2d(-0.5, -0.5),
+                                   Vector2d(camera.width - 0.5, camera.height - 0.5));
+  std::vector<std::vector<Vector2d>> pieces(1);
+  for (int i = 0; i <= kDirections; ++i) {
+    const double angle = std::numbers::pi * (2.0 * i / kDirections - 1);
+    const Vector3d direction = std::cos(angle) * ahead + std::sin(angle) * side;
+    const Vector2d raw_px = direction.z() > kLeastDepth
+                                ? project(camera, direction)
+                                : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (raw_px.allFinite() && inside.contains(raw_px))
+      pieces.back().push_back(raw_px);
+    else if (!pieces.back().empty())
+      pieces.emplace_back();
+  }
+  std::erase_if(pieces, [](const auto& piece) { return piece.size() < 2; });
+  return pieces;
 }
 
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {

@@ -52,6 +52,12 @@ std::optional<CubePicture> true_cube(const Inspection& inspection,
                                      int frame_in_window,
                                      double side);
 
+/// Where the camera sees what is level with it, bent by its lens; what is outside of the picture is
+/// left out, so that there may be several pieces, or none. `up_w` of any length, in the world.
+std::vector<std::vector<Eigen::Vector2d>> horizon_in_picture(const Camera& camera,
+                                                             const Pose& pose,
+                                                             const Eigen::Vector3d& up_w);
+
 /// Where a track was seen, and where plane and poses put what the reference frame saw [raw px].
 struct ResidualVector {
   int track;

@@ -3,6 +3,7 @@
 #include "ui/views/picture/image_view.h"
 
 #include "engine/initializers/methods.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
@@ -172,6 +173,23 @@ void draw_true_cube(const Canvas& canvas, const CubePicture& cube) {
   }
 }
 
+/// Of the frame, by its estimated pose; nothing where gravity is not known.
+std::vector<std::vector<Vector2d>> horizon(const Canvas& canvas) {
+  const Inspection& inspection = canvas.inspection;
+  if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.gravity) return {};
+  return horizon_in_picture(inspection.recording->camera,
+                            inspection.initialization->cameras[canvas.frame],
+                            -inspection.inertial->gravity_m_s2);
+}
+
+void draw_horizon(const Canvas& canvas) {
+  for (const auto& piece : horizon(canvas)) {
+    const std::vector<ImVec2> points = canvas.at(piece);
+    canvas.polyline(points, imgui_color(Role::background, 0.5), 3.4F);
+    canvas.polyline(points, imgui_color(Role::gravity), 1.4F);
+  }
+}
+
 std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
@@ -190,8 +208,8 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
   std::vector<LegendRow> rows;
   for (const auto& [plane, count] : on_plane) {
     const bool leads = plane == window.leader;
-    const std::string text =
-        leads ? counted(count, "inlier") : fmt::format("{} on plane {}", count, plane + 1);
+    const std::string text = leads ? counted(count, "inlier")
+                                   : fmt::format("{} on {}", count, plane_title(inspection, plane));
     const LegendRow row{Sign::circle, plane_color(window, plane), text};
     rows.insert(leads ? rows.begin() : rows.end(), row);
   }
@@ -212,6 +230,7 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
     add(Sign::line,
         Role::residual,
         fmt::format("residuals × {:g}", options.residual_magnification));
+  if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon");
   if (options.cube && inspection.cube)
     add(Sign::square, Role::cube_base, std::string("cube on the estimated plane"));
   if (options.cube && options.truth && canvas.true_cube())
@@ -225,6 +244,7 @@ void draw_results(const Canvas& canvas) {
   if (options.tracks && options.tail_frames > 0) draw_tails(canvas);
   if (options.tracks) draw_tracks(canvas);
   if (options.residuals) draw_residuals(canvas);
+  draw_horizon(canvas);
   if (!options.cube) return;
   if (const auto cube = canvas.true_cube(); cube && options.truth) draw_true_cube(canvas, *cube);
   if (const auto cube = canvas.estimated_cube()) draw_estimated_cube(canvas, *cube);

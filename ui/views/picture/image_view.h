@@ -23,6 +23,7 @@ struct ImageViewOptions {
   bool cube = true;                    ///< on the estimated plane, by the frame's estimated pose
   double cube_side = 0;                ///< 0: `default_cube_side` [unit of the estimate]
   bool truth = true;                   ///< the true cube, where it is known
+  bool gravity = true;                 ///< the horizon, where gravity is known
   bool legend = true;
 };
 

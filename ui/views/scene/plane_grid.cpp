@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/plane_grid.h"
 
+#include "engine/inspection/plane_names.h"
 #include "engine/truth/truth.h"
 
 #include <algorithm>
@@ -22,6 +23,12 @@ std::array<double, 2> usual_range(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t cut = values.size() / 25;
   return {values[cut], values[values.size() - 1 - cut]};
+}
+
+/// Of the grid's unit: by the truth, else by the accelerometer, else the plane's distance.
+double grid_unit_m(const Inspection& inspection) {
+  if (inspection.evaluation && inspection.evaluation->scale) return *inspection.evaluation->scale;
+  return known_scale(inspection).value_or(1);
 }
 
 /// The grid's axes and origin; its extent is still empty.
@@ -64,7 +71,9 @@ PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
       y = {std::min(y[0], cy), std::max(y[1], cy)};
     }
   const double least = 0.5 * inspection.initialization->plane.distance;
-  grid.cell = nice_length(std::max({x[1] - x[0], y[1] - y[0], least}) / kCellsAcross * 1.5);
+  const double unit = grid_unit_m(inspection);
+  grid.cell =
+      nice_length(unit * std::max({x[1] - x[0], y[1] - y[0], least}) / kCellsAcross * 1.5) / unit;
   const auto below = [&](double value) { return static_cast<int>(std::floor(value / grid.cell)); };
   grid.low = {below(x[0]), below(y[0])};
   grid.high = {below(x[1]) + 1, below(y[1]) + 1};

@@ -19,7 +19,7 @@ struct PlaneGrid {
   Eigen::Vector3d origin;        ///< on the plane
   Eigen::Vector3d x, y;          ///< unit, along the plane
   Eigen::Vector3d normal;        ///< unit, towards the cameras
-  double cell = 0.1;             ///< a nice length
+  double cell = 0.1;             ///< a nice length, in meters where they are known
   std::array<int, 2> low, high;  ///< cells from the origin along x and y
 
   Eigen::Vector3d at(double i, double j) const { return origin + cell * (i * x + j * y); }

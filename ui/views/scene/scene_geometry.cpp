@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/plane_patches.h"
 #include "engine/truth/truth.h"
 #include "ui/views/scene/plane_grid.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -120,10 +122,55 @@ std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_sid
   return extent;
 }
 
+namespace {
+
+/// The leading plane is the ground, as the method sees it; where gravity says that it is none, the
+/// scene stands upright by gravity.
+Vector3d up_of(const Inspection& inspection) {
+  const auto name = plane_name(inspection, inspection.window->leader);
+  const bool ground = !name || name->name == "floor" || name->name == "table";
+  return ground ? inspection.initialization->plane.normal
+                : Vector3d(-inspection.inertial->gravity_m_s2.normalized());
+}
+
+}  // namespace
+
+namespace {
+
+OrbitCamera fitted_to_all(const OrbitCamera& camera,
+                          const Inspection& inspection,
+                          double cube_side,
+                          double aspect) {
+  std::vector<Vector3d> extent = scene_extent(inspection, cube_side);
+  for (const PlanePatch& patch : plane_patches(inspection))
+    extent.insert(extent.end(), patch.corners.begin(), patch.corners.end());
+  return fitted(camera, extent, aspect, {.bottom = 0.24});
+}
+
+/// Where a camera of the window is, with a picture as high as it takes to show all of its own.
+OrbitCamera through_camera(const Inspection& inspection, double aspect, int frame) {
+  const auto& cameras = inspection.initialization->cameras;
+  const int last = static_cast<int>(cameras.size()) - 1;
+  const Pose& pose = cameras[std::clamp(frame - inspection.window->start, 0, last)];
+  const Camera& lens = inspection.recording->camera;
+  const double half_height =
+      std::max(lens.height / (2 * lens.fy), lens.width / (2 * lens.fx) / aspect);
+  OrbitCamera camera;
+  camera.up = -pose.R_wc.col(1);
+  camera.front = pose.R_wc.col(2);
+  camera.yaw_deg = 0;
+  camera.pitch_deg = 0;
+  camera.distance = plane_in_camera(inspection.initialization->plane, pose).distance;
+  camera.target = pose.p_wc + camera.distance * camera.front;
+  camera.view_angle_deg = 2 * std::atan(half_height) * 180 / std::numbers::pi;
+  return camera;
+}
+
+}  // namespace
+
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect) {
   OrbitCamera camera;
-  camera.up = inspection.initialization->ok ? inspection.initialization->plane.normal
-                                            : Vector3d(-Vector3d::UnitY());
+  camera.up = inspection.initialization->ok ? up_of(inspection) : Vector3d(-Vector3d::UnitY());
   // Forward along the plane as the reference camera sees it; where it looks straight down, up.
   Vector3d ahead = Vector3d::UnitZ() - camera.up * camera.up.z();
   if (ahead.norm() < 0.2) ahead = -Vector3d::UnitY() + camera.up * camera.up.y();
@@ -131,10 +178,19 @@ OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side,
   camera.yaw_deg = 35;
   // A plane seen at a slant is wide and low: the taller the view, the steeper it is looked upon.
   camera.pitch_deg = std::clamp(42 - 13 * aspect, 25.0, 32.0);
-  std::vector<Vector3d> extent = scene_extent(inspection, cube_side);
-  for (const PlanePatch& patch : plane_patches(inspection))
-    extent.insert(extent.end(), patch.corners.begin(), patch.corners.end());
-  return fitted(camera, extent, aspect, {.bottom = 0.24});
+  return fitted_to_all(camera, inspection, cube_side, aspect);
+}
+
+OrbitCamera scene_camera(
+    const Inspection& inspection, double cube_side, double aspect, Viewpoint viewpoint, int frame) {
+  constexpr double kSteepest_deg = 89;
+  OrbitCamera camera = default_scene_camera(inspection, cube_side, aspect);
+  if (viewpoint == Viewpoint::oblique) return camera;
+  if (viewpoint == Viewpoint::camera && inspection.initialization->ok)
+    return through_camera(inspection, aspect, frame);
+  camera.yaw_deg = viewpoint == Viewpoint::side ? 90 : 0;
+  camera.pitch_deg = viewpoint == Viewpoint::top ? kSteepest_deg : 0;
+  return fitted_to_all(camera, inspection, cube_side, aspect);
 }
 
 }  // namespace gpo

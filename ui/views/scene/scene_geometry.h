@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
+#include "ui/look/viewpoint.h"
 
 #include <array>
 #include <optional>
@@ -41,5 +42,10 @@ std::vector<Eigen::Vector3d> scene_extent(const Inspection& inspection, double c
 
 /// From behind the reference camera, above and beside it, everything in view.
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect);
+
+/// From a viewpoint, everything in view; through the camera of a frame (counts in the recording;
+/// the nearest of the window): all of its picture.
+OrbitCamera scene_camera(
+    const Inspection& inspection, double cube_side, double aspect, Viewpoint viewpoint, int frame);
 
 }  // namespace gpo

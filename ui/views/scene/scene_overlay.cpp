@@ -1,9 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/methods.h"
+#include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
+#include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/picture_texture.h"
@@ -65,6 +67,55 @@ void draw_axes(ImDrawList& list,
   }
 }
 
+/// From the reference camera upwards.
+void draw_up(ImDrawList& list,
+             const ScreenRect& rect,
+             const Inspection& inspection,
+             const OrbitCamera& camera) {
+  const Vector3d up = -inspection.inertial->gravity_m_s2.normalized();
+  const auto from = view_pixel(camera, Vector3d::Zero(), rect.size);
+  const auto to = view_pixel(camera, 1.6 * axes_length(inspection) * up, rect.size);
+  if (!from || !to || (*to - *from).norm() < 1) return;
+  const float s = overlay_scale();
+  const Vector2d along = (*to - *from).normalized(), across(-along.y(), along.x());
+  const Vector2d tip = rect.min + *to, neck = tip - 9 * s * along;
+  const ImU32 color = imgui_color(Role::gravity);
+  list.AddLine(to_imgui(rect.min + *from), to_imgui(neck), color, 2 * s);
+  list.AddTriangleFilled(
+      to_imgui(tip), to_imgui(neck + 4.5 * s * across), to_imgui(neck - 4.5 * s * across), color);
+  draw_label(list, tip + 11 * s * along, color_of(Role::gravity), "up");
+}
+
+bool shows_up(const Inspection& inspection, const SceneViewOptions& options) {
+  return options.gravity && inspection.inertial && inspection.inertial->ok;
+}
+
+std::optional<double> shown_scale(const Inspection& inspection) {
+  if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
+  if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
+  return known_scale(inspection);
+}
+
+std::string bar_text(double length, bool meters) {
+  if (!meters) return fmt::format("{:g} d", length);
+  if (length < 0.01) return fmt::format("{:g} mm", length * 1e3);
+  if (length < 1) return fmt::format("{:g} cm", length * 1e2);
+  return fmt::format("{:g} m", length);
+}
+
+std::string cell_text(const Inspection& inspection, const SceneViewOptions& options) {
+  const auto meters = shown_scale(inspection);
+  const double cell = plane_grid(inspection, cube_side(inspection, options.cube_side)).cell;
+  return bar_text(meters.value_or(1) * cell, meters.has_value());
+}
+
+/// In meters, where the accelerometer tells them.
+std::string side_text(const Inspection& inspection, const SceneViewOptions& options) {
+  const auto scale = known_scale(inspection);
+  if (!scale) return "";
+  return ", " + length_text(*scale * cube_side(inspection, options.cube_side));
+}
+
 std::vector<LegendRow> legend_rows(const Inspection& inspection,
                                    int frame_in_window,
                                    const SceneViewOptions& options) {
@@ -74,12 +125,19 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
     rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});
     if (frame_in_window > 0)
       rows.push_back({Sign::frustum, color_of(Role::reference), "reference frame"});
-    rows.push_back({Sign::square, color_of(Role::plane), "estimated plane"});
+    rows.push_back({Sign::square,
+                    color_of(Role::plane),
+                    "estimated plane, cells of " + cell_text(inspection, options)});
     rows.push_back({Sign::dot,
                     color_of(Role::map_point),
                     fmt::format("{} map points", inspection.initialization->points.size())});
     if (options.cube && inspection.cube)
-      rows.push_back({Sign::square, color_of(Role::cube_base), "cube"});
+      rows.push_back(
+          {Sign::square, color_of(Role::cube_base), "cube" + side_text(inspection, options)});
+    if (shows_up(inspection, options))
+      rows.push_back({Sign::line,
+                      color_of(Role::gravity),
+                      "up, certain to " + angle_text(inspection.inertial->gravity_sigma_deg)});
   }
   if (shows_uncertainty(inspection, options)) {
     const int times = options.uncertainty;
@@ -97,25 +155,12 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
   return rows;
 }
 
-std::optional<double> meters_a_unit(const Inspection& inspection) {
-  if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
-  if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
-  return std::nullopt;
-}
-
-std::string length_text(double length, bool meters) {
-  if (!meters) return fmt::format("{:g} d", length);
-  if (length < 0.01) return fmt::format("{:g} mm", length * 1e3);
-  if (length < 1) return fmt::format("{:g} cm", length * 1e2);
-  return fmt::format("{:g} m", length);
-}
-
-/// True to scale where the view's target is.
+/// True to scale where the view's target is. In meters by the truth, else by the accelerometer.
 void draw_scale_bar(ImDrawList& list,
                     const ScreenRect& rect,
                     const Inspection& inspection,
                     const OrbitCamera& camera) {
-  const auto meters = meters_a_unit(inspection);
+  const auto meters = shown_scale(inspection);
   const float s = overlay_scale();
   const double pixels = pixels_a_unit(camera, rect.size.y()) / meters.value_or(1);
   const double length = nice_length(140 * s / pixels);
@@ -126,7 +171,7 @@ void draw_scale_bar(ImDrawList& list,
   list.AddLine(start, end, color, 2 * s);
   for (const float x : {start.x, end.x})
     list.AddLine(ImVec2(x, end.y - 5 * s), ImVec2(x, end.y + s), color, 2 * s);
-  const std::string text = length_text(length, meters.has_value());
+  const std::string text = bar_text(length, meters.has_value());
   const ImFont* f = font(Font::small);
   const float text_width = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
   list.AddText(f,
@@ -160,6 +205,7 @@ void draw_scene_view(ImDrawList& list,
   draw_scene_moment(list, rect, inspection, frame_in_window, camera, options);
   const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
+  if (shows_up(inspection, options)) draw_up(list, rect, inspection, camera);
   if (options.legend)
     draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);

@@ -19,6 +19,7 @@ struct SceneViewOptions {
   bool truth = true;     ///< true cameras and plane, where they are known
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
+  bool gravity = true;  ///< an arrow that points up, where gravity is known
   bool legend = true;
 
   bool operator==(const SceneViewOptions&) const = default;

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
@@ -107,6 +108,9 @@ std::optional<ActionCall> match_line(const std::string& line) {
     if (const Action* action = find_action(name))
       return ActionCall{action, {words.begin() + static_cast<std::ptrdiff_t>(count), words.end()}};
   }
+  // A setting's name is enough: "start 0" is "set start 0".
+  if (words.size() > 1 && std::ranges::count(setting_keys(), words.front()) > 0)
+    return ActionCall{find_action("set"), words};
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
@@ -53,9 +54,7 @@ void export_video(State& state, const Arguments& arguments) {
 }
 
 /// A file of the current inspection.
-Action export_of(const std::string& what,
-                 std::string title,
-                 std::string (*text)(const Inspection&)) {
+Action export_of(const std::string& what, std::string title, std::string (*text)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, ""};
   action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
   action.arguments = "FILE";
@@ -63,7 +62,7 @@ Action export_of(const std::string& what,
     expect_count(("export " + what).c_str(), arguments, 1, 1);
     if (!state.inspection) throw InputError("nothing is computed yet that could be written");
     check_writable(arguments[0]);
-    write_file(arguments[0], text(*state.inspection));
+    write_file(arguments[0], text(state));
     say(state, "saved " + arguments[0]);
   };
   return action;
@@ -73,7 +72,7 @@ Action export_of(const std::string& what,
 Action trajectory_export(const std::string& what,
                          std::string title,
                          std::string tooltip,
-                         CameraPath (*path)(const Inspection&)) {
+                         CameraPath (*path)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, std::move(tooltip)};
   action.arguments = "FILE [tum|euroc|kitti]";
   action.run = [what, path](State& state, const Arguments& arguments) {
@@ -82,13 +81,20 @@ Action trajectory_export(const std::string& what,
     const auto format =
         arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
     check_writable(arguments[0]);
-    write_file(arguments[0], to_text(path(*state.inspection), format));
+    write_file(arguments[0], to_text(path(state), format));
     say(state, "saved " + arguments[0]);
   };
   return action;
 }
 
-std::string whole_result(const Inspection& inspection) { return json_text(to_json(inspection), 2); }
+std::string whole_result(const State& state) { return json_text(to_json(*state.inspection), 2); }
+
+std::optional<double> unit_of(const State& state) {
+  return state.metric ? std::optional(meters_a_unit(*state.inspection)) : std::nullopt;
+}
+std::string points(const State& state) { return to_ply(*state.inspection, unit_of(state)); }
+CameraPath poses(const State& state) { return estimated_path(*state.inspection, unit_of(state)); }
+CameraPath true_poses(const State& state) { return true_path(*state.inspection); }
 
 /// ACTION [PATH]: what is shown at first, or the folder of what is open.
 void browse(State& state, const Arguments& arguments) {
@@ -228,13 +234,19 @@ void add_file_actions(std::vector<Action>& table) {
   table.push_back(trajectory_export("trajectory",
                                     "Export camera poses (TUM, EuRoC, KITTI)",
                                     "Writes the estimated camera poses, for evo and others",
-                                    estimated_path));
+                                    poses));
   table.push_back(trajectory_export("true-trajectory",
                                     "Export true camera poses (TUM, EuRoC, KITTI)",
                                     "Writes the true camera poses of the window's frames",
-                                    true_path));
-  table.push_back(export_of("points", "Export map points (PLY)", to_ply));
+                                    true_poses));
+  table.push_back(export_of("points", "Export map points (PLY)", points));
   table.push_back(export_of("result", "Export the whole result (JSON)", whole_result));
+  table.push_back(toggle("metric",
+                         "Export in meters",
+                         {},
+                         "Camera poses and map points are written in meters, by the accelerometer; "
+                         "otherwise in distances of the plane",
+                         [](State& s) -> bool& { return s.metric; }));
   Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
     s.wishes.quit = true;
   });

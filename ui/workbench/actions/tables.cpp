@@ -67,7 +67,7 @@ void expect_count(const char* action,
                                  action,
                                  least == 1 ? "one word" : fmt::format("{} words", least)));
   if (arguments.size() > most)
-    throw InputError(fmt::format("{}: '{}' is too much", action, arguments[most]));
+    throw InputError(fmt::format("{}: '{}' is one word too many", action, arguments[most]));
 }
 
 bool switched(const char* action, const Arguments& arguments, bool now) {

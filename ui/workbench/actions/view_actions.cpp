@@ -107,6 +107,23 @@ void add_themes(std::vector<Action>& table) {
   }
 }
 
+void add_viewpoints(std::vector<Action>& table) {
+  for (const ViewpointRow& row : kViewpoints) {
+    Action action =
+        plain(std::string("viewpoint ") + row.key,
+              row.title,
+              "View",
+              {key(GLFW_KEY_KP_0 + row.keypad - '0', std::string("Keypad ") + row.keypad)},
+              row.tooltip,
+              [&row](State& s) {
+                s.viewpoint = row.viewpoint;
+                s.orbit.reset();
+              });
+    action.checked = [&row](const State& s) { return s.viewpoint == row.viewpoint && !s.orbit; };
+    table.push_back(action);
+  }
+}
+
 void add_cameras(std::vector<Action>& table) {
   table.push_back(plain("fit",
                         "Fit view",
@@ -118,6 +135,7 @@ void add_cameras(std::vector<Action>& table) {
                           s.compare_zoom.reset();
                           s.normals_zoom = {};
                           s.orbit.reset();
+                          s.viewpoint = Viewpoint::oblique;
                         }));
   Action zoom{"zoom", "Zoom the picture", "View", {}, "Shows the picture enlarged around a point"};
   zoom.arguments = "FACTOR [X Y]";
@@ -152,6 +170,7 @@ void add_view_actions(std::vector<Action>& table) {
   add_panes(table);
   add_compare_actions(table);
   add_cameras(table);
+  add_viewpoints(table);
   add_themes(table);
   add_layout_actions(table);
 }

@@ -82,6 +82,9 @@ struct ToJson {
     return json;
   }
   Json operator()(const Theme& theme) const { return theme == Theme::light ? "light" : "dark"; }
+  Json operator()(Viewpoint viewpoint) const {
+    return std::ranges::find(kViewpoints, viewpoint, &ViewpointRow::viewpoint)->key;
+  }
   Json operator()(const ViewToggles& view) const {
     Json json;
     for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
@@ -140,6 +143,13 @@ struct FromJson {
     read(key, name);
     if (name != "dark" && name != "light") read.refuse(key);
     theme = name == "light" ? Theme::light : Theme::dark;
+  }
+  void operator()(const char* key, Viewpoint& viewpoint) const {
+    std::string name;
+    read(key, name);
+    const auto found = std::ranges::find(kViewpoints, name, &ViewpointRow::key);
+    if (found == kViewpoints.end()) read.refuse(key);
+    viewpoint = found->viewpoint;
   }
   void operator()(const char* key, ViewToggles& view) const {
     const SessionReader toggles = read.object(key);
@@ -228,10 +238,12 @@ std::span<const SessionField> session_fields() {
       field_with("compared", &State::compared, rewrite_keys),
       field("hidden_curves", &State::hidden_curves),
       field("compare_zoom", &State::compare_zoom),
+      field("metric", &State::metric),
       field("cube_side", &State::cube_side, 0.0, 2.0),
       field("cube_ray", &State::cube_ray),
       field("picture_zoom", &State::picture_zoom),
       field("normals_zoom", &State::normals_zoom),
+      field("viewpoint", &State::viewpoint),
       field("orbit", &State::orbit),
       field("selection", &State::selection),
       field("bookmarks", &State::bookmarks)};

@@ -85,5 +85,28 @@ TEST(CompareFacts, ADifferenceHasItsSignAndUnit) {
   EXPECT_EQ(difference_text(0.5, 0.5, angle_text), "\u00b10");
 }
 
+TEST(CompareFacts, RowsAreInOrderOfAColumnWhatIsNotKnownLast) {
+  const auto rows =
+      compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
+  const auto columns = compared_columns();
+  const auto rms = static_cast<int>(
+      std::ranges::find(columns, std::string("RMS"), &ComparedColumn::title) - columns.begin());
+  EXPECT_THAT(in_order(rows, {}), testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(in_order(rows, {rms, false}), testing::ElementsAre(2, 0, 1));
+  EXPECT_THAT(in_order(rows, {rms, true}), testing::ElementsAre(0, 2, 1));
+}
+
+TEST(CompareFacts, CsvHasUnitsAndNumbersThatCanBeReadBack) {
+  const auto rows = compared_rows({made(0.25, 0.5), made(0, 0, {.ok = false})}, false);
+  const std::string csv = to_csv(rows);
+  EXPECT_THAT(csv,
+              testing::StartsWith("method,status,Inliers,RMS [px],Iterations,Initialize [ms],PNE "
+                                  "[deg],PNE aligned [deg],PDE [m],ATE [m],"));
+  EXPECT_THAT(csv, HasSubstr(",ok,"));
+  EXPECT_THAT(csv, HasSubstr(",0.5,"));
+  EXPECT_THAT(csv, HasSubstr(",0.25,"));
+  EXPECT_THAT(csv, HasSubstr(",failed,,,,"));
+}
+
 }  // namespace
 }  // namespace gpo

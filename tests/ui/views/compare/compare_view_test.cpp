@@ -5,12 +5,17 @@
 #include "engine/experiment/configuration.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/context/gui.h"
+#include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/views/snapshot.h"
 
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <imgui.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
@@ -45,6 +50,28 @@ Inspections three() {
 cv::Mat column(const cv::Mat& picture, int index) {
   const int width = picture.cols / 3;
   return picture.colRange(index * width, (index + 1) * width);
+}
+
+/// How many are side by side, and how many one below the other.
+std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspect) {
+  std::set<double> xs, ys;
+  for (const ColumnPlace& place : compare_places({{0, 0}, size}, count, aspect, true)) {
+    xs.insert(place.picture.min.x());
+    ys.insert(place.picture.min.y());
+  }
+  return {static_cast<int>(xs.size()), static_cast<int>(ys.size())};
+}
+
+TEST_F(CompareView, RowsAndColumnsMakeThePicturesLargest) {
+  const OffscreenContext context(64, 64);
+  Gui gui;  // sizes are those of its font
+  gui.begin_frame(64, 64);
+  EXPECT_EQ(grid_of({1600, 1000}, 4, 16.0 / 9), std::pair(2, 2));
+  EXPECT_EQ(grid_of({1900, 450}, 4, 16.0 / 9), std::pair(4, 1));
+  EXPECT_EQ(grid_of({500, 1000}, 2, 4.0 / 3), std::pair(1, 2));
+  EXPECT_EQ(grid_of({1600, 1000}, 1, 4.0 / 3), std::pair(1, 1));
+  EXPECT_EQ(grid_of({1600, 1000}, 5, 4.0 / 3), std::pair(3, 2));
+  ImGui::EndFrame();
 }
 
 TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {

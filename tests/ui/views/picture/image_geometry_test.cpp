@@ -5,6 +5,7 @@
 #include "tests/ui/made_inspection.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
@@ -131,6 +132,41 @@ TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {
 
 TEST(ImageGeometry, ResidualsOfAFailedInitializationAreNone) {
   EXPECT_TRUE(residual_vectors(made_inspection({.ok = false}), 3).empty());
+}
+
+TEST(Horizon, OfALevelPinholeIsARowAndTurnsWithTheCamera) {
+  Camera pinhole = kCamera;
+  pinhole.distortion = Distortion::none;
+  pinhole.coefficients = {};
+  const auto level = horizon_in_picture(pinhole, Pose{}, -Vector3d::UnitY());
+  ASSERT_EQ(level.size(), 1U);
+  EXPECT_LT(level[0].front().x(), 15);
+  EXPECT_GT(level[0].back().x(), 625);
+  for (const Vector2d& pixel : level[0]) EXPECT_NEAR(pixel.y(), pinhole.cy, 1e-9);
+  // Looking down by 10 degrees raises it, rolled by 90 it stands.
+  Pose down;
+  down.R_wc = Eigen::AngleAxisd(-10 * std::numbers::pi / 180, Vector3d::UnitX()).toRotationMatrix();
+  const auto raised = horizon_in_picture(pinhole, down, -Vector3d::UnitY());
+  for (const Vector2d& pixel : raised.at(0))
+    EXPECT_NEAR(pixel.y(), pinhole.cy - pinhole.fy * std::tan(10 * std::numbers::pi / 180), 1e-9);
+  const auto upright = horizon_in_picture(pinhole, Pose{}, Vector3d::UnitX());
+  for (const Vector2d& pixel : upright.at(0))
+    EXPECT_NEAR(pixel.x(), pinhole.cx, 1e-9);
+  EXPECT_TRUE(horizon_in_picture(pinhole, Pose{}, Vector3d::UnitZ()).empty());
+}
+
+TEST(Horizon, BendsThroughTheLensAsOpenCvSays) {
+  const Vector3d up = Vector3d(0.1, -1, 0.2).normalized();
+  const auto pieces = horizon_in_picture(kCamera, Pose{}, up);
+  ASSERT_FALSE(pieces.empty());
+  for (const auto& piece : pieces)
+    for (const Vector2d& raw_px : piece) {
+      const Vector2d pixel = undistort(kCamera, raw_px);
+      const Vector3d ray = intrinsic_matrix(kCamera).inverse() * pixel.homogeneous();
+      EXPECT_NEAR(ray.normalized().dot(up), 0, 1e-6);
+      const auto again = project_with_opencv(kCamera, Pose{}, {ray});
+      EXPECT_LT((again[0] - raw_px).norm(), 1e-4);
+    }
 }
 
 }  // namespace

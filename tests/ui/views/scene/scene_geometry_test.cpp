@@ -104,6 +104,44 @@ TEST(SceneGeometry, DefaultViewShowsEverythingFromAboveThePlane) {
   EXPECT_GT(plane.normal.dot(at) + plane.distance, 0);
 }
 
+TEST(SceneGeometry, ViewpointsLookWhereTheySayAndShowEverything) {
+  const Inspection inspection = made_inspection();
+  const Vector3d& up = inspection.initialization->plane.normal;
+  const auto forward = [&](Viewpoint viewpoint) {
+    const OrbitCamera camera = scene_camera(inspection, 0.2, 1.5, viewpoint, 24);
+    for (const Vector3d& point : scene_extent(inspection, 0.2)) {
+      const auto pixel = view_pixel(camera, point, {900, 600});
+      EXPECT_TRUE(pixel && pixel->minCoeff() > 0 && pixel->x() < 900 && pixel->y() < 600);
+    }
+    return Vector3d(view_axes(camera).col(2));
+  };
+  EXPECT_LT(forward(Viewpoint::top).dot(up), -0.999);
+  const Vector3d front = forward(Viewpoint::front), side = forward(Viewpoint::side);
+  EXPECT_NEAR(front.dot(up), 0, 1e-9);
+  EXPECT_NEAR(side.dot(up), 0, 1e-9);
+  EXPECT_NEAR(side.dot(front), 0, 1e-9);
+  EXPECT_GT(front.z(), 0);  // as the reference camera looks
+}
+
+TEST(SceneGeometry, ThroughTheCameraPointsAreWhereItSeesThem) {
+  const Inspection inspection = made_inspection();
+  const Camera& lens = inspection.recording->camera;
+  const int start = inspection.window->start;
+  const Pose& pose = inspection.initialization->cameras[3];
+  const OrbitCamera camera =
+      scene_camera(inspection, 0.2, double(lens.width) / lens.height, Viewpoint::camera, start + 3);
+  EXPECT_LT((eye(camera) - pose.p_wc).norm(), 1e-9);
+  const Vector2d size(lens.width, lens.height);
+  for (const MapPoint& point : inspection.initialization->points) {
+    const Vector3d c = to_camera(pose, point.position);
+    const Vector2d pinhole(lens.fx * c.x() / c.z() + size.x() / 2,
+                           lens.fy * c.y() / c.z() + size.y() / 2);
+    // The view may be a little wider than the picture, so that all of it is in sight.
+    const Vector2d seen = *view_pixel(camera, point.position, size);
+    EXPECT_LT((seen - pinhole).norm(), 0.03 * (pinhole - size / 2).norm() + 1e-6);
+  }
+}
+
 TEST(SceneGeometry, NiceLengthsAreOneTwoFive) {
   EXPECT_DOUBLE_EQ(nice_length(0.07), 0.05);
   EXPECT_DOUBLE_EQ(nice_length(1), 1);

@@ -1,0 +1,93 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/plane_names.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kUp = Vector3d(0.1, -0.9, -0.4).normalized();  // in the reference camera
+
+/// A direction so many degrees from up.
+Vector3d tilted(double deg) {
+  const Vector3d across = kUp.cross(Vector3d::UnitX()).normalized();
+  const double rad = deg * std::numbers::pi / 180;
+  return std::cos(rad) * kUp + std::sin(rad) * across;
+}
+
+Inspection of_planes(const std::vector<Plane>& planes, double gravity_sigma_deg = 0.5) {
+  Inspection inspection;
+  auto result = std::make_shared<Initialization>();
+  auto window = std::make_shared<Window>();
+  result->ok = true;
+  result->plane = planes.front();
+  for (int k = 0; k < static_cast<int>(planes.size()); ++k)
+    result->planes.push_back({.number = k, .plane = planes[k]});
+  window->planes.resize(planes.size());
+  inspection.initialization = result;
+  inspection.window = window;
+  InertialAlignment inertial;
+  inertial.ok = true;
+  inertial.gravity_m_s2 = -9.81 * kUp;
+  inertial.gravity_sigma_deg = gravity_sigma_deg;
+  inertial.scale = 1.4;
+  inertial.scale_known = true;
+  inspection.inertial = inertial;
+  return inspection;
+}
+
+std::string name_of(const Inspection& inspection, int number) {
+  const auto name = plane_name(inspection, number);
+  return name ? name->name : "";
+}
+
+TEST(PlaneName, IsWhatItsNormalIsToGravity) {
+  const Inspection room = of_planes({{tilted(88), 1.2},
+                                     {tilted(1), 1.0},
+                                     {tilted(2), 0.6},
+                                     {tilted(179), 0.8},
+                                     {tilted(45), 1.0},
+                                     {tilted(3), 0.97}});
+  const std::vector<std::string> names{"wall", "floor", "table", "ceiling", "slanted", "floor"};
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(name_of(room, k), names[k]) << k;
+  EXPECT_EQ(plane_title(room, 2), "plane 3 (table)");
+  EXPECT_NEAR(plane_name(room, 0)->tilt_deg, 88, 1e-9);
+  EXPECT_NEAR(plane_name(room, 0)->sigma_deg, 0.5, 1e-9);
+}
+
+TEST(PlaneName, GivesWhatIsUncertainMoreRoomAndThenNoName) {
+  EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 1), 0), "slanted");
+  EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 7), 0), "floor");
+  EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 16), 0), "");
+}
+
+TEST(PlaneName, OfAMethodWithoutPlanesIsThatOfItsOnlyOne) {
+  Inspection one = of_planes({{tilted(90), 1}});
+  auto result = std::make_shared<Initialization>(*one.initialization);
+  result->planes.clear();
+  one.initialization = result;
+  EXPECT_EQ(name_of(one, 0), "wall");
+  EXPECT_EQ(name_of(one, 1), "");
+}
+
+TEST(PlaneName, NeedsGravity) {
+  Inspection without = of_planes({{tilted(90), 1}});
+  EXPECT_EQ(known_scale(without), 1.4);
+  without.inertial->scale_known = false;
+  EXPECT_FALSE(known_scale(without));
+  without.inertial.reset();
+  EXPECT_EQ(name_of(without, 0), "");
+  EXPECT_EQ(plane_title(without, 0), "plane 1");
+  EXPECT_FALSE(known_scale(without));
+}
+
+}  // namespace
+}  // namespace gpo
