@@ -111,6 +111,17 @@ void add_run(CLI::App& app, RunArguments& arguments) {
                       arguments.tracks_out,
                       "Write every track's pixels, plane, verdict, residual and reason a frame as "
                       "CSV, which --tracks reads back");
+  CLI::Option* scan = command->add_option(
+      "--scan", arguments.scan, "Initialize from everywhere instead, and write a line a start");
+  for (const char* option :
+       {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out"})
+    scan->excludes(command->get_option(option));
+  command
+      ->add_option("--scan-step",
+                   arguments.scan_step,
+                   "Frames from one start to the next; default: about a hundred starts")
+      ->check(CLI::Range(1, 100'000))
+      ->needs(scan);
 }
 
 void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {

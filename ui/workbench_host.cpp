@@ -34,11 +34,12 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       fetcher_(changed),
       lister_(changed),
       survey_(changed),
+      scan_(changed),
       worker_(std::move(open), changed) {}
 
 PanelInput WorkbenchHost::input() const {
   const WorkerStatus* writing = movie_ ? &movie_status_ : nullptr;
-  return {state, link.worker, link.survey, timings, gui_.scale(), writing};
+  return {state, link.worker, link.survey, timings, gui_.scale(), writing, &link.scan};
 }
 
 void WorkbenchHost::synchronize() {
@@ -48,7 +49,7 @@ void WorkbenchHost::synchronize() {
     state.wishes.movie.reset();
     say(state, "the movie was canceled; nothing of it was kept");
   }
-  gpo::synchronize(state, link, worker_, survey_, example_);
+  gpo::synchronize(state, link, worker_, survey_, scan_, example_);
   if (writing()) write_movie();
   for (const Screenshot& screenshot : std::exchange(state.wishes.screenshots, {})) save(screenshot);
 }

@@ -65,8 +65,12 @@ void forget_hover(const PanelInput& input, const Rectangle& views, Commands& com
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
   const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
   const bool drawer_open = input.state.panes.drawer != nullptr;
-  const WindowLayout layout =
-      window_layout(window.width, window.height, input.scale, input.state.division, drawer_open);
+  const WindowLayout layout = window_layout(window.width,
+                                            window.height,
+                                            input.scale,
+                                            input.state.division,
+                                            drawer_open,
+                                            input.state.view.scan);
   menu_bar(input, commands);
   if (!layout.settings.empty()) settings_panel(input, layout.settings, commands);
   if (!layout.results.empty()) results_panel(input, layout.results);

@@ -60,6 +60,8 @@ struct RunArguments {
   std::optional<std::filesystem::path> points;
   bool metric = false;  ///< trajectory and points in meters
   std::optional<std::filesystem::path> tracks_out;
+  std::optional<std::filesystem::path> scan;  ///< .csv of windows all over the recording, instead
+  std::optional<int> scan_step;               ///< [frames]; default: about a hundred starts
 };
 
 struct SnapshotArguments {
@@ -132,6 +134,11 @@ int convert_command(const ConvertArguments& arguments);
 int evaluate_command(const EvaluateArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int run_command(const RunArguments& arguments);
+/// Initializes from everywhere in the recording and writes what came of it; kFailed where nothing
+/// did.
+int scan_command(const InspectArguments& arguments,
+                 const std::filesystem::path& file,
+                 std::optional<int> wanted_step);
 int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own);
 /// Runs the window's commands off-screen; `size`: of the window.
 int script_command(const std::filesystem::path& script,

@@ -55,6 +55,7 @@ std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
+  if (arguments.scan) return scan_command(arguments.inspect, *arguments.scan, arguments.scan_step);
   const auto outputs = outputs_of(arguments);
   check_outputs(outputs,
                 std::array{NamedFile{"--tracks", arguments.inspect.tracks},

@@ -33,6 +33,29 @@ json run_json(const std::string& arguments, int expected_exit = 0) {
   return json::parse(read_file(file));
 }
 
+TEST(Run, ScanWritesALineAStart) {
+  const fs::path folder = fresh_folder();
+  const Outcome outcome = program("run " + desk().string() + " --frames 20 --scan-step 13 --scan " +
+                                  (folder / "scan.csv").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("4 starts, 13 frames apart, of windows of 20 frames: "));
+  EXPECT_THAT(outcome.out, HasSubstr("best start: "));
+  std::istringstream csv(read_file(folder / "scan.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "start,time_s,status,verdict,sigma_deg,pne_deg,reason");
+  for (int start = 0; start < 40; start += 13) {
+    ASSERT_TRUE(std::getline(csv, line));
+    EXPECT_TRUE(line.starts_with(std::to_string(start) + ",")) << line;
+    EXPECT_THAT(line, HasSubstr(",ok,ready,"));
+  }
+  EXPECT_FALSE(std::getline(csv, line));
+  const Outcome long_one =
+      program("run " + desk().string() + " --frames 900 --scan " + (folder / "b.csv").string());
+  EXPECT_EQ(long_one.exit_code, 2);
+  EXPECT_THAT(long_one.err, HasSubstr("--frames: 900, but desk has 60 frames"));
+}
+
 TEST(Run, DeskGivesWhatTheContractPromises) {
   const json j = run_json(desk().string());
   EXPECT_EQ(j["method"], "gpo_joint");

@@ -32,6 +32,7 @@ struct PanelInput {
   bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
   float scale = 1;      ///< of the text: sizes for 96 dpi times this
   const WorkerStatus* writing = nullptr;  ///< how far a movie is; null: none is written
+  const SurveyStatus* scan = nullptr;     ///< how far a scan is; null: none is made
   PictureFetcher* fetcher = nullptr;      ///< null: drawing waits for pictures itself
   FolderLister* lister = nullptr;         ///< null: folders are shown as empty
   std::filesystem::path example = {};     ///< the recording that comes with the program

@@ -121,7 +121,7 @@ void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPar
 }  // namespace
 
 WindowLayout window_layout(
-    float width, float height, float scale, const Division& division, bool drawer_open) {
+    float width, float height, float scale, const Division& division, bool drawer_open, bool scan) {
   // A window too small for its scale shrinks the fixed parts rather than the pictures to nothing.
   const float wanted =
       division.column_px > 0 ? static_cast<float>(division.column_px) : kColumnWidth;
@@ -131,8 +131,9 @@ WindowLayout window_layout(
                            : 0;
   const float menu = scaled(kMenuHeight, scale);
   const float status = scaled(kStatusHeight, scale);
+  const float time_height = kTimelineHeight + (scan ? kScanHeight : 0);
   const float timeline =
-      division.timeline ? std::min(scaled(kTimelineHeight, scale), std::round(height * 0.2f)) : 0;
+      division.timeline ? std::min(scaled(time_height, scale), std::round(height * 0.2f)) : 0;
   const float gap = std::max(1.0f, scaled(1, scale));
 
   WindowLayout layout;

@@ -33,9 +33,17 @@ struct WindowLayout {
 };
 
 /// Divides a window of width x height pixels whose text is `scale` times as large as usual. Picture
-/// and side pane stand side by side where the space is wide, else one above the other.
-WindowLayout window_layout(
-    float width, float height, float scale, const Division& division, bool drawer_open);
+/// and side pane stand side by side where the space is wide, else one above the other. `scan`: the
+/// time line has a strip more.
+WindowLayout window_layout(float width,
+                           float height,
+                           float scale,
+                           const Division& division,
+                           bool drawer_open,
+                           bool scan = false);
+
+/// Of that strip, at scale 1.
+inline constexpr float kScanHeight = 22;
 
 /// A line between two parts that can be dragged.
 enum class Splitter { column, settings, picture, drawer };

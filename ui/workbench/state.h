@@ -4,6 +4,7 @@
 
 #include "engine/inspection/settings/settings.h"
 #include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/survey.h"
 #include "engine/recording/recording.h"
 #include "ui/look/normals_zoom.h"
@@ -70,6 +71,14 @@ struct UndoStep {
   std::optional<Eigen::Vector3d> cube_ray;
 };
 
+/// What is a recording's own: where one looks at it, and how; it comes back with the recording.
+struct KeptSpan {
+  std::filesystem::path recording;
+  int start = 0;
+  int frames = 0;
+  std::string method;
+};
+
 struct WorkbenchState;
 
 /// A session from a file, see `read_session`.
@@ -97,8 +106,10 @@ struct WorkbenchState {
   std::shared_ptr<const Inspection> inspection;  ///< the last one of it; null: none yet
   std::shared_ptr<const SurveyResults> surveyed = std::make_shared<const SurveyResults>();
   std::shared_ptr<const NormalStudy> study;  ///< the last one, maybe of another window; null: none
+  std::shared_ptr<const StartScan> scan;     ///< null: nobody asked for one
 
   Settings settings;
+  std::vector<KeptSpan> spans;       ///< of recordings that were open before
   std::vector<UndoStep> undo, redo;  ///< before earlier changes, and undone ones; the last one last
   bool dragging_settings = false;    ///< the last change was one of many small ones
   int frame = 0;                     ///< shown, counts in the recording

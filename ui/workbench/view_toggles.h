@@ -6,7 +6,7 @@
 
 namespace gpo {
 
-/// What is drawn into picture and scene.
+/// What is drawn into picture, scene and time line.
 struct ViewToggles {
   bool tracks = true;
   bool tails = true;
@@ -14,6 +14,7 @@ struct ViewToggles {
   bool cube = true;
   bool truth = true;
   bool gravity = true;
+  bool scan = false;
   int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
 
   bool operator==(const ViewToggles&) const = default;
@@ -53,6 +54,12 @@ inline constexpr std::array kViewToggles = {
         "Gravity",
         0,
         &ViewToggles::gravity,
-        "Which way is up in the scene, and the horizon in the picture, by the accelerometer"}};
+        "Which way is up in the scene, and the horizon in the picture, by the accelerometer"},
+    ViewToggle{"scan",
+               "Scan for a start",
+               0,
+               &ViewToggles::scan,
+               "Initializes from everywhere in the recording, in the background, and shows above "
+               "the time line where it succeeds; a click starts there"}};
 
 }  // namespace gpo

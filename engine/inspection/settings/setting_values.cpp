@@ -128,14 +128,6 @@ Settings with_default(Settings settings, const std::string& key) {
   return settings;
 }
 
-Settings with_defaults(const Settings& settings) {
-  Settings defaults;
-  defaults.start = settings.start;
-  defaults.frames = settings.frames;
-  defaults.method = settings.method;
-  return defaults;
-}
-
 bool is_read(const Setting& setting, const std::string& method) {
   const auto& options = find_method(method).reads;
   return setting.reader != SettingReader::method ||

@@ -21,9 +21,8 @@ Settings with_setting(Settings settings, const std::string& key, const std::stri
 /// The settings with a switch on or off; left to the method where that does so by itself.
 Settings switched(Settings settings, const std::string& key, bool on);
 
-/// The settings with the default value of one; or of all but start, frames and method.
+/// The settings with the default value of one.
 Settings with_default(Settings settings, const std::string& key);
-Settings with_defaults(const Settings& settings);
 
 /// Whether the method heeds a setting; false only for an option that it does not name.
 bool is_read(const Setting& setting, const std::string& method);

@@ -53,6 +53,33 @@ TEST(Workbench, FitsTheWindowIntoAShortRecordingAndSaysSo) {
   EXPECT_EQ(state.message, "start 500 does not fit: the last of 12 frames is 11");
 }
 
+TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
+  const auto desk = std::make_shared<Recording>(*recording_of(300));
+  const auto room = std::make_shared<Recording>(*recording_of(400));
+  desk->path = "desk";
+  room->path = "room";
+  WorkbenchState state;
+  state.settings.start = 5;  // the command line's
+  adopt(state, desk);
+  EXPECT_EQ(state.settings.start, 5);
+  Settings chosen = state.settings;
+  chosen.start = 180;
+  chosen.frames = 47;
+  chosen.method = "ba";
+  apply(state, ChangeSettings{chosen});
+  adopt(state, room);
+  EXPECT_EQ(state.settings.start, 0);
+  EXPECT_EQ(state.settings.frames, 30);
+  EXPECT_EQ(state.settings.method, "gpo_joint");
+  EXPECT_EQ(state.frame, 29);
+  adopt(state, desk);
+  EXPECT_EQ(state.settings, chosen);
+  run(state, "reset");
+  EXPECT_EQ(state.settings, Settings{});
+  run(state, "undo");
+  EXPECT_EQ(state.settings, chosen);
+}
+
 TEST(Workbench, StepsStayInsideTheRecording) {
   WorkbenchState state = opened(25);
   run(state, "last");

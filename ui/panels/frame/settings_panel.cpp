@@ -193,7 +193,8 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
 /// At the right of the heading, where there is something to reset.
 void reset_button(const PanelInput& input, Commands& commands) {
   const Settings& settings = input.state.settings;
-  if (settings == with_defaults(settings)) return;
+  const int frames = input.state.frame_count();
+  if (settings == (frames > 0 ? fit_window({}, frames) : Settings{})) return;
   const char* title = "reset";
   ImGui::PushFont(font(Font::small));
   ImGui::SameLine();
@@ -201,7 +202,7 @@ void reset_button(const PanelInput& input, Commands& commands) {
                        ImGui::CalcTextSize(title).x - 8 * input.scale);
   if (ImGui::SmallButton(title)) push(commands, RunAction{"reset"});
   ImGui::PopFont();
-  tooltip("All settings but the window and the method to their defaults; Ctrl+Z takes it back");
+  tooltip("All settings, window and method too, to their defaults; Ctrl+Z takes it back");
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ std::optional<WorkerStatus> current_work(const PanelInput& input) {
   if (input.worker.busy) return input.worker;
   if (input.survey.busy())
     return WorkerStatus{true, "comparing", input.survey.done, input.survey.of, ""};
+  if (input.scan != nullptr && input.scan->busy())
+    return WorkerStatus{true, "scanning", input.scan->done, input.scan->of, ""};
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include "ui/context/theme.h"
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/timeline/scan_strip.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
@@ -266,10 +267,15 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
-  const Rectangle bar{left,
-                      place.y + std::round(12 * s),
-                      place.right() - numbers - 24 * s - left,
-                      place.height - std::round(legend ? 34 * s : 22 * s)};
+  Rectangle bar{left,
+                place.y + std::round(12 * s),
+                place.right() - numbers - 24 * s - left,
+                place.height - std::round(legend ? 34 * s : 22 * s)};
+  if (input.state.view.scan) {
+    const float strip = std::round(kScanHeight * s);
+    scan_strip(input, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, commands);
+    bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
+  }
   draw_axis(input, bar, commands);
   if (legend)
     draw_verdict_legend(

@@ -71,9 +71,9 @@ std::vector<Action> settings_by_name() {
           "[SETTING]",
           0,
           1,
-          "Gives a setting, or all but the window and the method, its default value",
+          "Gives a setting, or all of them with window and method, its default value",
           [](const Settings& s, const Arguments& a) {
-            return a.empty() ? with_defaults(s) : with_default(s, a[0]);
+            return a.empty() ? Settings{} : with_default(s, a[0]);
           }},
   };
   std::vector<Action> actions;

@@ -10,15 +10,38 @@
 
 namespace gpo {
 
+namespace {
+
+/// Another recording does not get the window and the method that were chosen for this one.
+void change_span(WorkbenchState& state, const Recording& to) {
+  const Settings& now = state.settings;
+  const auto& from = state.recording->path;
+  std::erase_if(state.spans, [&](const KeptSpan& one) { return one.recording == from; });
+  state.spans.push_back({from, now.start, now.frames, now.method});
+  const auto kept = std::ranges::find(state.spans, to.path, &KeptSpan::recording);
+  const Settings standard;
+  const KeptSpan span = kept == state.spans.end()
+                            ? KeptSpan{to.path, standard.start, standard.frames, standard.method}
+                            : *kept;
+  state.settings.start = span.start;
+  state.settings.frames = span.frames;
+  state.settings.method = span.method;
+}
+
+}  // namespace
+
 void adopt(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
   // The same pictures with another camera: what was found in them is still there.
   const bool same =
       state.recording && recording->pictures && state.recording->pictures == recording->pictures;
   const int frame = state.frame;
+  // What is opened first gets what the command line says.
+  if (state.recording && !same) change_span(state, *recording);
   state.recording = std::move(recording);
   state.inspection.reset();
   state.surveyed = std::make_shared<const SurveyResults>();
   state.study.reset();
+  state.scan.reset();
   state.selection = {};
   state.hover = {};
   state.cube_ray.reset();

@@ -70,6 +70,15 @@ std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
   return needs_of(state.panes).study ? state.inspection : nullptr;
 }
 
+void scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
+  const bool wanted = state.view.scan && !link.survey_canceled;
+  if (!state.view.scan || !state.recording) state.scan.reset();
+  // One that is canceled stays as far as it came.
+  scan.want(wanted ? state.recording : nullptr, state.settings);
+  link.scan = scan.status();
+  if (wanted) state.scan = scan.latest();
+}
+
 /// Shows the figures of a results.csv.
 void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   try {
@@ -118,6 +127,7 @@ void synchronize(WorkbenchState& state,
                  WorkerLink& link,
                  Worker& worker,
                  Survey& survey,
+                 Scan& scan,
                  const std::filesystem::path& example) {
   const bool opened = receive(state, link, worker, survey);
   const bool open_example = std::exchange(state.wishes.open_example, false);
@@ -145,6 +155,7 @@ void synchronize(WorkbenchState& state,
   survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
   survey.study(link.survey_canceled ? nullptr : to_study(state));
   link.survey = survey.status();
+  scan_for_starts(state, link, scan);
   // Busy until the next call has seen what became of it.
   if (open_example || opening || calibrate || compute) link.worker = {true, "", 0, 0, ""};
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/survey.h"
 #include "engine/inspection/worker.h"
 #include "ui/workbench/state.h"
@@ -18,23 +19,25 @@ struct WorkerLink {
   std::optional<Eigen::Vector3d> cube_ray;      ///< to where it was moved
   WorkerStatus worker;
   SurveyStatus survey;
+  SurveyStatus scan;
   std::string error;              ///< the worker's last one that was said
   std::filesystem::path opening;  ///< what is being opened; remembered once it is open
   bool remembers_files = false;   ///< in the user's list of recent files
   bool calibrating = false;       ///< until there is a camera, a reason why not, or another wish
   bool calibrates = false;        ///< whatever is opened with a guessed camera
-  bool survey_canceled = false;   ///< until something else is computed
+  bool survey_canceled = false;   ///< and the scan; until something else is computed
 
-  bool busy() const { return worker.busy || survey.busy(); }
+  bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };
 
 /// Hands the state's new settings and wishes (open, open_example, compute, cancel) to the worker,
-/// what the open views ask for to the survey, and takes over what they have published. Returns at
+/// what the open views ask for to survey and scan, and takes over what they have published. Returns at
 /// once. `example`: the recording that comes with the program.
 void synchronize(WorkbenchState& state,
                  WorkerLink& link,
                  Worker& worker,
                  Survey& survey,
+                 Scan& scan,
                  const std::filesystem::path& example);
 
 }  // namespace gpo

@@ -95,8 +95,6 @@ TEST(SettingValues, AreReadBackAsTheyWereWritten) {
   for (const std::string& key : setting_keys()) read = with_default(read, key);
   EXPECT_EQ(read, Settings{});
   EXPECT_EQ(setting_text({}, "ransac"), "default");
-  EXPECT_EQ(with_defaults({.start = 3, .frames = 20, .method = "ba", .seed = 4}),
-            (Settings{.start = 3, .frames = 20, .method = "ba"}));
 }
 
 TEST(SettingValues, ErrorsNameTheSettingAndWhatIsExpected) {

@@ -150,8 +150,7 @@ TEST(Horizon, OfALevelPinholeIsARowAndTurnsWithTheCamera) {
   for (const Vector2d& pixel : raised.at(0))
     EXPECT_NEAR(pixel.y(), pinhole.cy - pinhole.fy * std::tan(10 * std::numbers::pi / 180), 1e-9);
   const auto upright = horizon_in_picture(pinhole, Pose{}, Vector3d::UnitX());
-  for (const Vector2d& pixel : upright.at(0))
-    EXPECT_NEAR(pixel.x(), pinhole.cx, 1e-9);
+  for (const Vector2d& pixel : upright.at(0)) EXPECT_NEAR(pixel.x(), pinhole.cx, 1e-9);
   EXPECT_TRUE(horizon_in_picture(pinhole, Pose{}, Vector3d::UnitZ()).empty());
 }
 

@@ -58,7 +58,7 @@ class WorkerLinkTest : public testing::Test {
               return opened;
             }};
   }
-  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, "example"); }
+  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_, "example"); }
   void settle() {
     do {
       synchronize();
@@ -76,8 +76,26 @@ class WorkerLinkTest : public testing::Test {
   WorkbenchState state_;
   WorkerLink link_;
   Survey survey_;
+  Scan scan_;
   Worker worker_{[this](const std::filesystem::path& path) { return open(path); }};
 };
+
+TEST_F(WorkerLinkTest, ScansTheRecordingWhereSomebodyWantsThat) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  EXPECT_EQ(state_.scan, nullptr);
+  apply(state_, RunAction{"scan on"});
+  while (synchronize(), link_.busy()) std::this_thread::yield();
+  ASSERT_NE(state_.scan, nullptr);
+  EXPECT_EQ(state_.scan->of, 31);
+  ASSERT_EQ(state_.scan->starts.size(), 31U);
+  EXPECT_FALSE(state_.scan->starts[7].ok);
+  EXPECT_FALSE(state_.scan->starts[7].reason.empty()) << "this recording has neither pictures "
+                                                         "nor tracks";
+  apply(state_, RunAction{"scan off"});
+  synchronize();
+  EXPECT_EQ(state_.scan, nullptr);
+}
 
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
   apply(state_, OpenPath{"desk"});

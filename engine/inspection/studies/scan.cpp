@@ -1,0 +1,213 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/scan.h"
+
+#include "engine/base/error.h"
+#include "engine/inspection/inspector.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+namespace gpo {
+namespace {
+
+constexpr int kMostStarts = 100;
+/// Scans kept of other settings: a hundred starts are some kilobytes.
+constexpr std::size_t kMostScans = 50;
+/// Of the threads in the background: they get what the window and its worker leave.
+constexpr int kNiceness = 10;
+
+ScannedStart scanned(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  ScannedStart start{.start = inspection.settings.start, .ok = result.ok};
+  if (result.verdict) {
+    start.readiness = result.verdict->readiness;
+    start.sigma_deg = result.verdict->normal_sigma_deg;
+  }
+  if (result.uncertainty) start.sigma_deg = result.uncertainty->normal_sigma_deg;
+  if (inspection.evaluation) start.pne_deg = inspection.evaluation->pne_deg;
+  start.reason = result.ok && result.verdict ? result.verdict->reason : result.reason;
+  return start;
+}
+
+/// Nothing where it was stopped.
+std::optional<ScannedStart> scan_one(Inspector& inspector,
+                                     const Settings& settings,
+                                     const std::stop_token& stop) {
+  try {
+    const auto inspection = inspector.inspect(settings, stop);
+    return inspection ? std::optional(scanned(*inspection)) : std::nullopt;
+  } catch (const std::exception& error) {
+    return ScannedStart{.start = settings.start, .reason = message_of(error)};
+  }
+}
+
+StartScan empty_scan(const Settings& settings, const Recording& recording) {
+  const int last = recording.frame_count() - settings.frames;
+  const int step = scan_step(recording.frame_count(), settings.frames);
+  return {.settings = settings, .step = step, .of = last < 0 ? 0 : last / step + 1, .starts = {}};
+}
+
+bool finished(const StartScan& scan) { return static_cast<int>(scan.starts.size()) == scan.of; }
+
+std::vector<int> starts_left(const StartScan& scan, const Recording& recording) {
+  auto starts = starts_to_scan(recording.frame_count(), scan.settings.frames, scan.step);
+  std::erase_if(starts, [&](int start) {
+    return std::ranges::binary_search(scan.starts, start, {}, &ScannedStart::start);
+  });
+  return starts;
+}
+
+std::string number_cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
+}
+
+}  // namespace
+
+int scan_step(int recorded_frames, int window_frames) {
+  return std::max(0, recorded_frames - window_frames) / kMostStarts + 1;
+}
+
+std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step) {
+  const int last = recorded_frames - window_frames;
+  if (last < 0) return {};
+  const auto count = static_cast<unsigned>(last / step + 1);
+  std::vector<int> starts;
+  starts.reserve(count);
+  // 0, then every odd multiple of the largest power of two, of its half, ... of one.
+  starts.push_back(0);
+  for (unsigned stride = std::bit_ceil(count) / 2; stride > 0; stride /= 2)
+    for (unsigned i = stride; i < count; i += 2 * stride)
+      starts.push_back(static_cast<int>(i) * step);
+  return starts;
+}
+
+void scan_starts(const std::shared_ptr<const Recording>& recording,
+                 const Settings& settings,
+                 std::span<const int> starts,
+                 int jobs,
+                 const std::stop_token& stop,
+                 const std::function<void(ScannedStart)>& found) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  const auto work = [&] {
+    Inspector inspector(recording);
+    Settings window = settings;
+    for (std::size_t i = next++; i < starts.size() && !stop.stop_requested(); i = next++) {
+      window.start = starts[i];
+      auto start = scan_one(inspector, window, stop);
+      const std::scoped_lock lock(mutex);
+      if (start && !stop.stop_requested()) found(*std::move(start));
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < jobs; ++i) threads.emplace_back(work);
+}
+
+std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording) {
+  std::string text = "start,time_s,status,verdict,sigma_deg,pne_deg,reason\n";
+  for (const ScannedStart& one : starts) {
+    const auto since_first = recording.timestamps_ns[one.start] - recording.timestamps_ns.front();
+    std::string reason = one.reason;
+    std::ranges::replace(reason, ',', ';');
+    text += fmt::format("{},{:.6f},{},{},{},{},{}\n",
+                        one.start,
+                        static_cast<double>(since_first) * 1e-9,
+                        one.ok ? "ok" : "failed",
+                        to_string(one.readiness),
+                        number_cell(one.sigma_deg),
+                        number_cell(one.pne_deg),
+                        reason);
+  }
+  return text;
+}
+
+Scan::Scan(std::function<void()> changed)
+    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Scan::~Scan() {
+  want(nullptr, std::nullopt);
+  thread_.request_stop();
+  thread_.join();
+}
+
+void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings) {
+  const std::lock_guard lock(mutex_);
+  if (settings) settings->start = 0;
+  if (!recording) settings.reset();
+  if (recording == recording_ && settings == wanted_) return;
+  running_.request_stop();
+  if (recording != recording_) kept_.clear();
+  recording_ = std::move(recording);
+  wanted_ = std::move(settings);
+  latest_ = nullptr;
+  if (wanted_) {
+    const auto found = find(*wanted_);
+    if (found == kept_.end()) {
+      kept_.push_back(std::make_shared<const StartScan>(empty_scan(*wanted_, *recording_)));
+    } else {
+      std::rotate(found, found + 1, kept_.end());
+    }
+    if (kept_.size() > kMostScans) kept_.erase(kept_.begin());
+    latest_ = kept_.back();
+  }
+  wake_.notify_one();
+}
+
+Scan::Kept::iterator Scan::find(const Settings& settings) {
+  return std::ranges::find_if(kept_, [&](const auto& one) { return one->settings == settings; });
+}
+
+SurveyStatus Scan::status() const {
+  const std::lock_guard lock(mutex_);
+  if (!latest_) return {};
+  return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
+}
+
+std::shared_ptr<const StartScan> Scan::latest() const {
+  const std::lock_guard lock(mutex_);
+  return latest_;
+}
+
+void Scan::add(const Settings& settings, ScannedStart found) {
+  const std::lock_guard lock(mutex_);
+  const auto kept = find(settings);
+  if (kept == kept_.end()) return;
+  StartScan scan = **kept;
+  const auto place = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
+  scan.starts.insert(place, std::move(found));
+  *kept = std::make_shared<const StartScan>(std::move(scan));
+  if (wanted_ == settings) latest_ = *kept;
+}
+
+void Scan::run(const std::stop_token& stop) {
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread and of those that it starts
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  while (true) {
+    std::shared_ptr<const Recording> recording;
+    Settings settings;
+    std::vector<int> starts;
+    std::stop_token request;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [this] { return latest_ && !finished(*latest_); })) return;
+      running_ = std::stop_source();
+      request = running_.get_token();
+      recording = recording_;
+      settings = *wanted_;
+      starts = starts_left(*latest_, *recording);
+    }
+    scan_starts(recording, settings, starts, cores, request, [&](ScannedStart found) {
+      add(settings, std::move(found));
+      if (changed_) changed_();
+    });
+  }
+}
+
+}  // namespace gpo

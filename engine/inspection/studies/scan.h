@@ -1,0 +1,94 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/studies/survey.h"
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace gpo {
+
+/// What an initialization from one frame comes to.
+struct ScannedStart {
+  int start = 0;    ///< reference frame, counts in the recording
+  bool ok = false;  ///< there is a result
+  Readiness readiness = Readiness::degenerate;
+  std::optional<double> sigma_deg;  ///< standard deviation of the normal
+  std::optional<double> pne_deg;    ///< its error, where truth is known
+  std::string reason;               ///< the failure's, else the verdict's; one line
+};
+
+/// The step that scans a recording with about a hundred windows of so many frames.
+int scan_step(int recorded_frames, int window_frames);
+
+/// Starts `step` frames apart whose window fits, coarse to fine: the first ones lie all over the
+/// recording.
+std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step);
+
+/// Inspects a window from each start, with these settings otherwise, on so many threads.
+/// `found` is called by one thread at a time, in no order. Returns when all are done, or soon after
+/// it was stopped. What cannot be inspected is a start with its reason.
+void scan_starts(const std::shared_ptr<const Recording>& recording,
+                 const Settings& settings,
+                 std::span<const int> starts,
+                 int jobs,
+                 const std::stop_token& stop,
+                 const std::function<void(ScannedStart)>& found);
+
+/// "start,time_s,status,verdict,sigma_deg,pne_deg,reason", a line a start; unknown cells are empty.
+std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording);
+
+/// The starts of a recording as far as they are scanned. Immutable.
+struct StartScan {
+  Settings settings;                 ///< start 0
+  int step = 1;                      ///< frames from one start to the next
+  int of = 0;                        ///< starts
+  std::vector<ScannedStart> starts;  ///< those that are done, by frame
+};
+
+/// Scans in the background, on all cores but behind everybody else; keeps what it has found for
+/// settings that come back. All functions may be called from any thread and return at once.
+class Scan {
+ public:
+  /// `changed` is called on other threads after each start.
+  explicit Scan(std::function<void()> changed = {});
+  ~Scan();
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+
+  /// What is to be scanned, with whatever start; replaces what was wanted before. Null or nothing:
+  /// nothing is. Another recording forgets all results.
+  void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
+
+  SurveyStatus status() const;
+  std::shared_ptr<const StartScan> latest() const;  ///< of what is wanted; null: nothing is
+
+ private:
+  using Kept = std::vector<std::shared_ptr<const StartScan>>;
+
+  void run(const std::stop_token& stop);
+  void add(const Settings& settings, ScannedStart found);
+  Kept::iterator find(const Settings& settings);
+
+  std::function<void()> changed_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::shared_ptr<const Recording> recording_;
+  std::optional<Settings> wanted_;
+  std::shared_ptr<const StartScan> latest_;
+  Kept kept_;  ///< the last wanted one last
+  std::stop_source running_;
+  std::jthread thread_;  ///< last: it starts when all the others exist
+};
+
+}  // namespace gpo

@@ -1,0 +1,118 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/scan.h"
+
+#include "engine/inspection/inspector.h"
+#include "engine/recording/open_recording.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+std::shared_ptr<const Recording> desk() {
+  static const auto recording = open_recording(GPO_SOURCE_DIR "/sequences/desk");
+  return recording;
+}
+
+void settle(const Scan& scan) {
+  while (scan.status().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST(StartsToScan, AreAllMultiplesOfTheStepThatFitOnceAndCoarseToFine) {
+  for (const auto& [recorded, frames, step] :
+       {std::tuple{60, 30, 1}, {60, 60, 1}, {31, 30, 7}, {1000, 20, 13}, {257, 1, 1}}) {
+    const auto starts = starts_to_scan(recorded, frames, step);
+    const std::set<int> once(starts.begin(), starts.end());
+    EXPECT_EQ(once.size(), starts.size());
+    for (int start = 0; start + frames <= recorded; start += step)
+      EXPECT_TRUE(once.contains(start)) << start;
+    EXPECT_EQ(once.size(), static_cast<std::size_t>((recorded - frames) / step + 1));
+    // The gap between neighbors halves as their number doubles.
+    for (std::size_t count = 4; count < starts.size(); count *= 2) {
+      std::set<int> first(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count));
+      int gap = 0;
+      for (auto at = first.begin(); std::next(at) != first.end(); ++at)
+        gap = std::max(gap, *std::next(at) - *at);
+      EXPECT_LE(gap, 4 * (recorded - frames) / static_cast<int>(count) + step);
+    }
+  }
+  EXPECT_TRUE(starts_to_scan(20, 30, 1).empty());
+  EXPECT_EQ(scan_step(60, 30), 1);
+  EXPECT_LE(starts_to_scan(100'000, 30, scan_step(100'000, 30)).size(), 101U);
+}
+
+TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
+  const Settings settings{.frames = 20};
+  const std::vector<int> starts = starts_to_scan(desk()->frame_count(), 20, 10);
+  std::vector<ScannedStart> found;
+  scan_starts(
+      desk(), settings, starts, 2, {}, [&](ScannedStart one) { found.push_back(std::move(one)); });
+  ASSERT_EQ(found.size(), starts.size());
+  Inspector inspector(desk());
+  for (const ScannedStart& one : found) {
+    Settings window = settings;
+    window.start = one.start;
+    const auto alone = inspector.inspect(window);
+    EXPECT_EQ(one.ok, alone->initialization->ok);
+    EXPECT_EQ(one.readiness, alone->initialization->verdict->readiness);
+    EXPECT_EQ(one.sigma_deg, alone->initialization->uncertainty->normal_sigma_deg);
+    EXPECT_EQ(one.pne_deg, alone->evaluation->pne_deg);
+    EXPECT_EQ(one.reason, alone->initialization->verdict->reason);
+  }
+}
+
+TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
+  std::vector<ScannedStart> found;
+  scan_starts(desk(), {.frames = 20, .method = "gpoo"}, std::vector{3}, 1, {}, [&](auto one) {
+    found.push_back(one);
+  });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].start, 3);
+  EXPECT_FALSE(found[0].ok);
+  EXPECT_NE(found[0].reason.find("gpoo"), std::string::npos) << found[0].reason;
+  const std::string csv = to_csv(found, *desk());
+  EXPECT_TRUE(csv.starts_with("start,time_s,status,verdict,sigma_deg,pne_deg,reason\n3,")) << csv;
+  EXPECT_EQ(std::ranges::count(csv, ','), 12) << csv;
+}
+
+TEST(ScanInTheBackground, FindsAllAndKeepsWhatItFound) {
+  Scan scan;
+  EXPECT_EQ(scan.latest(), nullptr);
+  const Settings longer{.start = 7, .frames = desk()->frame_count() - 3};
+  const Settings shorter{.frames = desk()->frame_count() - 1};
+  scan.want(desk(), longer);
+  EXPECT_TRUE(scan.status().busy());
+  settle(scan);
+  const auto first = scan.latest();
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(first->starts.size(), 4U);
+  EXPECT_TRUE(std::ranges::is_sorted(first->starts, {}, &ScannedStart::start));
+  scan.want(desk(), shorter);
+  EXPECT_EQ(scan.latest()->of, 2);
+  settle(scan);
+  scan.want(desk(), Settings{.start = 2, .frames = longer.frames});
+  EXPECT_EQ(scan.latest(), first) << "the start of the settings changes nothing";
+  EXPECT_FALSE(scan.status().busy());
+  scan.want(nullptr, std::nullopt);
+  EXPECT_EQ(scan.latest(), nullptr);
+}
+
+TEST(ScanInTheBackground, EndsAtOnceWhereNobodyWantsItAnyMore) {
+  Scan scan;
+  scan.want(desk(), Settings{.frames = 20});
+  while (scan.status().done == 0) std::this_thread::yield();
+  scan.want(desk(), std::nullopt);
+  EXPECT_FALSE(scan.status().busy());
+  scan.want(desk(), Settings{.frames = desk()->frame_count() + 1});
+  EXPECT_FALSE(scan.status().busy()) << "no window fits";
+  EXPECT_EQ(scan.latest()->of, 0);
+}
+
+}  // namespace
+}  // namespace gpo
