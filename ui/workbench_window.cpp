@@ -103,7 +103,7 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
                   frame,
                   shown_picture(views),
                   {},
-                  image_options(input.state, inspection));
+                  image_options(other ? showing(input.state, *other) : input.state, views.colors));
   if (other)
     draw_flip_label(*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}, *other);
 }

@@ -195,7 +195,10 @@ TEST_F(LinkedSelection, RightClickInThePictureBringsTheCubeThere) {
   ASSERT_TRUE(state_.cube_ray.has_value());
   const PictureMapping mapping =
       map_picture(state_.recording->camera, picture(), state_.picture_zoom);
-  const auto ray = reference_ray(*inspection_, kFrame, to_picture(mapping, at));
+  const auto ray = point_on_plane(*inspection_,
+                                  kFrame - inspection_->window->start,
+                                  to_picture(mapping, at),
+                                  inspection_->initialization->plane);
   EXPECT_LT((*ray - *state_.cube_ray).norm(), 1e-9);
 }
 

@@ -10,6 +10,7 @@
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"
 #include "ui/views/normals/normals_view.h"
+#include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/layout.h"
@@ -73,9 +74,17 @@ struct Residuals {
   WindowResiduals px;
 };
 
+/// Colors of tracks, and whose they are.
+struct KeptTrackColors {
+  std::shared_ptr<const Inspection> of;  ///< null: none yet
+  Coloring coloring = Coloring::plane;
+  std::shared_ptr<const TrackColors> colors;  ///< null: by plane
+};
+
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
+  cv::Mat pixels;                              ///< of `picture`; CV_8UC3, BGR
   std::shared_ptr<const Recording> recording;  ///< of the picture that is in `picture`
   int frame = -1;                              ///< -1: none of it is there, yet
   int asked = -1;                              ///< frame that is being fetched; -1: none
@@ -88,6 +97,7 @@ struct Views {
   KeptCurveFacts curves;                    ///< of the drawer
   Residuals residuals;
   TrackLives lives;
+  KeptTrackColors colors;
   NormalsMap normals;
   WindowPicture window;  ///< of which only the parts that change are drawn anew
 };

@@ -11,6 +11,7 @@ bool bring(const PanelInput& input, int frame, Views& views) {
   if (picture.waiting) return false;
   views.frame = frame;
   views.picture_error = picture.error;
+  views.pixels = picture.bgr;
   if (!picture.bgr.empty()) views.picture.upload(picture.bgr);
   return true;
 }

@@ -7,6 +7,7 @@
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/survey.h"
 #include "engine/recording/recording.h"
+#include "ui/look/coloring.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
@@ -140,6 +141,7 @@ struct WorkbenchState {
   PictureZoom picture_zoom;                  ///< of the picture
   NormalsZoom normals_zoom;                  ///< of the disc of normals
   Viewpoint viewpoint = Viewpoint::oblique;  ///< of the scene
+  Coloring coloring = Coloring::plane;       ///< of tracks and map points
   std::optional<OrbitCamera> orbit;  ///< of the scene where it was dragged; nothing: `viewpoint`
   Selection selection;
   Hover hover;

@@ -11,6 +11,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
+#include "ui/views/picture/pixel_readout.h"
 #include "ui/views/picture/track_highlight.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
@@ -90,8 +91,11 @@ void move_cube(const Pointer& pointer, Commands& commands) {
   const WorkbenchState& state = pointer.state;
   const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
   if (!clicked || !state.inspection || !state.inspection->initialization->ok) return;
-  const auto ray =
-      reference_ray(*state.inspection, pointer.frame, to_picture(pointer.mapping, pointer.at));
+  const Inspection& inspection = *state.inspection;
+  const auto ray = point_on_plane(inspection,
+                                  pointer.frame - inspection.window->start,
+                                  to_picture(pointer.mapping, pointer.at),
+                                  inspection.initialization->plane);
   if (ray) push(commands, MoveCube{ray});
 }
 
@@ -117,7 +121,7 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
-  ImageViewOptions options = image_options(state, input.inspection());
+  ImageViewOptions options = image_options(state, views.colors);
   options.legend = options.legend && room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
@@ -135,7 +139,17 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                               pointer.mapping,
                               highlight_of(state));
   }
+  draw_pixel_grid(list, rect, pointer.mapping, state.recording->camera);
   draw_rectangle(pointer, list);
+  if (ImGui::IsItemHovered())
+    draw_pixel_text(list,
+                    rect,
+                    pixel_text(input.inspection(),
+                               frame,
+                               state.recording->camera,
+                               views.pixels,
+                               to_picture(pointer.mapping, pointer.at),
+                               pointer.mapping.scale / input.scale));
   if (track) track_tooltip(input, views, *track);
   if (!views.picture_error.empty()) {
     draw_badge(list, rect, color_of(Role::bad), "no picture", views.picture_error);

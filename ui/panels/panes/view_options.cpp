@@ -6,6 +6,7 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/track_colors.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <cmath>
@@ -14,7 +15,20 @@
 
 namespace gpo {
 
-ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection) {
+namespace {
+
+/// Of the inspection that the state shows; computed anew where it is another.
+std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state, KeptTrackColors& kept) {
+  if (kept.of != state.inspection || kept.coloring != state.coloring) {
+    kept = {state.inspection, state.coloring, nullptr};
+    if (state.inspection) kept.colors = track_colors(*state.inspection, state.coloring);
+  }
+  return kept.colors;
+}
+
+}  // namespace
+
+ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kept) {
   ImageViewOptions options;
   options.tracks = state.view.tracks;
   if (!state.view.tails) options.tail_frames = 0;
@@ -23,17 +37,19 @@ ImageViewOptions image_options(const WorkbenchState& state, const Inspection* in
   options.cube_side = state.cube_side;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
-  options.legend = inspection != nullptr;
+  options.colors = colors_of(state, kept);
+  options.legend = state.inspection != nullptr;
   return options;
 }
 
-SceneViewOptions scene_options(const WorkbenchState& state) {
+SceneViewOptions scene_options(const WorkbenchState& state, KeptTrackColors& kept) {
   SceneViewOptions options;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.uncertainty = state.view.uncertainty;
+  options.colors = colors_of(state, kept);
   return options;
 }
 

@@ -15,9 +15,9 @@
 
 namespace gpo {
 
-/// What the state asks the views to show. `inspection` may be null.
-ImageViewOptions image_options(const WorkbenchState& state, const Inspection* inspection);
-SceneViewOptions scene_options(const WorkbenchState& state);
+/// What the state asks the views to show. Colors are computed where those kept are others.
+ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kept);
+SceneViewOptions scene_options(const WorkbenchState& state, KeptTrackColors& kept);
 
 /// What the state asks the comparison to show, without the line above it; and its columns.
 CompareOptions compare_options(const WorkbenchState& state);

@@ -164,18 +164,17 @@ std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int f
   return residuals;
 }
 
-std::optional<Eigen::Vector3d> reference_ray(const Inspection& inspection,
-                                             int frame,
-                                             const Eigen::Vector2d& raw_px) {
-  const Initialization& result = *inspection.initialization;
-  const int in_window = frame - inspection.window->start;
-  if (!result.ok || in_window < 0 || in_window >= static_cast<int>(result.cameras.size()))
+std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
+                                              int frame_in_window,
+                                              const Eigen::Vector2d& raw_px,
+                                              const Plane& plane) {
+  const auto& cameras = inspection.initialization->cameras;
+  if (frame_in_window < 0 || frame_in_window >= static_cast<int>(cameras.size()))
     return std::nullopt;
   const Camera& camera = inspection.recording->camera;
   const Eigen::Vector3d ray =
       intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
-  // The world is the reference camera's frame.
-  return intersect(result.plane, result.cameras[in_window], ray);
+  return intersect(plane, cameras[frame_in_window], ray);
 }
 
 }  // namespace gpo

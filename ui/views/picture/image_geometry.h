@@ -69,11 +69,12 @@ struct ResidualVector {
 /// where the initialization failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window);
 
-/// The ray of the reference camera (its frame) to where a pixel of a frame (counts in the
-/// recording) shows the estimated plane. Nothing where the frame is not in the window, or the pixel
-/// shows no plane.
-std::optional<Eigen::Vector3d> reference_ray(const Inspection& inspection,
-                                             int frame,
-                                             const Eigen::Vector2d& raw_px);
+/// Where a pixel of a frame of the window shows a plane, in the estimate's world: also the ray of
+/// the reference camera to there. Nothing where the frame has no pose, or the pixel does not show
+/// it.
+std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
+                                              int frame_in_window,
+                                              const Eigen::Vector2d& raw_px,
+                                              const Plane& plane);
 
 }  // namespace gpo

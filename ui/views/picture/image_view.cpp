@@ -9,6 +9,7 @@
 #include "ui/context/window_picture.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/picture_texture.h"
 
@@ -41,6 +42,11 @@ struct Canvas {
     points.reserve(raw_px.size());
     for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
     return points;
+  }
+  TrackLook look(int frame_in_window, int track) const {
+    TrackLook look = track_look(*inspection.window, frame_in_window, track);
+    if (options.colors) look.rgb = options.colors->rgb(track);
+    return look;
   }
   std::optional<CubePicture> estimated_cube() const {
     return gpo::estimated_cube(inspection, frame, cube_side(inspection, options.cube_side));
@@ -96,7 +102,7 @@ void draw_tails(const Canvas& canvas) {
   const int oldest = std::max(0, canvas.frame - canvas.options.tail_frames);
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
-    const std::uint32_t rgb = track_look(*canvas.inspection.window, canvas.frame, track).rgb;
+    const std::uint32_t rgb = canvas.look(canvas.frame, track).rgb;
     for (int i = oldest; i < canvas.frame; ++i) {
       const double age = static_cast<double>(canvas.frame - i) / canvas.options.tail_frames;
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
@@ -111,7 +117,7 @@ void draw_tracks(const Canvas& canvas) {
   const Tracks& tracks = *canvas.inspection.tracks;
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
-    const auto [sign, rgb] = track_look(*canvas.inspection.window, canvas.frame, track);
+    const auto [sign, rgb] = canvas.look(canvas.frame, track);
     draw_sign(canvas.list, sign, canvas.at(tracks.raw_px[canvas.frame].col(track)), rgb);
   }
 }
@@ -222,7 +228,7 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ImageViewOptions& options = canvas.options;
   std::vector<LegendRow> rows;
-  if (options.tracks) rows = track_rows(canvas);
+  if (options.tracks) rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   const auto add = [&rows](Sign sign, Role role, std::string text) {
     rows.push_back(LegendRow{sign, color_of(role), std::move(text)});
   };

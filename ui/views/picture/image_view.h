@@ -13,6 +13,7 @@ struct ImDrawList;
 namespace gpo {
 
 class PictureTexture;
+struct TrackColors;
 
 /// What is shown over the picture.
 struct ImageViewOptions {
@@ -24,6 +25,7 @@ struct ImageViewOptions {
   double cube_side = 0;                ///< 0: `default_cube_side` [unit of the estimate]
   bool truth = true;                   ///< the true cube, where it is known
   bool gravity = true;                 ///< the horizon, where gravity is known
+  std::shared_ptr<const TrackColors> colors = {};  ///< of the tracks; null: by their planes
   bool legend = true;
 };
 

@@ -7,6 +7,7 @@
 #include "ui/context/window_picture.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/plane_grid.h"
@@ -128,9 +129,11 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
     rows.push_back({Sign::square,
                     color_of(Role::plane),
                     "estimated plane, cells of " + cell_text(inspection, options)});
-    rows.push_back({Sign::dot,
+    rows.push_back({options.colors ? Sign::none : Sign::dot,
                     color_of(Role::map_point),
                     fmt::format("{} map points", inspection.initialization->points.size())});
+    if (options.colors)
+      for (LegendRow& row : legend_rows(*options.colors)) rows.push_back(std::move(row));
     if (options.cube && inspection.cube)
       rows.push_back(
           {Sign::square, color_of(Role::cube_base), "cube" + side_text(inspection, options)});

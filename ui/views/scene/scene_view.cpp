@@ -8,6 +8,7 @@
 #include "ui/context/vtk_window.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/image_view.h"
 #include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/scene_actors.h"
@@ -32,6 +33,9 @@ struct Stage {
   const SceneViewOptions& options;
   double scale;
 
+  std::uint32_t color(const MapPoint& point, std::uint32_t by_plane) const {
+    return options.colors ? options.colors->rgb(point.track) : by_plane;
+  }
   void add(const Shapes& shapes, double size_px) const {
     renderer.AddActor(shapes.actor(size_px * scale));
   }
@@ -132,7 +136,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
     const double i = grid.x.dot(from) / grid.cell, j = grid.y.dot(from) / grid.cell;
     // Single wrong points far away are not the map.
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
-      points.point(point.position, color_of(Role::map_point));
+      points.point(point.position, stage.color(point, color_of(Role::map_point)));
   }
   stage.add(points, 5);
 }
@@ -144,7 +148,8 @@ void add_patches(const Stage& stage) {
     Shapes border, face, points;
     border.lines(patch.corners, true, mixed_rgb(color_of(Role::scene_bottom), rgb, 0.8));
     face.face(patch.corners, rgb, 0.12);
-    for (const MapPoint& point : patch.points) points.point(point.position, rgb);
+    for (const MapPoint& point : patch.points)
+      points.point(point.position, stage.color(point, rgb));
     stage.add(face, 1);
     stage.add(border, 1.8);
     stage.add(points, 5);

@@ -12,6 +12,8 @@ struct ImDrawList;
 
 namespace gpo {
 
+struct TrackColors;
+
 /// What is shown in the scene.
 struct SceneViewOptions {
   bool cube = true;
@@ -20,6 +22,7 @@ struct SceneViewOptions {
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
   bool gravity = true;  ///< an arrow that points up, where gravity is known
+  std::shared_ptr<const TrackColors> colors = {};  ///< of the points; null: by their planes
   bool legend = true;
 
   bool operator==(const SceneViewOptions&) const = default;

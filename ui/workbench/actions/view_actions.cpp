@@ -124,6 +124,18 @@ void add_viewpoints(std::vector<Action>& table) {
   }
 }
 
+void add_colorings(std::vector<Action>& table) {
+  for (const ColoringRow& row : kColorings) {
+    Action action = plain(
+        std::string("color-by ") + row.key, row.title, "View", {}, row.tooltip, [&row](State& s) {
+          s.coloring = row.coloring;
+        });
+    action.checked = [&row](const State& s) { return s.coloring == row.coloring; };
+    action.needs_recording = false;
+    table.push_back(action);
+  }
+}
+
 void add_cameras(std::vector<Action>& table) {
   table.push_back(plain("fit",
                         "Fit view",
@@ -171,6 +183,7 @@ void add_view_actions(std::vector<Action>& table) {
   add_compare_actions(table);
   add_cameras(table);
   add_viewpoints(table);
+  add_colorings(table);
   add_themes(table);
   add_layout_actions(table);
 }

@@ -85,6 +85,9 @@ struct ToJson {
   Json operator()(Viewpoint viewpoint) const {
     return std::ranges::find(kViewpoints, viewpoint, &ViewpointRow::viewpoint)->key;
   }
+  Json operator()(Coloring coloring) const {
+    return std::ranges::find(kColorings, coloring, &ColoringRow::coloring)->key;
+  }
   Json operator()(const ViewToggles& view) const {
     Json json;
     for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
@@ -150,6 +153,13 @@ struct FromJson {
     const auto found = std::ranges::find(kViewpoints, name, &ViewpointRow::key);
     if (found == kViewpoints.end()) read.refuse(key);
     viewpoint = found->viewpoint;
+  }
+  void operator()(const char* key, Coloring& coloring) const {
+    std::string name;
+    read(key, name);
+    const auto found = std::ranges::find(kColorings, name, &ColoringRow::key);
+    if (found == kColorings.end()) read.refuse(key);
+    coloring = found->coloring;
   }
   void operator()(const char* key, ViewToggles& view) const {
     const SessionReader toggles = read.object(key);
@@ -244,6 +254,7 @@ std::span<const SessionField> session_fields() {
       field("picture_zoom", &State::picture_zoom),
       field("normals_zoom", &State::normals_zoom),
       field("viewpoint", &State::viewpoint),
+      field("coloring", &State::coloring),
       field("orbit", &State::orbit),
       field("selection", &State::selection),
       field("bookmarks", &State::bookmarks)};
