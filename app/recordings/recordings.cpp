@@ -40,15 +40,25 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
   return all.size() <= kNamesLength ? all : fmt::format("{} recordings", names.size());
 }
 
-std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+/// `told` is called with what is made, frames that are, and of how many; what it throws ends it.
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes, const Progress& told) {
   if (recipes.empty()) return {};
   const fs::path cache = made_recordings_folder();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
+  const std::string title = "synthesizing " + names_of_missing(recipes, cache);
+  return synthesized_recordings(
+      recipes, cache, threads, [&](int done, int of) { told(title, done, of); });
+}
+
+/// On standard error; Ctrl-C ends it.
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+  if (recipes.empty()) return {};
   const Interrupt interrupt;
   const auto check = [&] { interrupt.check("of what was being synthesized nothing is left"); };
-  ProgressBar bar("synthesizing " + names_of_missing(recipes, cache));
-  auto made = synthesized_recordings(recipes, cache, threads, [&](int done, int of) {
-    bar.show(done, of);
+  std::optional<ProgressBar> bar;
+  auto made = make_recordings(recipes, [&](const std::string& title, int done, int of) {
+    if (!bar) bar.emplace(title);
+    bar->show(done, of);
     check();
   });
   check();
@@ -81,23 +91,50 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
   return resolved;
 }
 
-std::shared_ptr<const Recording> open_given(const fs::path& path,
-                                            const OpenOptions& options,
-                                            bool calibrates) {
+namespace {
+
+/// `folder` is what is read, `path` what the user gave.
+std::shared_ptr<const Recording> open_resolved(const fs::path& path,
+                                               const fs::path& folder,
+                                               const OpenOptions& options,
+                                               bool calibrates) {
   OpenOptions with_cache = options;
   with_cache.cache_folder = user_cache_folder();
-  Recording recording = *open_recording(resolve_recordings({path}).front(), with_cache);
+  Recording recording = *open_recording(folder, with_cache);
   recording.path = path;
   if (recording.camera_source == CameraSource::guess) use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-std::function<Worker::Opened(const fs::path&)> opener_for_window(
-    std::size_t cache_mib, const std::optional<fs::path>& recording, const TopicChoices& topics) {
-  return [=](const fs::path& path) {
+/// A recipe's recording is made in the background: whoever waits sees how far it is.
+fs::path folder_for_window(const fs::path& path,
+                           const std::stop_token& stop,
+                           const Progress& progress) {
+  refuse_known_file(path);
+  if (!is_recipe(path)) return path;
+  const auto tell = [&](const std::string& title, int done, int of) {
+    if (stop.stop_requested()) throw Interrupted("nothing is left of what was being synthesized");
+    progress(title, done, of);
+  };
+  return make_recordings({path}, tell).front();
+}
+
+}  // namespace
+
+std::shared_ptr<const Recording> open_given(const fs::path& path,
+                                            const OpenOptions& options,
+                                            bool calibrates) {
+  return open_resolved(path, resolve_recordings({path}).front(), options, calibrates);
+}
+
+Worker::Open opener_for_window(std::size_t cache_mib,
+                               const std::optional<fs::path>& recording,
+                               const TopicChoices& topics) {
+  return [=](const fs::path& path, const std::stop_token& stop, const Progress& progress) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
-    return opened_for_window(open_given(path, options));
+    const fs::path folder = folder_for_window(path, stop, progress);
+    return opened_for_window(open_resolved(path, folder, options, false));
   };
 }
 

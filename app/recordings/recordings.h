@@ -30,9 +30,8 @@ std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
 
 /// The same for the window's worker. The topics are those of one recording, of others they are
 /// found. Where there is no calibration, it can find one.
-std::function<Worker::Opened(const std::filesystem::path&)> opener_for_window(
-    std::size_t cache_mib,
-    const std::optional<std::filesystem::path>& recording = {},
-    const TopicChoices& topics = {});
+Worker::Open opener_for_window(std::size_t cache_mib,
+                               const std::optional<std::filesystem::path>& recording = {},
+                               const TopicChoices& topics = {});
 
 }  // namespace gpo

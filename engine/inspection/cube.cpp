@@ -66,11 +66,13 @@ double default_cube_side(const CubeAnchor& anchor, double plane_distance) {
   return anchor.on_board ? std::max(1.0, std::round(side / anchor.unit)) * anchor.unit : side;
 }
 
-std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side) {
+std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
+                                            double side,
+                                            double height_sides) {
   const double shift = anchor.on_board ? 0 : -0.5;
   std::array<Eigen::Vector3d, 8> corners;
   for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, (k >> 2) & 1);
+    const Eigen::Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, height_sides * (k >> 2));
     corners[k] = anchor.origin + anchor.axes * (side * unit);
   }
   return corners;

@@ -42,8 +42,11 @@ std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
 /// 0.2 of the plane's distance, or the whole number of chessboard squares nearest to that.
 double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 
-/// Corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top).
-std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side);
+/// Corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top). A tower is several
+/// sides high.
+std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
+                                            double side,
+                                            double height_sides = 1);
 
 /// The cube's place on a plane, in the plane's world: on the recording's board, whose corners (row
 /// by row) were seen at these raw pixels of the reference picture, or where there is none where the

@@ -26,7 +26,9 @@ std::string error_of(Work&& work) {
 
 }  // namespace
 
-Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path) {
+Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path,
+                                           const std::stop_token&,
+                                           const Progress&) {
   return with_inspector(open_recording(path));
 }
 
@@ -130,8 +132,11 @@ void Worker::run(const std::stop_token& stop) {
 }
 
 void Worker::do_open(const std::filesystem::path& path, const std::stop_token& stop) {
-  report("opening", 0, 0, stop);
-  publish(open_(path), stop);
+  const Progress progress = [&](const std::string& stage, int done, int of) {
+    report(stage, done, of, stop);
+  };
+  progress("opening " + path.filename().string(), 0, 0);
+  publish(open_(path, stop, progress), stop);
 }
 
 void Worker::do_calibrate(const std::stop_token& stop) {

@@ -50,8 +50,10 @@ class Worker {
     Inspect inspect;
     Calibrate calibrate = {};  ///< null: nobody can
   };
-  /// Runs on the worker; may throw.
-  using Open = std::function<Opened(const std::filesystem::path&)>;
+  /// Runs on the worker; may throw, as it may where it was stopped: what it returns is then
+  /// dropped.
+  using Open =
+      std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
   explicit Worker(Open open = open_with_inspector, std::function<void()> changed = {});
@@ -74,7 +76,9 @@ class Worker {
   Published latest() const;
 
   /// `open_recording` and an Inspector for it.
-  static Opened open_with_inspector(const std::filesystem::path& path);
+  static Opened open_with_inspector(const std::filesystem::path& path,
+                                    const std::stop_token& stop = {},
+                                    const Progress& progress = {});
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:

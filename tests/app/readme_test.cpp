@@ -70,7 +70,8 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
                            "tests/README.md",
                            "tests/app/results/README.md",
                            "tests/benchmark/README.md",
-                           "tests/fuzz/README.md"}) {
+                           "tests/fuzz/README.md",
+                           "ui/README.md"}) {
     const std::string text = test::read_file(top / page);
     for (const std::string& link : links_of(text)) {
       const fs::path target = (top / page).parent_path() / link.substr(0, link.find('#'));

@@ -103,7 +103,7 @@ class OnlyScene : public View {
   void draw(int frame) override {
     gui_.begin_frame(kSize.width, kSize.height);
     draw_scene_view(
-        *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, {});
+        *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, options_);
     gui_.end_frame(picture_, color_of(Role::border));
   }
 
@@ -112,7 +112,22 @@ class OnlyScene : public View {
   WindowPicture picture_;
   SceneView view_;
   const Inspection& inspection_;
+
+ protected:
   OrbitCamera camera_;
+  SceneViewOptions options_;
+};
+
+/// Dragged a little from each frame to the next.
+class OrbitingScene : public OnlyScene {
+ public:
+  explicit OrbitingScene(const Inspections& inspections) : OnlyScene(inspections) {
+    options_.moving = true;
+  }
+  void draw(int frame) override {
+    camera_.yaw_deg = 35 + 2 * frame;
+    OnlyScene::draw(0);
+  }
 };
 
 /// With what is open in it.
@@ -191,6 +206,7 @@ struct Row {
 
 constexpr Row kRows[] = {{"image", run<ImageView>},
                          {"scene", run<OnlyScene>},
+                         {"scene, orbited", run<OrbitingScene>},
                          {"compare, 4 methods", run<CompareView>},
                          {"window", run<WholeWindow>},
                          {"window with normals and residuals", run<BusyWindow>}};

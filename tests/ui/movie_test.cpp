@@ -54,7 +54,7 @@ class MovieTest : public DrawingTest {
   TestFolder folder_;
   OffscreenContext context_{640, 400};
   Gui gui_;
-  WorkbenchHost host_{gui_, [](const fs::path&) { return open(); }, "example"};
+  WorkbenchHost host_{gui_, [](const auto&...) { return open(); }, "example"};
 };
 
 TEST_F(MovieTest, HasTheWindowsFramesAtTheRecordingsSizeAndRate) {

@@ -45,7 +45,7 @@ class WaitingPicture : public DrawingTest {
   }
   void draw() {
     context_.bind();
-    draw_workbench({state_, idle_, no_survey_, false, gui_.scale(), nullptr, &fetcher_},
+    draw_workbench({state_, idle_, no_survey_, false, gui_.scale(), nullptr, nullptr, &fetcher_},
                    {kWidth, kHeight},
                    gui_,
                    views_);

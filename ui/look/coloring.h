@@ -25,7 +25,7 @@ inline constexpr std::array kColorings = {
     ColoringRow{Coloring::residual,
                 "residual",
                 "Color by residual",
-                "Tracks and points by their RMS reprojection error over the window [px]"},
+                "Inliers of the leading plane by their RMS reprojection error over the window [px]"},
     ColoringRow{Coloring::depth,
                 "depth",
                 "Color by depth",

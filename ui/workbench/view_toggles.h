@@ -15,7 +15,10 @@ struct ViewToggles {
   bool truth = true;
   bool gravity = true;
   bool scan = false;
-  int uncertainty = 1;  ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
+  bool wireframe = false;
+  bool tower = false;
+  int uncertainty = 1;   ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
+  int exaggeration = 1;  ///< of the cube's distance from the true one, or the first column's
 
   bool operator==(const ViewToggles&) const = default;
 };
@@ -44,6 +47,16 @@ inline constexpr std::array kViewToggles = {
                "From where a track is seen to where the result puts it, enlarged"},
     ViewToggle{
         "cube", "Cube", 'B', &ViewToggles::cube, "A cube that stands on the estimated plane"},
+    ViewToggle{"wireframe",
+               "Wireframe cube",
+               0,
+               &ViewToggles::wireframe,
+               "The cube's edges alone, without faces and shadow"},
+    ViewToggle{"tower",
+               "Tower",
+               0,
+               &ViewToggles::tower,
+               "A tower of five cubes: its lean shows what a cube hides"},
     ViewToggle{"truth",
                "Ground truth",
                'G',

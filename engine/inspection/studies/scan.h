@@ -23,9 +23,9 @@ struct ScannedStart {
   int start = 0;    ///< reference frame, counts in the recording
   bool ok = false;  ///< there is a result
   Readiness readiness = Readiness::degenerate;
-  std::optional<double> sigma_deg;  ///< standard deviation of the normal
-  std::optional<double> pne_deg;    ///< its error, where truth is known
-  std::string reason;               ///< the failure's, else the verdict's; one line
+  std::optional<double> sigma_deg = {};  ///< standard deviation of the normal
+  std::optional<double> pne_deg = {};    ///< its error, where truth is known
+  std::string reason = {};               ///< the failure's, else the verdict's; one line
 };
 
 /// The step that scans a recording with about a hundred windows of so many frames.

@@ -67,7 +67,7 @@ class WorkerTest : public testing::Test {
   }
   static Settings start_at(int start) { return {.start = start}; }
   Worker::Open opener() {
-    return [this](const std::filesystem::path& path) { return open(path); };
+    return [this](const std::filesystem::path& path, const auto&...) { return open(path); };
   }
 
   std::atomic<bool> hold_ = false;

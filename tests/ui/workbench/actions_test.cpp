@@ -45,6 +45,13 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
   EXPECT_EQ(state.settings.ransac_threshold_px, 3.5);
   run_line(state, "ransac_threshold_px 2.5");  // a setting's name is enough
   EXPECT_EQ(state.settings.ransac_threshold_px, 2.5);
+  run_line(state, "exaggerate");
+  EXPECT_EQ(state.view.exaggeration, 5);
+  run_line(state, "exaggerate 100");
+  run_line(state, "exaggerate");
+  EXPECT_EQ(state.view.exaggeration, 1);
+  run_line(state, "color-by residual");
+  EXPECT_EQ(state.coloring, Coloring::residual);
   run_line(state, "viewpoint top");
   EXPECT_EQ(state.viewpoint, Viewpoint::top);
   run_line(state, "tails off");

@@ -154,6 +154,8 @@ TEST(WindowLayout, PutsALineWhereItIsDraggedTo) {
 }
 
 TEST(WindowLayout, GivesOnePartAllOfItAndHidesTheOthers) {
+  EXPECT_EQ(window_layout(1280, 720, 1, {}, true, true).timeline.height,
+            window_layout(1280, 720, 1, {}, true).timeline.height + kScanHeight);
   const float below = window_layout(1280, 720, 1, {}, true).timeline.y;
   const auto with = [](WindowPart part) {
     Division division;

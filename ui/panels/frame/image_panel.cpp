@@ -162,10 +162,11 @@ void image_panel(const PanelInput& own, const Rectangle& place, Views& views, Co
   const auto other = flipped_result(own.state);
   if (!other) return draw_panel(own, place, views, commands);
   const WorkbenchState state = showing(own.state, *other);
-  draw_panel({state, own.worker, own.survey, own.timings, own.scale, own.writing, own.fetcher},
-             place,
-             views,
-             commands);
+  draw_panel(
+      {state, own.worker, own.survey, own.timings, own.scale, own.writing, own.scan, own.fetcher},
+      place,
+      views,
+      commands);
   const PanelScope panel("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
 }

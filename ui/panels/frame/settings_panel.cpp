@@ -7,6 +7,7 @@
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/window_span.h"
 
 #include <algorithm>
 #include <cmath>

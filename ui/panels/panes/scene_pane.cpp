@@ -99,6 +99,7 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   move_cube_to(input, rect, camera, commands);
   SceneViewOptions options = scene_options(state, views.colors);
   options.legend = room_for_legend(place, input.scale);
+  options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
   draw_scene_view(
       *ImGui::GetWindowDrawList(), rect, views.scene, inspection, state.frame, camera, options);
   draw_highlight_in_scene(*ImGui::GetWindowDrawList(),

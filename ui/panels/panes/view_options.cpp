@@ -28,6 +28,14 @@ std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state, KeptTr
 
 }  // namespace
 
+namespace {
+
+constexpr double kTowerSides = 5;
+
+double height_sides(const WorkbenchState& state) { return state.view.tower ? kTowerSides : 1; }
+
+}  // namespace
+
 ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kept) {
   ImageViewOptions options;
   options.tracks = state.view.tracks;
@@ -35,6 +43,9 @@ ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kep
   options.residuals = state.view.residuals;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
+  options.cube_height_sides = height_sides(state);
+  options.wireframe = state.view.wireframe;
+  options.exaggeration = state.view.exaggeration;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.colors = colors_of(state, kept);
@@ -46,6 +57,7 @@ SceneViewOptions scene_options(const WorkbenchState& state, KeptTrackColors& kep
   SceneViewOptions options;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
+  options.cube_height_sides = height_sides(state);
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.uncertainty = state.view.uncertainty;
@@ -58,6 +70,9 @@ CompareOptions compare_options(const WorkbenchState& state) {
   options.zoom = state.compare_zoom;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
+  options.cube_height_sides = height_sides(state);
+  options.wireframe = state.view.wireframe;
+  options.exaggeration = state.view.exaggeration;
   options.truth = state.view.truth;
   options.residuals = state.view.residuals;
   options.top_line = false;

@@ -90,8 +90,8 @@ Eigen::AlignedBox2d cubes_box(Columns columns, int frame, const CompareOptions& 
     const int in_window = frame - inspection.window->start;
     if (in_window < 0 || in_window >= inspection.window->frame_count()) continue;
     const double side = common_cube_side(columns, inspection, options.cube_side);
-    for (const auto& cube :
-         {estimated_cube(inspection, in_window, side), true_cube(inspection, in_window, side)})
+    for (const auto& cube : {estimated_cube(inspection, in_window, side, options.cube_height_sides),
+                             true_cube(inspection, in_window, side, options.cube_height_sides)})
       for (const CubeEdge& edge : cube.value_or(CubePicture{}).edges)
         for (const Vector2d& pixel : edge.raw_px) box.extend(pixel);
   }
@@ -149,6 +149,18 @@ void draw_column(ImDrawList& list,
   const Inspection& inspection = *column.inspection;
   draw_compare_heading(list, place.heading, column);
   draw_image_view(list, place.picture, inspection, frame, picture, zoom, options);
+  const int in_window = frame - inspection.window->start;
+  if (options.exaggeration > 1 && in_window >= 0 && in_window < inspection.window->frame_count())
+    draw_legend(
+        list,
+        place.picture,
+        Corner::bottom_left,
+        "",
+        {{Sign::none,
+          0,
+          fmt::format("cube's distance from {} \u00d7 {}",
+                      true_cube(inspection, in_window, 1) ? "the true one" : "the first one",
+                      options.exaggeration)}});
   draw_compare_caption(list, place.caption, inspection, first);
 }
 
@@ -222,6 +234,11 @@ void draw_compare_view(ImDrawList& list,
   ImageViewOptions image{
       .tracks = !recording.pictures, .tail_frames = 0, .residuals = options.residuals};
   image.cube = options.cube;
+  image.cube_height_sides = options.cube_height_sides;
+  image.wireframe = options.wireframe;
+  image.exaggeration = options.exaggeration;
+  image.reference = first;
+  if (first != nullptr) image.reference_side = common_cube_side(columns, *first, options.cube_side);
   image.truth = options.truth;
   image.gravity = false;
   image.legend = false;

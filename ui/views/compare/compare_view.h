@@ -25,7 +25,10 @@ using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 struct CompareOptions {
   std::optional<PictureZoom> zoom = {};  ///< of all columns; nothing: around the cubes
   bool cube = true;
-  double cube_side = 0;  ///< of the first one [unit of its estimate]; 0: the default
+  double cube_side = 0;          ///< of the first one [unit of its estimate]; 0: the default
+  double cube_height_sides = 1;  ///< more: a tower
+  bool wireframe = false;
+  int exaggeration = 1;  ///< see `ImageViewOptions`; the reference is the first column
   bool truth = true;
   bool residuals = false;
   bool top_line = true;  ///< which frame of which recording, and what the cubes' colors mean

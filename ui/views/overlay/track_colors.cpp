@@ -21,18 +21,19 @@ std::uint32_t ramp(double share) {
     cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
     return colors;
   }();
-  constexpr double kDarkest = 0.2;
+  constexpr double kDarkest = 0.3;
   const double level = kDarkest + (1 - kDarkest) * std::clamp(share, 0.0, 1.0);
   const auto bgr = table.at<cv::Vec3b>(static_cast<int>(std::lround(255 * level)));
   return (static_cast<std::uint32_t>(bgr[2]) << 16) | (static_cast<std::uint32_t>(bgr[1]) << 8) |
          bgr[0];
 }
 
+/// In the frames where it is an inlier of the leading plane, by which its residuals are told.
 std::optional<double> rms_residual_px(const TrackLife& life) {
   double sum = 0;
   int count = 0;
   for (const TrackFrame& frame : life.frames) {
-    if (!frame.residual_px) continue;
+    if (!frame.residual_px || !frame.inlier) continue;
     sum += *frame.residual_px * *frame.residual_px;
     ++count;
   }

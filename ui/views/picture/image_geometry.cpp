@@ -100,23 +100,77 @@ CubePicture cube_in_picture(const Camera& camera,
 
 std::optional<CubePicture> estimated_cube(const Inspection& inspection,
                                           int frame_in_window,
-                                          double side) {
+                                          double side,
+                                          double height_sides) {
   if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
   return cube_in_picture(inspection.recording->camera,
                          inspection.initialization->cameras[frame_in_window],
-                         cube_corners(*inspection.cube, side));
+                         cube_corners(*inspection.cube, side, height_sides));
 }
 
 std::optional<CubePicture> true_cube(const Inspection& inspection,
                                      int frame_in_window,
-                                     double side) {
+                                     double side,
+                                     double height_sides) {
   if (!inspection.true_cube || !inspection.cube || !inspection.truth ||
       !inspection.truth->cameras[frame_in_window])
     return std::nullopt;
   const double true_side = side * inspection.true_cube->unit / inspection.cube->unit;
   return cube_in_picture(inspection.recording->camera,
                          *inspection.truth->cameras[frame_in_window],
-                         cube_corners(*inspection.true_cube, true_side));
+                         cube_corners(*inspection.true_cube, true_side, height_sides));
+}
+
+namespace {
+
+std::vector<Vector2d> exaggerated(const std::vector<Vector2d>& points,
+                                  const std::vector<Vector2d>& reference,
+                                  double times) {
+  if (points.size() != reference.size()) return {};
+  std::vector<Vector2d> moved;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    moved.push_back(reference[i] + times * (points[i] - reference[i]));
+  return moved;
+}
+
+}  // namespace
+
+CubePicture exaggerated(const CubePicture& cube, const CubePicture& reference, double times) {
+  CubePicture result = cube;
+  for (std::size_t i = 0; i < cube.edges.size(); ++i)
+    result.edges[i].raw_px = exaggerated(cube.edges[i].raw_px, reference.edges[i].raw_px, times);
+  for (std::size_t i = 0; i < cube.faces.size(); ++i)
+    result.faces[i].raw_px = exaggerated(cube.faces[i].raw_px, reference.faces[i].raw_px, times);
+  return result;
+}
+
+std::vector<std::vector<Vector2d>> contact_shadow(const Inspection& inspection,
+                                                  int frame_in_window,
+                                                  double side) {
+  constexpr int kRings = 10, kPoints = 64;
+  constexpr double kReach = 0.35;  // of the side
+  if (!inspection.cube || !inspection.initialization->ok) return {};
+  const CubeAnchor& anchor = *inspection.cube;
+  const auto base = cube_corners(anchor, side);
+  const Pose& pose = inspection.initialization->cameras[frame_in_window];
+  std::vector<std::vector<Vector2d>> rings;
+  for (int ring = kRings; ring > 0; --ring) {
+    const double reach = kReach * side * ring / kRings;
+    std::vector<Vector2d> outline;
+    for (int i = 0; i < kPoints; ++i) {
+      // A square and a disc added up (Minkowski): a square with round corners.
+      const double angle = 2 * std::numbers::pi * (i + 0.5) / kPoints;
+      const double x = std::cos(angle), y = std::sin(angle);
+      const Vector3d corner = base[(x > 0 ? 1 : 0) | (y > 0 ? 2 : 0)];
+      const Vector3d point_c =
+          to_camera(pose, corner + reach * (x * anchor.axes.col(0) + y * anchor.axes.col(1)));
+      if (point_c.z() < kNear * side) return {};
+      outline.push_back(project(inspection.recording->camera, point_c));
+      if (!outline.back().allFinite()) return {};
+    }
+    rings.push_back(std::move(outline));
+  }
+  return rings;
 }
 
 std::vector<std::vector<Vector2d>> horizon_in_picture(const Camera& camera,

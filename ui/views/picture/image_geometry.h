@@ -45,12 +45,24 @@ CubePicture cube_in_picture(const Camera& camera,
 /// estimated pose. Nothing where the initialization failed.
 std::optional<CubePicture> estimated_cube(const Inspection& inspection,
                                           int frame_in_window,
-                                          double side);
+                                          double side,
+                                          double height_sides = 1);
 
 /// The same cube on the true plane, by the true pose. Nothing where one of them is not known.
 std::optional<CubePicture> true_cube(const Inspection& inspection,
                                      int frame_in_window,
-                                     double side);
+                                     double side,
+                                     double height_sides = 1);
+
+/// A cube whose distance in the picture from a reference is so many times what it is. Edges and
+/// faces that only one of them shows whole are empty.
+CubePicture exaggerated(const CubePicture& cube, const CubePicture& reference, double times);
+
+/// Outlines on the estimated plane around the cube's base, each a little further out, the outermost
+/// first: where the cube keeps light off. None where one of them is not in front of the camera.
+std::vector<std::vector<Eigen::Vector2d>> contact_shadow(const Inspection& inspection,
+                                                         int frame_in_window,
+                                                         double side);
 
 /// Where the camera sees what is level with it, bent by its lens; what is outside of the picture is
 /// left out, so that there may be several pieces, or none. `up_w` of any length, in the world.

@@ -10,6 +10,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/track_colors.h"
+#include "ui/views/picture/cube_drawing.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/picture_texture.h"
 
@@ -49,10 +50,12 @@ struct Canvas {
     return look;
   }
   std::optional<CubePicture> estimated_cube() const {
-    return gpo::estimated_cube(inspection, frame, cube_side(inspection, options.cube_side));
+    return gpo::estimated_cube(
+        inspection, frame, cube_side(inspection, options.cube_side), options.cube_height_sides);
   }
   std::optional<CubePicture> true_cube() const {
-    return gpo::true_cube(inspection, frame, cube_side(inspection, options.cube_side));
+    return gpo::true_cube(
+        inspection, frame, cube_side(inspection, options.cube_side), options.cube_height_sides);
   }
   void polyline(const std::vector<ImVec2>& points, ImU32 color, float width) const {
     list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, width * scale);
@@ -132,51 +135,38 @@ void draw_residuals(const Canvas& canvas) {
   }
 }
 
-/// A fan around the middle: right for outlines that the lens bends inwards, too.
-void fill_face(const Canvas& canvas, const CubeFace& face, ImU32 color) {
-  if (face.raw_px.empty()) return;
-  Vector2d middle = Vector2d::Zero();
-  for (const Vector2d& pixel : face.raw_px)
-    middle += pixel / static_cast<double>(face.raw_px.size());
-  const int count = static_cast<int>(face.raw_px.size());
-  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
-  ImDrawList& list = canvas.list;
-  list.PrimReserve(3 * count, count + 1);
-  const auto first = static_cast<ImDrawIdx>(list._VtxCurrentIdx);
-  list.PrimWriteVtx(canvas.at(middle), white, color);
-  for (const Vector2d& pixel : face.raw_px) list.PrimWriteVtx(canvas.at(pixel), white, color);
-  for (int i = 0; i < count; ++i) {
-    list.PrimWriteIdx(first);
-    list.PrimWriteIdx(static_cast<ImDrawIdx>(first + 1 + i));
-    list.PrimWriteIdx(static_cast<ImDrawIdx>(first + 1 + (i + 1) % count));
-  }
+/// What the estimated cube's difference is told from.
+std::optional<CubePicture> reference_cube(const Canvas& canvas) {
+  if (const auto truth = canvas.true_cube()) return truth;
+  if (canvas.options.reference == nullptr) return std::nullopt;
+  return gpo::estimated_cube(*canvas.options.reference,
+                             canvas.frame,
+                             cube_side(*canvas.options.reference, canvas.options.reference_side),
+                             canvas.options.cube_height_sides);
 }
 
-void draw_estimated_cube(const Canvas& canvas, const CubePicture& cube) {
-  const auto draw_edges = [&](bool hidden) {
-    for (const CubeEdge& edge : cube.edges) {
-      if (edge.hidden != hidden) continue;
-      const std::uint32_t rgb = edge.base ? color_of(Role::cube_base) : color_of(Role::cube_edge);
-      const std::vector<ImVec2> points = canvas.at(edge.raw_px);
-      const float width = (edge.base ? 3.0F : 2.2F) * (hidden ? 0.6F : 1.0F);
-      if (!hidden) canvas.polyline(points, imgui_color(Role::background, 0.5), width + 2.2F);
-      canvas.polyline(points, imgui_color(rgb, hidden ? 0.55 : 1), width);
-    }
-  };
-  for (const CubeFace& face : cube.faces)
-    if (face.base) fill_face(canvas, face, imgui_color(Role::cube_base, 0.22));
-  draw_edges(true);
-  for (const CubeFace& face : cube.faces)
-    if (face.facing && !face.base) fill_face(canvas, face, imgui_color(Role::cube_face, 0.2));
-  draw_edges(false);
+bool exaggerates(const Canvas& canvas) {
+  return canvas.options.exaggeration > 1 && reference_cube(canvas).has_value();
 }
 
-void draw_true_cube(const Canvas& canvas, const CubePicture& cube) {
-  for (const CubeEdge& edge : cube.edges) {
-    const std::vector<ImVec2> points = canvas.at(edge.raw_px);
-    if (!edge.hidden) canvas.polyline(points, imgui_color(Role::background, 0.45), 3);
-    canvas.polyline(points, imgui_color(Role::truth, edge.hidden ? 0.4 : 1), 1.5F);
-  }
+void draw_cubes(const Canvas& canvas) {
+  const ImageViewOptions& options = canvas.options;
+  auto cube = canvas.estimated_cube();
+  const auto reference = reference_cube(canvas);
+  const bool far_off = cube && exaggerates(canvas);
+  if (far_off) cube = exaggerated(*cube, *reference, options.exaggeration);
+  // A body would hide what it is held against.
+  const bool body = !options.wireframe && !far_off;
+  if (cube && body)
+    draw_body(
+        canvas.list,
+        canvas.mapping,
+        *cube,
+        contact_shadow(
+            canvas.inspection, canvas.frame, cube_side(canvas.inspection, options.cube_side)));
+  if (const auto truth = canvas.true_cube(); truth && options.truth)
+    draw_true_cube(canvas.list, canvas.mapping, *truth);
+  if (cube && !body) draw_wireframe(canvas.list, canvas.mapping, *cube);
 }
 
 /// Of the frame, by its estimated pose; nothing where gravity is not known.
@@ -240,7 +230,13 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   if (options.cube && inspection.cube)
     add(Sign::square, Role::cube_base, std::string("cube on the estimated plane"));
   if (options.cube && options.truth && canvas.true_cube())
-    add(Sign::square, Role::truth, std::string("true cube"));
+    add(Sign::square, Role::truth, std::string("true cube, dashed"));
+  if (options.cube && inspection.cube && exaggerates(canvas))
+    add(Sign::none,
+        Role::warning,
+        fmt::format("cube's distance from {} × {}",
+                    canvas.true_cube() ? "the true one" : "the first one",
+                    options.exaggeration));
   return rows;
 }
 
@@ -251,9 +247,7 @@ void draw_results(const Canvas& canvas) {
   if (options.tracks) draw_tracks(canvas);
   if (options.residuals) draw_residuals(canvas);
   draw_horizon(canvas);
-  if (!options.cube) return;
-  if (const auto cube = canvas.true_cube(); cube && options.truth) draw_true_cube(canvas, *cube);
-  if (const auto cube = canvas.estimated_cube()) draw_estimated_cube(canvas, *cube);
+  if (options.cube) draw_cubes(canvas);
 }
 
 std::string heading(const Inspection& inspection, int frame) {

@@ -23,8 +23,15 @@ struct ImageViewOptions {
   double residual_magnification = 20;  ///< of their length [-]
   bool cube = true;                    ///< on the estimated plane, by the frame's estimated pose
   double cube_side = 0;                ///< 0: `default_cube_side` [unit of the estimate]
-  bool truth = true;                   ///< the true cube, where it is known
-  bool gravity = true;                 ///< the horizon, where gravity is known
+  double cube_height_sides = 1;        ///< more: a tower
+  bool wireframe = false;              ///< the cube's edges alone
+  /// The cube's distance in the picture from the true one, or where there is none from that of
+  /// `reference`, so many times as large as it is.
+  int exaggeration = 1;
+  const Inspection* reference = nullptr;           ///< of the same window; null: none
+  double reference_side = 0;                       ///< of its cube, as `cube_side`
+  bool truth = true;                               ///< the true cube, where it is known
+  bool gravity = true;                             ///< the horizon, where gravity is known
   std::shared_ptr<const TrackColors> colors = {};  ///< of the tracks; null: by their planes
   bool legend = true;
 };

@@ -109,7 +109,7 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
 }
 
 /// The lines lie on the face; the face moves a hair away from the eye.
-void add_plane(const Stage& stage, const PlaneGrid& grid, const OrbitCamera& camera) {
+void add_plane(const Stage& stage, const PlaneGrid& grid, bool above) {
   Shapes lines, border, face;
   const std::uint32_t rgb = mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.42);
   const auto [i0, j0] = grid.low;
@@ -119,7 +119,6 @@ void add_plane(const Stage& stage, const PlaneGrid& grid, const OrbitCamera& cam
   const std::array<Vector3d, 4> corners = {
       grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
   border.lines(corners, true, mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.8));
-  const bool above = grid.normal.dot(eye(camera) - grid.origin) > 0;
   const Vector3d away = (above ? -0.02 : 0.02) * grid.cell * grid.normal;
   std::array<Vector3d, 4> behind;
   for (int k = 0; k < 4; ++k) behind[k] = corners[k] + away;
@@ -158,8 +157,9 @@ void add_patches(const Stage& stage) {
 
 void add_cube(const Stage& stage) {
   const Inspection& inspection = stage.inspection;
-  const auto corners =
-      cube_corners(*inspection.cube, cube_side(inspection, stage.options.cube_side));
+  const auto corners = cube_corners(*inspection.cube,
+                                    cube_side(inspection, stage.options.cube_side),
+                                    stage.options.cube_height_sides);
   Shapes base, edges, faces;
   for (int a = 0; a < 8; ++a)
     for (const int axis : {1, 2, 4}) {
@@ -209,7 +209,7 @@ void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   stage.add(arrow_line, 2.4);
 }
 
-void build(const Stage& stage, const OrbitCamera& camera) {
+void build(const Stage& stage, bool above) {
   const Inspection& inspection = stage.inspection;
   stage.renderer.RemoveAllViewProps();
   std::optional<PlaneGrid> grid;
@@ -217,12 +217,24 @@ void build(const Stage& stage, const OrbitCamera& camera) {
     grid = plane_grid(inspection, cube_side(inspection, stage.options.cube_side));
   if (stage.options.truth) add_truth(stage, grid);
   if (!grid) return;
-  add_plane(stage, *grid, camera);
+  add_plane(stage, *grid, above);
   add_points(stage, *grid);
   add_patches(stage);
   add_cameras(stage);
   if (stage.options.cube && inspection.cube) add_cube(stage);
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
+}
+
+/// What moves is made of the same shapes.
+bool same_shapes(SceneViewOptions a, SceneViewOptions b) {
+  a.moving = b.moving = false;
+  return a == b;
+}
+
+/// Whether the eye is on the side of the plane where the cameras are.
+bool is_above(const Inspection& inspection, const OrbitCamera& camera) {
+  const Plane& plane = inspection.initialization->plane;
+  return !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
 }
 
 bool same(const OrbitCamera& a, const OrbitCamera& b) {
@@ -244,6 +256,9 @@ bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& opt
          inspection.initialization->uncertainty.has_value();
 }
 
+constexpr int kSamples = 4;                  // a pixel
+constexpr double kDetailOfMotion = 0.5;  // pixels of the texture a screen pixel
+
 /// VTK's objects, and what they show now. The inspection's parts are held, so that a new one cannot
 /// lie at the address of an old one and be taken for it.
 struct SceneView::Pipeline {
@@ -251,6 +266,7 @@ struct SceneView::Pipeline {
   vtkNew<vtkRenderer> renderer;
   Inspection inspection;
   OrbitCamera camera;
+  bool above = true;
   SceneViewOptions options;
   cv::Size size;
   double scale = 0;
@@ -279,22 +295,30 @@ unsigned SceneView::render(const Inspection& inspection,
                            int width,
                            int height) {
   Pipeline& now = *pipeline_;
-  const double scale = overlay_scale();
-  if (now.texture != 0 && now.shows(inspection) && same(now.camera, camera) &&
-      now.options == options && now.size == cv::Size(width, height) && now.scale == scale &&
-      now.theme == current_theme())
+  // Without a graphics card pixels are what costs time.
+  const double detail = options.moving ? kDetailOfMotion : 1;
+  const cv::Size size(static_cast<int>(detail * width), static_cast<int>(detail * height));
+  const double scale = detail * overlay_scale();
+  const bool above = is_above(inspection, camera);
+  const bool built = now.texture != 0 && now.shows(inspection) &&
+                     same_shapes(now.options, options) && now.above == above &&
+                     now.scale == scale && now.theme == current_theme();
+  if (built && same(now.camera, camera) && now.options.moving == options.moving && now.size == size)
     return now.texture;
   now.inspection = inspection;
   now.camera = camera;
+  now.above = above;
   now.options = options;
-  now.size = {width, height};
+  now.size = size;
   now.scale = scale;
   now.theme = current_theme();
   set_background(*now.renderer);
-  build({*now.renderer, inspection, options, scale}, camera);
+  // Another camera alone takes what is built: an orbit is to be smooth without a graphics card.
+  if (!built) build({*now.renderer, inspection, options, scale}, above);
+  now.window->SetMultiSamples(options.moving ? 0 : kSamples);
   set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);
   now.renderer->ResetCameraClippingRange();
-  now.texture = render_to_texture(*now.window, width, height);
+  now.texture = render_to_texture(*now.window, size.width, size.height);
   ++now.renders;
   return now.texture;
 }

@@ -17,11 +17,13 @@ struct TrackColors;
 /// What is shown in the scene.
 struct SceneViewOptions {
   bool cube = true;
-  double cube_side = 0;  ///< 0: `default_cube_side` [unit of the estimate]
-  bool truth = true;     ///< true cameras and plane, where they are known
+  double cube_side = 0;          ///< 0: `default_cube_side` [unit of the estimate]
+  double cube_height_sides = 1;  ///< more: a tower
+  bool truth = true;             ///< true cameras and plane, where they are known
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
   bool gravity = true;  ///< an arrow that points up, where gravity is known
+  bool moving = false;  ///< dragged right now: coarser, so that it keeps up
   std::shared_ptr<const TrackColors> colors = {};  ///< of the points; null: by their planes
   bool legend = true;
 

@@ -1,8 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <utility>
 
@@ -26,6 +28,36 @@ std::string uncertainty_text(const ViewToggles& view) {
   return view.uncertainty == 1 ? "on" : "off";
 }
 
+/// Without a number the next of those that make sense.
+void exaggerate(State& state, const Arguments& arguments) {
+  constexpr std::array kTimes = {1, 5, 20, 100};
+  expect_count("exaggerate", arguments, 0, 1);
+  int& times = state.view.exaggeration;
+  const int wanted = arguments.empty() ? times : whole_number_in("exaggerate", arguments);
+  const auto found = std::ranges::find(kTimes, wanted);
+  if (found == kTimes.end())
+    throw InputError(fmt::format("exaggerate: '{}', expected 1, 5, 20 or 100", arguments[0]));
+  times = wanted;
+  if (arguments.empty()) times = found + 1 == kTimes.end() ? kTimes.front() : *(found + 1);
+}
+
+Action exaggeration() {
+  Action action{"exaggerate",
+                "Exaggerate the cube's error",
+                "View",
+                {letter('D')},
+                "The cube's distance in the picture from the true one, or where there is none from "
+                "the first column's, 5, 20 and 100 times as large as it is"};
+  action.arguments = "[1|5|20|100]";
+  action.value = [](const State& s) {
+    return s.view.exaggeration > 1 ? fmt::format("{}\u00d7", s.view.exaggeration) : "off";
+  };
+  action.checked = [](const State& s) { return s.view.exaggeration > 1; };
+  action.needs_recording = false;
+  action.run = exaggerate;
+  return action;
+}
+
 void add_toggles(std::vector<Action>& table) {
   for (const ViewToggle& one : kViewToggles) {
     std::vector<Shortcut> shortcuts;
@@ -47,6 +79,7 @@ void add_toggles(std::vector<Action>& table) {
   uncertainty.value = [](const State& s) { return uncertainty_text(s.view); };
   uncertainty.needs_recording = false;
   table.push_back(uncertainty);
+  table.push_back(exaggeration());
 }
 
 Action open_pane(const Pane& pane,

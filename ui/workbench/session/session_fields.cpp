@@ -92,6 +92,7 @@ struct ToJson {
     Json json;
     for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
     json["uncertainty"] = view.uncertainty;
+    json["exaggeration"] = view.exaggeration;
     return json;
   }
   Json operator()(const Panes& panes) const {
@@ -165,6 +166,7 @@ struct FromJson {
     const SessionReader toggles = read.object(key);
     for (const ViewToggle& one : kViewToggles) toggles(one.key, view.*one.shown);
     toggles("uncertainty", view.uncertainty, 0, 100);
+    toggles("exaggeration", view.exaggeration, 1, 100);
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);

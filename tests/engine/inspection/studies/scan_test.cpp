@@ -3,7 +3,7 @@
 #include "engine/inspection/studies/scan.h"
 
 #include "engine/inspection/inspector.h"
-#include "engine/recording/open_recording.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <algorithm>
 #include <chrono>

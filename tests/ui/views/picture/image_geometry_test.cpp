@@ -168,5 +168,67 @@ TEST(Horizon, BendsThroughTheLensAsOpenCvSays) {
     }
 }
 
+TEST(TowerInPicture, StandsOnTheCubesBase) {
+  const Inspection inspection = made_inspection();
+  const auto cube = cube_corners(*inspection.cube, 0.3);
+  const auto tower = cube_corners(*inspection.cube, 0.3, 5);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(tower[k], cube[k]);
+    EXPECT_LT((tower[k + 4] - tower[k] - 5 * (cube[k + 4] - cube[k])).norm(), 1e-12);
+  }
+  const auto base_px = [&](double height) {
+    return estimated_cube(inspection, 20, 0.3, height)->edges.front().raw_px;
+  };
+  EXPECT_EQ(base_px(1), base_px(5));
+}
+
+TEST(ExaggeratedCube, IsSoManyTimesAsFarFromItsReference) {
+  const Inspection inspection = made_inspection({.estimate_error = 0.1});
+  const auto cube = estimated_cube(inspection, 20, 0.3);
+  const auto truth = true_cube(inspection, 20, 0.3);
+  ASSERT_TRUE(cube && truth);
+  const CubePicture far = exaggerated(*cube, *truth, 20);
+  ASSERT_EQ(far.edges.size(), 12U);
+  double largest = 0;
+  for (std::size_t i = 0; i < far.edges.size(); ++i) {
+    ASSERT_EQ(far.edges[i].raw_px.size(), cube->edges[i].raw_px.size());
+    for (std::size_t k = 0; k < far.edges[i].raw_px.size(); ++k) {
+      const Vector2d from = truth->edges[i].raw_px[k];
+      const Vector2d there = far.edges[i].raw_px[k] - from;
+      EXPECT_LT((there - 20 * (cube->edges[i].raw_px[k] - from)).norm(), 1e-9);
+      largest = std::max(largest, there.norm());
+    }
+  }
+  EXPECT_GT(largest, 1) << "the cubes differ";
+  EXPECT_EQ(exaggerated(*cube, *truth, 1).edges[3].raw_px[5], cube->edges[3].raw_px[5]);
+  CubePicture cut = *truth;
+  cut.edges[0].raw_px.pop_back();
+  EXPECT_TRUE(exaggerated(*cube, cut, 20).edges[0].raw_px.empty());
+}
+
+TEST(ContactShadow, LiesOnThePlaneAroundTheCubesBase) {
+  const Inspection inspection = made_inspection();
+  const double side = 0.3;
+  const auto rings = contact_shadow(inspection, 20, side);
+  ASSERT_FALSE(rings.empty());
+  double farther = 1e9;
+  for (const auto& ring : rings) {
+    double farthest = 0;
+    for (const Vector2d& pixel : ring) {
+      const auto point = point_on_plane(inspection, 20, pixel, inspection.initialization->plane);
+      ASSERT_TRUE(point.has_value());
+      const Vector3d from = *point - inspection.cube->origin;
+      EXPECT_LT(std::abs(from.dot(inspection.cube->axes.col(2))), 1e-4);
+      const double x = std::abs(from.dot(inspection.cube->axes.col(0)));
+      const double y = std::abs(from.dot(inspection.cube->axes.col(1)));
+      EXPECT_GE(std::max(x, y), side / 2 - 1e-4) << "outside of the base";
+      farthest = std::max({farthest, x, y});
+    }
+    EXPECT_LT(farthest, farther);
+    farther = farthest;
+  }
+  EXPECT_TRUE(contact_shadow(made_inspection({.ok = false}), 20, side).empty());
+}
+
 }  // namespace
 }  // namespace gpo

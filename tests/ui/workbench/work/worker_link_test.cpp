@@ -77,7 +77,7 @@ class WorkerLinkTest : public testing::Test {
   WorkerLink link_;
   Survey survey_;
   Scan scan_;
-  Worker worker_{[this](const std::filesystem::path& path) { return open(path); }};
+  Worker worker_{[this](const std::filesystem::path& path, const auto&...) { return open(path); }};
 };
 
 TEST_F(WorkerLinkTest, ScansTheRecordingWhereSomebodyWantsThat) {
@@ -175,7 +175,7 @@ TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
     throw InputError("no frame has enough tracks");
     return std::shared_ptr<const NormalStudy>();
   });
-  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, "example"); };
+  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, scan_, "example"); };
   apply(state_, OpenPath{"desk"});
   do {
     turn();
