@@ -113,14 +113,11 @@ void add_run(CLI::App& app, RunArguments& arguments) {
                       "CSV, which --tracks reads back");
   CLI::Option* scan = command->add_option(
       "--scan", arguments.scan, "Initialize from everywhere instead, and write a line a start");
-  for (const char* option :
+  for (const char* other :
        {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out"})
-    scan->excludes(command->get_option(option));
-  command
-      ->add_option("--scan-step",
-                   arguments.scan_step,
-                   "Frames from one start to the next; default: about a hundred starts")
-      ->check(CLI::Range(1, 100'000))
+    scan->excludes(command->get_option(other));
+  command->add_option("--scan-step", arguments.scan_step, "Frames between starts")
+      ->check(CLI::PositiveNumber)
       ->needs(scan);
 }
 

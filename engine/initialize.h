@@ -4,6 +4,7 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/camera.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/initializers/common/initialization.h"
 #include "engine/initializers/common/initializer_options.h"
 #include "engine/window/gyroscope.h"
@@ -45,7 +46,10 @@ struct InitializeOptions {
       std::nullopt;        ///< how they are told; nothing: as the method does
   int plane = 1;           ///< which of the window's planes leads, counted by their support [-]
   std::uint64_t seed = 1;  ///< of every random choice [-]
-  bool camera_is_guess = false;  ///< nobody calibrated it: no window is more than `weak` then
+  bool camera_is_guess = false;      ///< nobody calibrated it: no window is more than `weak` then
+  Gravity gravity = Gravity::after;  ///< gravity and meters, where there are accelerations
+  /// Camera center from the IMU, in its axes [m]; nothing: unknown, by some centimeters.
+  std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;
   InitializerOptions initializer = {};
 
   bool operator==(const InitializeOptions&) const = default;
@@ -59,9 +63,13 @@ struct Initialized {
   RotationSource rotations = RotationSource::gyro;  ///< that were used, never automatic
   std::string rotations_note;  ///< why not what `automatic` tries first, or what told them
   Window window;               ///< undistorted points, inliers, homographies, given rotations
+  /// Gravity and meters of a result that is ok, where the gyroscope comes with accelerations.
+  std::optional<InertialAlignment> inertial = std::nullopt;
 
   /// The result is ok, and the verdict on its window `ready`.
   bool is_ready() const;
+  /// The accelerometer tells how many meters a unit is.
+  bool is_metric() const;
 };
 
 /// One window, all frames of it; the same bits as `gpo-inspector run` for the same tracks.
@@ -84,6 +92,7 @@ struct LiveOptions {
 /// What is known after a frame.
 struct LiveStatus {
   bool ready = false;
+  bool metric = false;   ///< the answer is in known meters, too: `answer->inertial`
   int reference = 0;     ///< the frame at which the window starts, counted from the first one added
   int frames = 0;        ///< of the window
   int ready_frames = 0;  ///< length of the shortest window that is ready; 0: none is
@@ -112,6 +121,11 @@ class Initializer {
   /// In order of time; before the frame that they belong to, as far as they are there. Rates in the
   /// gyroscope's own axes [rad/s].
   void add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s);
+  /// The same with the specific force of an accelerometer, in the same axes [m/s^2]: all samples
+  /// have one, or none.
+  void add_imu(std::int64_t timestamp_ns,
+               const Eigen::Vector3d& rate_rad_s,
+               const Eigen::Vector3d& acceleration_m_s2);
   /// Throws also what solving a window threw since (a gyroscope with a gap).
   LiveStatus add_frame(const Frame& frame);
   /// Of the frame that was added last.

@@ -27,7 +27,8 @@ struct TrackedWindow : Solved {
   explicit TrackedWindow(std::shared_ptr<const Initialized> window)
       : Solved{{window, &window->initialization},
                {window, &window->window},
-               {window, &window->ids}},
+               {window, &window->ids},
+               {window, window->inertial ? &*window->inertial : nullptr}},
         shared(std::move(window)) {}
   std::shared_ptr<const Initialized> shared;
 };
@@ -131,15 +132,28 @@ void take(const py::dict& given, const char* key, T& field) {
     field = cast<T>(given[key], fmt::format("gyroscope: {} is of another type", key));
 }
 
+/// None or missing: it is unknown.
+std::optional<Eigen::Vector3d> lever_of(const std::optional<py::dict>& given) {
+  constexpr const char* kKey = "p_gyro_camera_m";
+  if (!given || !given->contains(kKey) || (*given)[kKey].is_none()) return std::nullopt;
+  return vectors_of(cast<Numbers>((*given)[kKey], "gyroscope: p_gyro_camera_m is of another type"),
+                    kKey)
+      .front();
+}
+
 /// The keys of `Recording.gyroscope`; what is missing is as of a phone's.
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   if (!given) return std::nullopt;
   Gyroscope gyroscope;
   Numbers rates(std::vector<py::ssize_t>{0, 3});
+  Numbers accelerations(std::vector<py::ssize_t>{0, 3});
   Numbers bias(3, Eigen::Vector3d::Zero().eval().data());
   Numbers axes(std::vector<py::ssize_t>{3, 3}, Eigen::Matrix3d::Identity().eval().data());
   take(*given, "timestamps_ns", gyroscope.timestamps_ns);
   take(*given, "rates_rad_s", rates);
+  const bool sampled = given->contains("timestamps_ns");
+  if (sampled && given->contains("accelerations_m_s2") && !(*given)["accelerations_m_s2"].is_none())
+    take(*given, "accelerations_m_s2", accelerations);
   take(*given, "R_gyro_camera", axes);
   take(*given, "time_offset_ns", gyroscope.time_offset_ns);
   take(*given, "bias_rad_s", bias);
@@ -149,6 +163,7 @@ std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
   gyroscope.bias_rad_s = vectors_of(bias, "bias_rad_s").front();
   gyroscope.rates_rad_s = vectors_of(rates, "rates_rad_s");
+  gyroscope.accelerations_m_s2 = vectors_of(accelerations, "accelerations_m_s2");
   return gyroscope;
 }
 
@@ -172,6 +187,7 @@ TrackedWindow initialized(const CameraOrK& camera,
   for (const py::handle frame : frames) window.push_back(frame_of(frame, window.size()));
   InitializeOptions options = options_of_keywords(given);
   options.camera_is_guess = camera_is_guess;
+  options.p_gyro_camera_m = lever_of(gyroscope);
   const auto gyro = gyroscope_of(gyroscope);
   const Camera calibrated = camera_of(camera);
   return TrackedWindow(interruptible([&](const std::stop_token& stop) {
@@ -185,6 +201,7 @@ std::unique_ptr<Initializer> initializer_of(const CameraOrK& camera,
                                             LiveOptions live,
                                             const py::kwargs& given) {
   live.initialize = options_of_keywords(given);
+  live.initialize.p_gyro_camera_m = lever_of(gyroscope);
   return std::make_unique<Initializer>(camera_of(camera), live, gyroscope_of(gyroscope));
 }
 
@@ -232,6 +249,7 @@ void bind_camera(py::module_& module) {
 void bind_live(py::module_& module) {
   py::class_<LiveStatus>(module, "LiveStatus", "What an Initializer knows after a frame.")
       .def_readonly("ready", &LiveStatus::ready)
+      .def_readonly("metric", &LiveStatus::metric, "the answer is in known meters, too")
       .def_readonly("reference", &LiveStatus::reference, "the window's first frame, as added")
       .def_readonly("frames", &LiveStatus::frames, "of the window")
       .def_readonly("ready_frames", &LiveStatus::ready_frames, "of the shortest ready window")
@@ -280,6 +298,20 @@ void bind_live(py::module_& module) {
           py::arg("timestamp_ns"),
           py::arg("rate_rad_s"),
           "One sample, (3,) in the gyroscope's own axes; in order of time, best before its frame")
+      .def(
+          "add_imu",
+          [](Initializer& live,
+             std::int64_t timestamp_ns,
+             const Numbers& rate_rad_s,
+             const Numbers& acceleration_m_s2) {
+            live.add_imu(timestamp_ns,
+                         vectors_of(rate_rad_s, "rate_rad_s").front(),
+                         vectors_of(acceleration_m_s2, "acceleration_m_s2").front());
+          },
+          py::arg("timestamp_ns"),
+          py::arg("rate_rad_s"),
+          py::arg("acceleration_m_s2"),
+          "The same with the accelerometer's specific force, (3,) in the same axes")
       .def(
           "add_frame",
           [](Initializer& live,

@@ -51,6 +51,8 @@ py::object gyroscope_of(const OpenRecording& open) {
   result["bias_sigma_rad_s"] = gyro.bias_sigma_rad_s;
   result["bias_known"] = gyro.bias_known;
   result["noise_density"] = gyro.noise_density;
+  result["p_gyro_camera_m"] =
+      recording->T_body_camera ? py::cast(recording->T_body_camera->p_wc) : py::none();
   return result;
 }
 
@@ -109,7 +111,8 @@ void bind_recording(py::module_& module) {
                              "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
                              "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s "
                              "(3,), bias_sigma_rad_s, "
-                             "bias_known, noise_density [rad/s/sqrt(Hz)]}")
+                             "bias_known, noise_density [rad/s/sqrt(Hz)], p_gyro_camera_m (3,) or "
+                             "None}")
       .def_property_readonly(
           "truth",
           &truth_of,

@@ -37,7 +37,8 @@ struct Result : Solved {
   explicit Result(std::shared_ptr<const Inspection> inspection)
       : Solved{{inspection, &*inspection->initialization},
                inspection->window,
-               {inspection->tracks, &inspection->tracks->ids}},
+               {inspection->tracks, &inspection->tracks->ids},
+               {inspection, inspection->inertial ? &*inspection->inertial : nullptr}},
         shared(std::move(inspection)) {}
   std::shared_ptr<const Inspection> shared;
 };

@@ -60,6 +60,29 @@ py::list planes_of(const Solved& result) {
   return planes;
 }
 
+/// None where no accelerometer was used, or gravity was not found with it.
+py::object inertial_of(const Solved& result) {
+  if (!result.inertial || !result.inertial->ok) return py::none();
+  const InertialAlignment& inertial = *result.inertial;
+  py::dict told;
+  told["gravity_m_s2"] = inertial.gravity_m_s2;
+  told["gravity_sigma_deg"] = inertial.gravity_sigma_deg;
+  told["scale"] = inertial.scale;
+  told["log_scale_sigma"] = inertial.log_scale_sigma;
+  told["scale_known"] = inertial.scale_known;
+  told["reason"] = inertial.scale_reason;
+  told["velocities_m_s"] = seen_by_numpy(inertial.velocities_m_s.front().data(),
+                                         {std::ssize(inertial.velocities_m_s), 3},
+                                         {sizeof(Eigen::Vector3d), sizeof(double)},
+                                         result.inertial);
+  told["timestamps_ns"] = seen_by_numpy(inertial.times_ns.data(),
+                                        {std::ssize(inertial.times_ns)},
+                                        {sizeof(std::int64_t)},
+                                        result.inertial);
+  told["accelerometer_bias_m_s2"] = inertial.accelerometer_bias_m_s2;
+  return told;
+}
+
 std::optional<std::string> readiness_of(const Solved& result) {
   const auto& verdict = result.initialization->verdict;
   return verdict ? std::optional(std::string(to_string(verdict->readiness))) : std::nullopt;
@@ -114,6 +137,12 @@ void bind_solved(py::module_& module) {
           &planes_of,
           "[{number, normal (3,), distance, normal_covariance_rad2 (3, 3), tracks: their ids}]: "
           "the leading one first")
+      .def_property_readonly(
+          "inertial",
+          &inertial_of,
+          "None without an accelerometer, else {gravity_m_s2 (3,): down, in the reference camera, "
+          "gravity_sigma_deg, scale [m per plane distance], log_scale_sigma, scale_known, reason: "
+          "why not, velocities_m_s (K, 3), timestamps_ns (K,), accelerometer_bias_m_s2 (3,)}")
       .def_property_readonly("ids", &ids_of, "(T,) int64 of the window's tracks");
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/initializers/common/initialization.h"
 #include "engine/window/window.h"
 
@@ -16,6 +17,7 @@ struct Solved {
   std::shared_ptr<const Initialization> initialization;
   std::shared_ptr<const Window> window;
   std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< of the window's tracks
+  std::shared_ptr<const InertialAlignment> inertial;     ///< null: no accelerometer was used
 
   const Initialization& operator*() const { return *initialization; }
 };

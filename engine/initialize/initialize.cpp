@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/make_window.h"
+#include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize/chosen_rotations.h"
 #include "engine/initialize/input_checks.h"
 #include "engine/initialize/steps.h"
@@ -81,7 +82,21 @@ Initialization solved(const Window& window,
   return assessed(method, window, std::move(result));
 }
 
+/// Nothing without accelerations.
+std::optional<InertialAlignment> aligned(const Window& window,
+                                         const Initialization& initialization,
+                                         const Gyroscope* gyroscope,
+                                         const InitializeOptions& options) {
+  if (gyroscope == nullptr || gyroscope->accelerations_m_s2.empty()) return std::nullopt;
+  std::optional<Pose> T_gyro_camera;
+  if (options.p_gyro_camera_m)
+    T_gyro_camera = Pose{gyroscope->R_gyro_camera, *options.p_gyro_camera_m};
+  return align_inertial(uncertain_poses(window, initialization), *gyroscope, T_gyro_camera);
+}
+
 }  // namespace
+
+bool Initialized::is_metric() const { return inertial && inertial->ok && inertial->scale_known; }
 
 bool Initialized::is_ready() const {
   return initialization.ok && initialization.verdict &&
@@ -122,6 +137,8 @@ Initialized initialize(const Camera& camera,
     initialization = solved(result.window, options, {&camera, gyro}, stop);
     if (!initialization.verdict) growth = growing_verdicts(result.window, stop);
   }
+  if (initialization.ok && options.gravity == Gravity::after)
+    result.inertial = aligned(result.window, initialization, gyro, options);
   complete_verdict(result.window, growth, initialization);
   if (options.camera_is_guess && initialization.verdict) demote(*initialization.verdict);
   return result;

@@ -145,7 +145,30 @@ struct Initializer::Impl {
     t.erase(t.begin(), t.begin() + old);
     auto& rates = gyroscope->rates_rad_s;
     rates.erase(rates.begin(), rates.begin() + old);
+    auto& accelerations = gyroscope->accelerations_m_s2;
+    if (!accelerations.empty())
+      accelerations.erase(accelerations.begin(), accelerations.begin() + old);
     gyroscope->lines.clear();
+  }
+
+  void add_sample(std::int64_t timestamp_ns,
+                  const Eigen::Vector3d& rate_rad_s,
+                  const std::optional<Eigen::Vector3d>& acceleration_m_s2) {
+    if (!gyroscope) gyroscope.emplace();
+    auto& t = gyroscope->timestamps_ns;
+    auto& accelerations = gyroscope->accelerations_m_s2;
+    if (!t.empty() && timestamp_ns <= t.back()) {
+      throw InputError(
+          fmt::format("gyroscope: time stamp {} does not come after {}", timestamp_ns, t.back()));
+    }
+    if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is no number");
+    if (acceleration_m_s2 && !acceleration_m_s2->allFinite())
+      throw InputError("accelerometer: an acceleration is no number");
+    if (accelerations.size() != (acceleration_m_s2 ? t.size() : 0))
+      throw InputError("accelerometer: expected an acceleration with each sample, or with none");
+    t.push_back(timestamp_ns);
+    gyroscope->rates_rad_s.push_back(rate_rad_s);
+    if (acceleration_m_s2) accelerations.push_back(*acceleration_m_s2);
   }
 
   std::shared_ptr<const Gyroscope> samples_now() const {
@@ -182,11 +205,14 @@ struct Initializer::Impl {
       if (!result->is_ready()) return;
       status.ready = true;
       status.ready_frames = length;
+      status.metric = result->is_metric();
       first = status.answer = std::move(result);
       return;
     }
     status.reason = why_not_better(length, *result);
-    if (status.reason.empty()) status.answer = std::move(result);
+    if (!status.reason.empty()) return;
+    status.metric = result->is_metric();
+    status.answer = std::move(result);
   }
 
   /// Than the answer that was ready first.
@@ -254,16 +280,13 @@ Initializer::Initializer(Initializer&&) noexcept = default;
 Initializer& Initializer::operator=(Initializer&&) noexcept = default;
 
 void Initializer::add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s) {
-  if (!impl_->gyroscope) impl_->gyroscope.emplace();
-  Gyroscope& gyroscope = *impl_->gyroscope;
-  auto& t = gyroscope.timestamps_ns;
-  if (!t.empty() && timestamp_ns <= t.back()) {
-    throw InputError(
-        fmt::format("gyroscope: time stamp {} does not come after {}", timestamp_ns, t.back()));
-  }
-  if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is no number");
-  t.push_back(timestamp_ns);
-  gyroscope.rates_rad_s.push_back(rate_rad_s);
+  impl_->add_sample(timestamp_ns, rate_rad_s, std::nullopt);
+}
+
+void Initializer::add_imu(std::int64_t timestamp_ns,
+                          const Eigen::Vector3d& rate_rad_s,
+                          const Eigen::Vector3d& acceleration_m_s2) {
+  impl_->add_sample(timestamp_ns, rate_rad_s, acceleration_m_s2);
 }
 
 LiveStatus Initializer::add_frame(const Frame& frame) {

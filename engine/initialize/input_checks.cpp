@@ -81,6 +81,14 @@ void check_gyroscope(const Gyroscope& gyroscope) {
         fmt::format("gyroscope: time stamp {} does not come after {}", *(back + 1), *back));
   for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s)
     if (!rate.allFinite()) throw InputError("gyroscope: a rate is no number");
+  const auto& accelerations = gyroscope.accelerations_m_s2;
+  if (!accelerations.empty() && accelerations.size() != t.size())
+    throw InputError(
+        fmt::format("accelerometer: {} time stamps and {} accelerations, expected as many, or none",
+                    t.size(),
+                    accelerations.size()));
+  for (const Eigen::Vector3d& acceleration : accelerations)
+    if (!acceleration.allFinite()) throw InputError("accelerometer: an acceleration is no number");
   if (!is_rotation(gyroscope.R_gyro_camera))
     throw InputError("gyroscope: R_gyro_camera is no rotation");
 }

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/make_window.h"
-#include "engine/inertial/inertial_alignment.h"
+#include "engine/inertial/scale_since.h"
 #include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize/steps.h"
 #include "engine/initializers/methods.h"
@@ -90,13 +90,18 @@ Initialization initialized(const Recording& recording,
              : method.initialize(window, settings.initializer, watch);
 }
 
-/// Nothing where the recording has no accelerometer.
-std::optional<InertialAlignment> inertial_of(const Recording& recording,
-                                             const Window& window,
-                                             const Initialization& initialization) {
-  if (!recording.gyroscope || recording.gyroscope->accelerations_m_s2.empty()) return std::nullopt;
-  return align_inertial(
-      uncertain_poses(window, initialization), *recording.gyroscope, recording.T_body_camera);
+/// Gravity and meters; nothing where the recording has no accelerometer.
+void align(const Window& window, const Initialization& initialization, Inspection& inspection) {
+  const auto& gyroscope = inspection.recording->gyroscope;
+  const auto& T_body_camera = inspection.recording->T_body_camera;
+  if (!gyroscope || gyroscope->accelerations_m_s2.empty()) return;
+  const UncertainPoses poses = uncertain_poses(window, initialization);
+  inspection.inertial = align_inertial(poses, *gyroscope, T_body_camera);
+  if (!inspection.inertial->ok || !inspection.inertial->scale_known) return;
+  const auto count = poses_that_tell_scale(poses, *gyroscope, T_body_camera);
+  if (!count) return;
+  const auto at = std::ranges::find(window.timestamps_ns, poses.times_ns[*count - 1]);
+  inspection.scale_known_at = static_cast<int>(at - window.timestamps_ns.begin());
 }
 
 }  // namespace
@@ -195,7 +200,7 @@ void Stages::initialize(const Settings& settings,
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
   }
   if (initialization.ok && settings.gravity == Gravity::after)
-    inspection.inertial = inertial_of(*recording, window, initialization);
+    align(window, initialization, inspection);
   complete_verdict(window, inspection.growth, initialization);
   if (recording->camera_source == CameraSource::guess) {
     std::ranges::for_each(inspection.growth, demote);

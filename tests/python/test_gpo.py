@@ -144,6 +144,44 @@ def test_a_live_gyroscope_comes_in_samples():
     assert live.status.frames == 1 and not live.status.ready
 
 
+def test_tells_gravity_and_meters():
+    recording = gpo.open(DESK)
+    result = gpo.run(recording)
+    told = result.json["inertial"]
+    inertial = result.inertial
+    np.testing.assert_array_equal(inertial["gravity_m_s2"], told["gravity"])
+    np.testing.assert_array_equal(inertial["velocities_m_s"], told["velocities"])
+    assert inertial["scale"] == told["scale"] and inertial["scale_known"]
+    assert inertial["log_scale_sigma"] == told["sigma"]
+    window = gpo.initialize(recording.camera, result.frames, gyroscope=recording.gyroscope)
+    assert window.inertial["scale"] == inertial["scale"]
+    assert gpo.run(recording, gravity="off").inertial is None
+    without = gpo.initialize(recording.camera, result.frames, gravity="off", gyroscope=recording.gyroscope)
+    assert without.inertial is None
+
+
+def test_a_live_window_says_when_meters_are_known():
+    recording = gpo.open(DESK)
+    gyro = dict(recording.gyroscope)
+    samples = list(zip(gyro["timestamps_ns"], gyro["rates_rad_s"], gyro["accelerations_m_s2"]))
+    for key in ("timestamps_ns", "rates_rad_s", "accelerations_m_s2"):
+        del gyro[key]
+    live = gpo.Initializer(recording.camera, gyroscope=gyro, background=False)
+    metric = []
+    for time_ns, ids, pixels in gpo.run(recording, frames=60).frames:
+        while samples and samples[0][0] <= time_ns + gyro["time_offset_ns"] + 10_000_000:
+            live.add_imu(*samples.pop(0))
+        status = live.add_frame(time_ns, ids, pixels)
+        metric.append(status.metric)
+    assert status.ready and not metric[2] and metric[-1]
+    inertial = status.answer.inertial
+    # The desk's truth: the same recording tells it.
+    truth = gpo.run(recording, frames=60).metrics["scale"]
+    assert abs(inertial["scale"] / truth - 1) < 4 * inertial["log_scale_sigma"]
+    with pytest.raises(gpo.InputError, match="expected an acceleration with each sample"):
+        live.add_gyroscope(10**18, [0, 0, 0])
+
+
 def test_opens_a_recording():
     recording = gpo.open(DESK)
     assert recording.name == "desk" and recording.layout == "EuRoC"

@@ -19,6 +19,7 @@ class Gyroscope(TypedDict):
     bias_sigma_rad_s: float
     bias_known: bool
     noise_density: float
+    p_gyro_camera_m: Optional[NDArray[np.float64]]
 
 class Truth(TypedDict, total=False):
     R_wc: NDArray[np.float64]
@@ -32,6 +33,17 @@ class PlaneEstimate(TypedDict):
     distance: float
     normal_covariance_rad2: Optional[NDArray[np.float64]]
     tracks: NDArray[np.int64]
+
+class Inertial(TypedDict):
+    gravity_m_s2: NDArray[np.float64]
+    gravity_sigma_deg: float
+    scale: float
+    log_scale_sigma: float
+    scale_known: bool
+    reason: str
+    velocities_m_s: NDArray[np.float64]
+    timestamps_ns: NDArray[np.int64]
+    accelerometer_bias_m_s2: NDArray[np.float64]
 
 class Camera:
     K: NDArray[np.float64]
@@ -75,6 +87,7 @@ class Initialization:
     normal_sigma_deg: Optional[float]
     bias_rad_s: Optional[NDArray[np.float64]]
     planes: list[PlaneEstimate]
+    inertial: Optional[Inertial]
     ids: NDArray[np.int64]
 
 class Initialized(Initialization):
@@ -89,6 +102,7 @@ class Result(Initialization):
 
 class LiveStatus:
     ready: bool
+    metric: bool
     reference: int
     frames: int
     ready_frames: int
@@ -111,6 +125,9 @@ class Initializer:
         **settings: Any,
     ) -> None: ...
     def add_gyroscope(self, timestamp_ns: int, rate_rad_s: ArrayLike) -> None: ...
+    def add_imu(
+        self, timestamp_ns: int, rate_rad_s: ArrayLike, acceleration_m_s2: ArrayLike
+    ) -> None: ...
     def add_frame(
         self, timestamp_ns: int, ids: ArrayLike, pixels: ArrayLike, R_wc: Optional[ArrayLike] = ...
     ) -> LiveStatus: ...

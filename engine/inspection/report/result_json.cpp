@@ -323,6 +323,9 @@ ordered_json to_json(const Inspection& inspection) {
       json["uncertainty"]["lens"] = "a guess, taken as exact";
   }
   if (inspection.inertial) json["inertial"] = inertial_json(*inspection.inertial);
+  if (inspection.scale_known_at)
+    json["inertial"]["scale_known_at_frame"] =
+        inspection.window->start + *inspection.scale_known_at;
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);

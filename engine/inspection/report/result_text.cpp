@@ -86,6 +86,13 @@ std::string planes_text(const Inspection& inspection) {
   return text.empty() ? "" : row("planes", text);
 }
 
+/// Up to which frame it takes to know the scale.
+std::string known_at_text(const Inspection& inspection) {
+  if (!inspection.scale_known_at) return "";
+  return fmt::format(", known from frame {} on",
+                     inspection.window->start + *inspection.scale_known_at);
+}
+
 /// Gravity's direction and the scale, or why there are none.
 std::string inertial_text(const Inspection& inspection) {
   const std::optional<InertialAlignment>& inertial = inspection.inertial;
@@ -100,9 +107,10 @@ std::string inertial_text(const Inspection& inspection) {
                          down.z(),
                          inertial->gravity_sigma_deg)) +
          row("scale",
-             inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away",
+             inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away{}",
                                                  100 * inertial->log_scale_sigma,
-                                                 inertial->scale * plane.distance)
+                                                 inertial->scale * plane.distance,
+                                                 known_at_text(inspection))
                                    : inertial->scale_reason) +
          planes_text(inspection);
 }

@@ -49,6 +49,7 @@ InitializeOptions options_of(const Settings& settings) {
           .inliers = settings.inliers,
           .plane = settings.plane,
           .seed = settings.seed,
+          .gravity = settings.gravity,
           .initializer = settings.initializer};
 }
 

@@ -154,6 +154,20 @@ TEST(LiveInitializer, TakesAGyroscopeAsItsSamplesCome) {
   }
 }
 
+TEST(LiveInitializer, TakesAccelerationsWithAllSamplesOrWithNone) {
+  const Camera camera = test::camera_of(moving(5).window);
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), up(0, -9.81, 0);
+  Initializer with(camera), without(camera);
+  with.add_imu(1000, zero, up);
+  without.add_gyroscope(1000, zero);
+  const char* expected = "accelerometer: expected an acceleration with each sample, or with none";
+  EXPECT_EQ(test::error_of([&] { with.add_gyroscope(2000, zero); }), expected);
+  EXPECT_EQ(test::error_of([&] { without.add_imu(2000, zero, up); }), expected);
+  EXPECT_EQ(test::error_of([&] { with.add_imu(2000, zero, up / 0.0); }),
+            "accelerometer: an acceleration is no number");
+  with.add_imu(2000, zero, up);
+}
+
 TEST(LiveInitializer, GivesTheSameBitsBesideAnother) {
   struct Run {
     test::Simulation simulation;

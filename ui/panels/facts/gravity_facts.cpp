@@ -14,11 +14,14 @@ namespace {
 
 void add_meters(ResultGroup& group, const Inspection& inspection, double scale, double cube_side) {
   const double percent = 100 * inspection.inertial->log_scale_sigma;
-  group.rows.push_back({"Scale",
-                        "\u00b1" + number_text(percent, 1) + " %",
-                        "",
-                        "One standard deviation of all lengths in meters, from poses and "
-                        "accelerometer together"});
+  group.rows.push_back(
+      {"Scale",
+       "\u00b1" + number_text(percent, 1) + " %",
+       inspection.scale_known_at
+           ? fmt::format("from frame {} on", inspection.window->start + *inspection.scale_known_at)
+           : "",
+       "One standard deviation of all lengths in meters, from poses and "
+       "accelerometer together; and from which frame on these tell them (20 %)"});
   group.rows.push_back({"Plane",
                         length_text(scale * inspection.initialization->plane.distance),
                         "away",

@@ -38,9 +38,9 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
        {"Drag", "Move the picture, turn the scene"},
        {"Shift+Drag", "Pick tracks in the picture, move the scene"},
        {"Double click", "Fit picture or scene"},
-       {"Click", "Pick a track, go to a camera, put the cube on the plane"},
+       {"Click", "Pick a track, go to a camera, start where a scan succeeded"},
        {"Ctrl+Click", "Pick several tracks"},
-       {"Right click", "Put the cube there, in the picture; reset a setting"},
+       {"Right click", "Put the cube there; reset a setting; copy a table"},
        {"Drop a file", "Open a recording, a session, a results.csv"}}};
   for (const auto& [keys, title] : mouse) rows.push_back({keys, title, "", ""});
   return rows;
@@ -105,6 +105,11 @@ void help_overlay(const PanelInput& input, const Rectangle& window, Commands& co
   ImGui::PushFont(font(Font::heading));
   ImGui::TextUnformatted("Keys");
   ImGui::PopFont();
+  ImGui::SameLine(0, 16 * s);
+  if (ImGui::SmallButton("all commands, to search (Ctrl+P)")) {
+    push(commands, RunAction{"escape"});
+    push(commands, RunAction{"palette"});
+  }
   const std::vector<KeyRow> rows = key_rows(input.state);
   const std::size_t half = (rows.size() + 1) / 2;
   draw_table("left", rows, 0, half);

@@ -7,6 +7,9 @@
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
 
+#include <algorithm>
+#include <array>
+
 namespace gpo {
 namespace {
 
@@ -37,6 +40,48 @@ void menu_item(const Action& action, const PanelInput& input, Commands& commands
     push(commands, RunAction{line_of_click(action)});
   }
   tooltip(action.tooltip);
+}
+
+/// Actions whose names begin alike are alternatives: one entry of the menu opens them.
+struct Submenu {
+  const char* prefix;
+  const char* title;
+};
+constexpr std::array kSubmenus = {Submenu{"view ", "Open"},
+                                  Submenu{"viewpoint ", "Look at the scene"},
+                                  Submenu{"color-by ", "Color tracks and points"},
+                                  Submenu{"theme ", "Theme"},
+                                  Submenu{"export ", "Export"}};
+
+/// Null where the action stands in the menu itself.
+const Submenu* submenu_of(const Action& action) {
+  const auto found = std::ranges::find_if(
+      kSubmenus, [&](const Submenu& one) { return action.name.starts_with(one.prefix); });
+  return found == kSubmenus.end() ? nullptr : &*found;
+}
+
+/// Where the first of its actions would stand.
+void submenu(const Submenu& shown,
+             const std::string& menu,
+             const PanelInput& input,
+             Commands& commands) {
+  if (!ImGui::BeginMenu(shown.title)) return;
+  for (const Action& action : actions())
+    if (action.menu == menu && submenu_of(action) == &shown) menu_item(action, input, commands);
+  ImGui::EndMenu();
+}
+
+void draw_menu(const std::string& menu, const PanelInput& input, Commands& commands) {
+  std::vector<const Submenu*> drawn;
+  for (const Action& action : actions()) {
+    if (action.menu != menu) continue;
+    const Submenu* within = submenu_of(action);
+    if (within == nullptr) menu_item(action, input, commands);
+    if (action.name == "browse") recent_menu(input, commands);
+    if (within == nullptr || std::ranges::find(drawn, within) != drawn.end()) continue;
+    submenu(*within, menu, input, commands);
+    drawn.push_back(within);
+  }
 }
 
 /// The recording in a few words, at the right; the last ones are left out where there is no room.
@@ -81,10 +126,7 @@ void menu_bar(const PanelInput& input, Commands& commands) {
   }
   for (const std::string& menu : menus) {
     if (!ImGui::BeginMenu(menu.c_str())) continue;
-    for (const Action& action : actions()) {
-      if (action.menu == menu) menu_item(action, input, commands);
-      if (action.menu == menu && action.name == "browse") recent_menu(input, commands);
-    }
+    draw_menu(menu, input, commands);
     ImGui::EndMenu();
   }
   if (input.state.recording) calibrate_button(input, commands);

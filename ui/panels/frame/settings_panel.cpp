@@ -5,6 +5,7 @@
 #include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/context/theme.h"
+#include "ui/look/method_help.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/window_span.h"
@@ -152,7 +153,7 @@ struct SettingRows {
       const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
       if (ImGui::Selectable(title_of(one).c_str(), one.key == chosen, flags))
         change(setting, one.key);
-      tooltip(lacks);
+      tooltip(lacks.empty() && setting.key == "method" ? method_help(one.key) : lacks);
     }
     ImGui::EndCombo();
   }

@@ -119,6 +119,23 @@ void draw_motion(
   }
 }
 
+void draw_scale_mark(ImDrawList& list,
+                     const Inspection& inspection,
+                     const TimeAxis& axis,
+                     float top,
+                     float bottom,
+                     float scale) {
+  if (!inspection.scale_known_at) return;
+  const int frame = inspection.window->start + *inspection.scale_known_at;
+  const float x = std::round(slot_begin(axis, frame + 1));
+  const ImU32 color = imgui_color(Role::gravity);
+  const float dash = std::round(3 * scale), width = std::max(1.0F, std::round(1.5F * scale));
+  for (float y = top; y < bottom; y += 2 * dash)
+    list.AddRectFilled({x, y}, {x + width, std::min(bottom, y + dash)}, color);
+  const ImFont* f = font(Font::small);
+  list.AddText(f, f->FontSize, {x + 3 * scale, std::round(top)}, color, "m");
+}
+
 void draw_bookmarks(ImDrawList& list,
                     std::span<const Bookmark> bookmarks,
                     const TimeAxis& axis,
@@ -174,6 +191,11 @@ void draw_verdict_legend(
   }
   left += 8 * scale;
   write("gray: outliers", color_of(Role::text_dim));
+  if (inspection.scale_known_at) {
+    left += 16 * scale;
+    write("m:", color_of(Role::gravity));
+    write(" meters known from here", color_of(Role::text_dim));
+  }
   for (const MotionLine& line : kMotionLines) {
     if (inspection.motion.empty()) return;
     left += 16 * scale;

@@ -31,6 +31,14 @@ void draw_verdict_legend(
 void draw_motion(
     ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom);
 
+/// A line where the window has become long enough to tell meters; nothing where it never does.
+void draw_scale_mark(ImDrawList& list,
+                     const Inspection& inspection,
+                     const TimeAxis& axis,
+                     float top,
+                     float bottom,
+                     float scale);
+
 /// Small flags at the upper edge.
 void draw_bookmarks(ImDrawList& list,
                     std::span<const Bookmark> bookmarks,

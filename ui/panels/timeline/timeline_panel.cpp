@@ -193,6 +193,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
     draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
     draw_motion(list, *shown, axis, bar.y + 4 * input.scale, bar.bottom() - 2 * input.scale);
     draw_verdict_signs(list, *shown, axis, bar.bottom() - 9 * input.scale, input.scale);
+    draw_scale_mark(list, *shown, axis, bar.y, bar.bottom(), input.scale);
   }
   draw_bookmarks(list, state.bookmarks, axis, bar.y, input.scale);
   draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);

@@ -42,7 +42,7 @@ TEST(ScanStrip, SaysWhatCameOfAStart) {
   StartScan scan = three();
   scan.starts[0].pne_deg = 0.25;
   EXPECT_EQ(scan_text(scan.starts[0]),
-            "start 0: ready, normal \u00b10.10\u00b0, PNE 0.25\u00b0\nfine");
+            "start 0: ready, normal \u00b10.100\u00b0, PNE 0.250\u00b0\nfine");
   EXPECT_EQ(scan_text(scan.starts[1]), "start 10: not initialized\ntoo few tracks");
 }
 
