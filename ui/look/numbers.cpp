@@ -15,6 +15,10 @@ std::string number_text(double value, int most) {
   return fmt::format("{:.{}f}", value, std::min(behind, most));
 }
 
+std::string two_decimals(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : "\u2013";
+}
+
 std::string length_text(double meters) {
   if (std::abs(meters) >= 1) return number_text(meters, 3) + " m";
   return number_text(meters * 1e3, 2) + " mm";

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace gpo {
 
 /// Three significant digits, but none beyond `most` behind the point.
 std::string number_text(double value, int most);
+
+/// "0.25"; a dash where it is not known.
+std::string two_decimals(const std::optional<double>& value);
 
 /// "4.1 mm", "1.20 m".
 std::string length_text(double meters);

@@ -7,6 +7,7 @@
 #include "ui/context/window_picture.h"
 #include "ui/panels/facts/curve_facts.h"
 #include "ui/panels/facts/track_lives.h"
+#include "ui/panels/facts/track_rows.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"
 #include "ui/views/normals/normals_view.h"
@@ -81,6 +82,12 @@ struct KeptTrackColors {
   std::shared_ptr<const TrackColors> colors;  ///< null: by plane
 };
 
+/// Rows of tracks, and whose they are.
+struct KeptTrackRows {
+  std::shared_ptr<const Inspection> of;  ///< null: none yet
+  std::vector<TrackRow> rows;
+};
+
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
   PictureTexture picture;
@@ -98,6 +105,7 @@ struct Views {
   Residuals residuals;
   TrackLives lives;
   KeptTrackColors colors;
+  KeptTrackRows tracks;  ///< of the drawer, as it has sorted them
   NormalsMap normals;
   WindowPicture window;  ///< of which only the parts that change are drawn anew
 };

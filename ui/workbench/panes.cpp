@@ -7,7 +7,8 @@
 namespace gpo {
 
 DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
-DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, log_drawer;
+DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
+    log_drawer;
 
 namespace {
 
@@ -43,6 +44,7 @@ constexpr Pane kDrawers[] = {
     {"residuals", "Residuals", "Histogram, and root mean square frame by frame", residuals_drawer},
     {"timing", "Timing", "Where the time went, stage by stage", timing_drawer, {.compared = true}},
     {"track", "Track", "The whole life of the selected track", track_drawer},
+    {"tracks", "Tracks", "All tracks of the window, to sort and to pick", tracks_drawer},
     {"log", "Log", "Every message", log_drawer}};
 
 const Pane* find(std::span<const Pane> panes, const std::string& key) {

@@ -150,4 +150,15 @@ TrackLife track_life(const Inspection& inspection, int column) {
   return life;
 }
 
+std::optional<double> rms_residual_px(const TrackLife& life) {
+  double sum = 0;
+  int count = 0;
+  for (const TrackFrame& frame : life.frames) {
+    if (!frame.residual_px || !frame.inlier) continue;
+    sum += *frame.residual_px * *frame.residual_px;
+    ++count;
+  }
+  return count > 0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
+}
+
 }  // namespace gpo

@@ -41,6 +41,10 @@ struct TrackLife {
 /// The track of a column of the window; also of one left out by hand, as it was seen.
 TrackLife track_life(const Inspection& inspection, int column);
 
+/// Root mean square of its residuals in the frames where it is an inlier of the leading plane, by
+/// which they are told; nothing where there is none.
+std::optional<double> rms_residual_px(const TrackLife& life);
+
 /// "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end);
 

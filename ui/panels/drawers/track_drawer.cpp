@@ -3,6 +3,7 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_picture.h"
+#include "ui/look/numbers.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -20,10 +21,6 @@ namespace {
 
 constexpr int kPatch_px = 31;
 constexpr int kMagnification = 4;
-
-std::string number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "\u2013";
-}
 
 constexpr ColumnText kLifeColumns[] = {
     {"frame", "Counts in the recording; click: go there"},
@@ -48,9 +45,9 @@ void draw_row(const TrackFrame& frame, bool current, Commands& commands) {
     push(commands, GoToFrame{frame.frame});
   for (const std::string& text : {fmt::format("{:.2f}", frame.raw_px.x()),
                                   fmt::format("{:.2f}", frame.raw_px.y()),
-                                  number(frame.transfer_px),
-                                  number(frame.residual_px),
-                                  number(frame.forward_backward_px)}) {
+                                  two_decimals(frame.transfer_px),
+                                  two_decimals(frame.residual_px),
+                                  two_decimals(frame.forward_backward_px)}) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(text.c_str());
   }

@@ -51,6 +51,8 @@ constexpr std::array kSubmenus = {Submenu{"view ", "Open"},
                                   Submenu{"viewpoint ", "Look at the scene"},
                                   Submenu{"color-by ", "Color tracks and points"},
                                   Submenu{"theme ", "Theme"},
+                                  Submenu{"compare ", "Compare"},
+                                  Submenu{"zoom", "Zoom"},
                                   Submenu{"export ", "Export"}};
 
 /// Null where the action stands in the menu itself.

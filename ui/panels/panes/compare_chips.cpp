@@ -39,7 +39,7 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
   const float arm = side * 0.17F;
   list.AddLine({middle.x - arm, middle.y - arm}, {middle.x + arm, middle.y + arm}, color, 1.5F);
   list.AddLine({middle.x - arm, middle.y + arm}, {middle.x + arm, middle.y - arm}, color, 1.5F);
-  tooltip(dim ? "The last one stays" : "Compare no longer");
+  tooltip(dim ? "The last one stays" : "Removes it from the comparison");
   return clicked;
 }
 

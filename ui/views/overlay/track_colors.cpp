@@ -28,18 +28,6 @@ std::uint32_t ramp(double share) {
          bgr[0];
 }
 
-/// In the frames where it is an inlier of the leading plane, by which its residuals are told.
-std::optional<double> rms_residual_px(const TrackLife& life) {
-  double sum = 0;
-  int count = 0;
-  for (const TrackFrame& frame : life.frames) {
-    if (!frame.residual_px || !frame.inlier) continue;
-    sum += *frame.residual_px * *frame.residual_px;
-    ++count;
-  }
-  return count > 0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
-}
-
 std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
   if (coloring == Coloring::residual) return rms_residual_px(life);
   if (coloring == Coloring::depth) return life.depth;

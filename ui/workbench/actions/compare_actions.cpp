@@ -82,7 +82,7 @@ void add_choice(std::vector<Action>& table) {
                                     "METHODS",
                                     compare_also));
   table.push_back(of_configurations("compare remove",
-                                    "Compare no longer",
+                                    "Remove from the comparison",
                                     "Takes one away from what is compared",
                                     "METHOD",
                                     compare_no_longer));

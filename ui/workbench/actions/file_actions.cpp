@@ -241,12 +241,14 @@ void add_file_actions(std::vector<Action>& table) {
                                     true_poses));
   table.push_back(export_of("points", "Export map points (PLY)", points));
   table.push_back(export_of("result", "Export the whole result (JSON)", whole_result));
-  table.push_back(toggle("metric",
+  Action metric = toggle("metric",
                          "Export in meters",
                          {},
                          "Camera poses and map points are written in meters, by the accelerometer; "
                          "otherwise in distances of the plane",
-                         [](State& s) -> bool& { return s.metric; }));
+                         [](State& s) -> bool& { return s.metric; });
+  metric.menu = "File";
+  table.push_back(metric);
   Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
     s.wishes.quit = true;
   });

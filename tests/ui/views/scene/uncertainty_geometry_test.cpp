@@ -3,6 +3,8 @@
 #include "ui/views/scene/uncertainty_geometry.h"
 
 #include "tests/ui/made_inspection.h"
+#include "ui/look/orbit_camera.h"
+#include "ui/views/scene/scene_geometry.h"
 
 #include <cmath>
 #include <numbers>

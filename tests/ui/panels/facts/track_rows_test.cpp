@@ -1,0 +1,59 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/facts/track_rows.h"
+
+#include "engine/window/tracks.h"
+#include "tests/ui/made_inspection.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+TEST(TrackRows, HaveEachTrackOnce) {
+  const Inspection inspection = made_inspection();
+  const auto rows = track_rows(inspection);
+  ASSERT_EQ(std::ssize(rows), inspection.tracks->track_count());
+  for (const TrackRow& row : rows) {
+    const auto column =
+        std::ranges::find(inspection.tracks->ids, row.id) - inspection.tracks->ids.begin();
+    int seen = 0, inlier = 0;
+    for (int i = 0; i < inspection.window->frame_count(); ++i) {
+      seen += inspection.tracks->seen(i, static_cast<int>(column)) ? 1 : 0;
+      inlier += inspection.window->inlier[i][column] ? 1 : 0;
+    }
+    EXPECT_EQ(row.seen, seen);
+    EXPECT_EQ(row.inlier, inlier);
+    EXPECT_EQ(row.rms_px.has_value(), inlier > 0) << row.id;
+  }
+}
+
+TEST(TrackRows, SortByAnyColumnWithWhatIsUnknownLast) {
+  std::vector<TrackRow> rows = {{.id = 1, .seen = 5, .verdict = "b"},
+                                {.id = 2, .seen = 9, .rms_px = 0.5, .verdict = "a"},
+                                {.id = 3, .seen = 5, .rms_px = 0.2, .verdict = "c"}};
+  const auto order = [&](TrackColumn by, bool descending) {
+    sort_tracks(rows, by, descending);
+    return std::vector{rows[0].id, rows[1].id, rows[2].id};
+  };
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(order(TrackColumn::seen, false), (Ids{1, 3, 2}));
+  EXPECT_EQ(order(TrackColumn::seen, true), (Ids{2, 1, 3}));
+  EXPECT_EQ(order(TrackColumn::residual, false), (Ids{3, 2, 1}));
+  EXPECT_EQ(order(TrackColumn::residual, true), (Ids{2, 3, 1}));
+  EXPECT_EQ(order(TrackColumn::verdict, false), (Ids{2, 1, 3}));
+  EXPECT_EQ(order(TrackColumn::track, true), (Ids{3, 2, 1}));
+}
+
+TEST(TrackRows, AreCopiedWithUnits) {
+  const TrackRow row{
+      .id = 7, .seen = 3, .inlier = 2, .plane = 2, .rms_px = 0.25, .verdict = "a, b"};
+  EXPECT_EQ(to_csv({&row, 1}),
+            "track,frames seen,frames inlier,plane,residual [px],depth [d],verdict\n"
+            "7,3,2,2,0.25,,a; b\n");
+}
+
+}  // namespace
+}  // namespace gpo

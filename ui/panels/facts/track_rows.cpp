@@ -1,0 +1,101 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/facts/track_rows.h"
+
+#include "engine/inspection/studies/track_life.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+std::optional<int> plane_of(const Window& window, int column) {
+  for (std::size_t k = 0; k < window.planes.size(); ++k)
+    if (std::ranges::binary_search(window.planes[k].tracks, column)) return static_cast<int>(k) + 1;
+  return std::nullopt;
+}
+
+/// On whatever plane.
+int inlier_frames(const Window& window, int column, std::optional<int> plane) {
+  const auto& of =
+      plane && *plane - 1 != window.leader ? window.planes[*plane - 1].inlier : window.inlier;
+  return static_cast<int>(
+      std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
+}
+
+/// What a column sorts by; nothing: not known.
+std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
+  switch (column) {
+    case TrackColumn::track:
+      return static_cast<double>(row.id);
+    case TrackColumn::seen:
+      return row.seen;
+    case TrackColumn::inlier:
+      return row.inlier;
+    case TrackColumn::plane:
+      return row.plane ? std::optional<double>(*row.plane) : std::nullopt;
+    case TrackColumn::residual:
+      return row.rms_px;
+    case TrackColumn::depth:
+      return row.depth;
+    case TrackColumn::verdict:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
+}
+
+}  // namespace
+
+std::vector<TrackRow> track_rows(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  std::vector<TrackRow> rows;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    const TrackLife life = track_life(inspection, column);
+    const auto plane = plane_of(window, column);
+    rows.push_back({.id = life.id,
+                    .seen = static_cast<int>(life.frames.size()),
+                    .inlier = inlier_frames(window, column, plane),
+                    .plane = plane,
+                    .rms_px = rms_residual_px(life),
+                    .depth = life.depth,
+                    .verdict = life.verdict});
+  }
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  return rows;
+}
+
+void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending) {
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  std::ranges::stable_sort(rows, [&](const TrackRow& a, const TrackRow& b) {
+    if (by == TrackColumn::verdict)
+      return descending ? b.verdict < a.verdict : a.verdict < b.verdict;
+    const auto x = value_of(a, by), y = value_of(b, by);
+    if (!x || !y) return x.has_value() && !y.has_value();
+    return descending ? *y < *x : *x < *y;
+  });
+}
+
+std::string to_csv(std::span<const TrackRow> rows) {
+  std::string text = "track,frames seen,frames inlier,plane,residual [px],depth [d],verdict\n";
+  for (const TrackRow& row : rows) {
+    std::string verdict = row.verdict;
+    std::ranges::replace(verdict, ',', ';');
+    text += fmt::format("{},{},{},{},{},{},{}\n",
+                        row.id,
+                        row.seen,
+                        row.inlier,
+                        row.plane ? std::to_string(*row.plane) : "",
+                        cell(row.rms_px),
+                        cell(row.depth),
+                        verdict);
+  }
+  return text;
+}
+
+}  // namespace gpo
