@@ -18,6 +18,7 @@ test_packages=(
   python3-opencv python3-jsonschema  # an initializer that we did not compile
   python3-pytest python3-matplotlib  # the Python module, engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
+  file dpkg-dev  # the Debian packages
 )
 benchmark_packages=(libbenchmark-dev)
 

@@ -11,11 +11,11 @@ recording=$2
 name=$(basename "$recording")
 
 fail() { echo "expected: $1" >&2; kill "$pid" 2> /dev/null; exit 1; }
-# Runs a command until it succeeds, for at most a minute.
+# Runs a command until it succeeds, for at most five minutes: a machine may have other work.
 until_true() {
   local what=$1
   shift
-  for _ in $(seq 600); do
+  for _ in $(seq 3000); do
     "$@" && return
     kill -0 "$pid" 2> /dev/null || fail "$what (the program has ended)"
     sleep 0.1

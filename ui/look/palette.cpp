@@ -47,10 +47,10 @@ constexpr Colors kThemes[] = {
     {Role::border, 0x323944, 0xCBD2DA},
     {Role::text_dim, 0x98A2B0, 0x5A6472},
     {Role::text, 0xE6EAF0, 0x171B20},
-    {Role::accent, 0x5AB6EA, 0x0072B2},  // sky blue
-    {Role::good, 0x1FCB94, 0x00795C},
-    {Role::warning, 0xE69F01, 0x9A6400},
-    {Role::bad, 0xF0503D, 0xC4311F},
+    {Role::accent, 0x5AB6EA, 0x006DAA},  // sky blue
+    {Role::good, 0x1FCB94, 0x00775A},
+    {Role::warning, 0xE69F01, 0x925E00},
+    {Role::bad, 0xF26A58, 0xC4311F},
 };
 
 constexpr bool complete() {

@@ -2,17 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/look/palette.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-TEST(Palette, ThemesTellTextFromItsGround) {
+/// Relative luminance, by WCAG 2.
+double luminance(std::uint32_t rgb) {
+  const auto linear = [](double c) {
+    return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(red(rgb)) + 0.7152 * linear(green(rgb)) + 0.0722 * linear(blue(rgb));
+}
+
+double contrast(std::uint32_t a, std::uint32_t b) {
+  const double x = luminance(a), y = luminance(b);
+  return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
+}
+
+TEST(Palette, TextIsReadableOnItsGround) {
   for (const Theme theme : {Theme::dark, Theme::light})
     for (const Role ground : {Role::background, Role::panel, Role::raised})
-      for (const Role text : {Role::text, Role::text_dim, Role::good, Role::bad, Role::warning})
-        EXPECT_GT(std::abs(green(color_of(text, theme)) - green(color_of(ground, theme))), 0.1)
-            << static_cast<int>(theme) << " " << static_cast<int>(text);
+      for (const Role text :
+           {Role::text, Role::text_dim, Role::accent, Role::good, Role::bad, Role::warning})
+        EXPECT_GE(contrast(color_of(text, theme), color_of(ground, theme)), 4.5)
+            << static_cast<int>(theme) << " " << static_cast<int>(text) << " on "
+            << static_cast<int>(ground);
 }
 
 TEST(Palette, MeasurementsKeepTheirColorAndTextDoesNot) {

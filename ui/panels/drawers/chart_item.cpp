@@ -4,11 +4,22 @@
 
 #include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
+#include "ui/views/charts/chart_csv.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace gpo {
+namespace {
+
+/// Of the item drawn last, by a right click.
+void copy_menu(const Chart& chart) {
+  if (!ImGui::BeginPopupContextItem()) return;
+  if (ImGui::MenuItem("Copy the data as CSV")) ImGui::SetClipboardText(to_csv(chart).c_str());
+  ImGui::EndPopup();
+}
+
+}  // namespace
 
 ChartItem chart_item(const std::string& name,
                      const Rectangle& place,
@@ -23,6 +34,7 @@ ChartItem chart_item(const std::string& name,
   ImGui::SetCursorScreenPos({place.x, place.y});
   ImGui::InvisibleButton(name.c_str(), {place.width, place.height});
   item.held = ImGui::IsItemActive();
+  copy_menu(chart);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const bool over = item.to.inside({mouse.x, mouse.y});
   if (!item.held && !(ImGui::IsItemHovered() && over)) return item;

@@ -18,8 +18,8 @@ struct ChartItem {
   bool held = false;                   ///< ... with its left button down since it was pressed there
 };
 
-/// A chart as a part of a panel. Over its axes the mouse draws a line and tells the values.
-/// `name`: of its picture in `views`, and of the item.
+/// A chart as a part of a panel. Over its axes the mouse draws a line and tells the values; a right
+/// click copies all of them. `name`: of its picture in `views`, and of the item.
 ChartItem chart_item(const std::string& name,
                      const Rectangle& place,
                      Views& views,

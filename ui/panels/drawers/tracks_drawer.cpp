@@ -24,6 +24,16 @@ constexpr std::array kColumns = {
     ColumnText{"depth [d]", "In the reference camera, in distances of the plane"},
     ColumnText{"verdict", "What holds against it"}};
 
+/// Dear ImGui's own, which sorts by a click.
+void draw_header() {
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const ColumnText& column : kColumns) {
+    ImGui::TableNextColumn();
+    ImGui::TableHeader(column.title);
+    tooltip(column.meaning);
+  }
+}
+
 /// Those of this inspection, sorted as the table's head says.
 const std::vector<TrackRow>& rows_of(const PanelInput& input, KeptTrackRows& kept) {
   const auto& inspection = input.state.inspection;
@@ -109,8 +119,8 @@ void draw_list(const PanelInput& input, ImVec2 size, Views& views, Commands& com
                             column.title == kColumns.back().title
                                 ? ImGuiTableColumnFlags_WidthStretch
                                 : ImGuiTableColumnFlags_None,
-                            column.title == kColumns.back().title ? 0 : 70 * input.scale);
-  table_header(kColumns);
+                            column.title == kColumns.back().title ? 0 : 92 * input.scale);
+  draw_header();
   const std::vector<TrackRow>& rows = rows_of(input, views.tracks);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(rows.size()));

@@ -220,8 +220,11 @@ void settings_panel(const PanelInput& input, const Rectangle& place, Commands& c
   preset_row(rows);
   rows.draw(false);
   cube_row(rows, input, commands);
-  if (ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen)) rows.draw(true);
+  const bool advanced = ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  // What was asked for comes into view.
+  if (ImGui::IsItemToggledOpen()) ImGui::SetScrollHereY(0);
   tooltip("Inliers, seed, and what the optimizations let one choose");
+  if (advanced) rows.draw(true);
   if (rows.changed) push(commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
   ImGui::PopStyleVar(2);
 }

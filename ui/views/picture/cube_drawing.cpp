@@ -112,7 +112,7 @@ void draw_body(ImDrawList& list,
                const CubePicture& cube,
                const std::vector<Outline>& shadow) {
   for (const Outline& ring : shadow) {
-    constexpr double kDarkness = 0.031;  // of a ring; they lie one on the other
+    constexpr double kDarkness = 0.046;  // of a ring; they lie one on the other
     fill(list, on_screen(mapping, ring), imgui_color(std::uint32_t{0}, kDarkness));
   }
   for (const CubeFace& face : cube.faces)

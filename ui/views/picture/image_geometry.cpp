@@ -147,7 +147,7 @@ CubePicture exaggerated(const CubePicture& cube, const CubePicture& reference, d
 std::vector<std::vector<Vector2d>> contact_shadow(const Inspection& inspection,
                                                   int frame_in_window,
                                                   double side) {
-  constexpr int kRings = 24, kPoints = 64;
+  constexpr int kRings = 16, kPoints = 48;
   constexpr double kReach = 0.35;  // of the side
   if (!inspection.cube || !inspection.initialization->ok) return {};
   const CubeAnchor& anchor = *inspection.cube;

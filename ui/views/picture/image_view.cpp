@@ -152,8 +152,9 @@ bool exaggerates(const Canvas& canvas) {
 void draw_cubes(const Canvas& canvas) {
   const ImageViewOptions& options = canvas.options;
   auto cube = canvas.estimated_cube();
-  const auto reference = reference_cube(canvas);
-  const bool far_off = cube && exaggerates(canvas);
+  const auto reference =
+      options.exaggeration > 1 ? reference_cube(canvas) : std::optional<CubePicture>();
+  const bool far_off = cube && reference;
   if (far_off) cube = exaggerated(*cube, *reference, options.exaggeration);
   // A body would hide what it is held against.
   const bool body = !options.wireframe && !far_off;

@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kFrame = 20;
+constexpr int kShownFrame = 20;
 
 TEST(PixelText, TellsPlaceValueAndZoom) {
   const Camera camera{.width = 4, .height = 3, .fx = 1, .fy = 1};
@@ -32,7 +32,7 @@ TEST(PixelText, TellsPlaceValueAndZoom) {
 TEST(PixelText, TellsHowFarThePlaneIsWhereATrackIsOnIt) {
   const Inspection inspection = made_inspection();
   const Camera& camera = inspection.recording->camera;
-  const int in_window = kFrame - inspection.window->start;
+  const int in_window = kShownFrame - inspection.window->start;
   int inlier = 0;
   while (!inspection.tracks->seen(in_window, inlier) ||
          !inspection.window->inlier[in_window][inlier])
@@ -43,13 +43,13 @@ TEST(PixelText, TellsHowFarThePlaneIsWhereATrackIsOnIt) {
   const auto point = std::ranges::find(points, inlier, &MapPoint::track);
   ASSERT_NE(point, points.end());
   const double away = (point->position - inspection.initialization->cameras[in_window].p_wc).norm();
-  EXPECT_THAT(pixel_text(&inspection, kFrame, camera, {}, at, 1),
+  EXPECT_THAT(pixel_text(&inspection, kShownFrame, camera, {}, at, 1),
               HasSubstr(fmt::format("{:.1f}", away)));
-  EXPECT_THAT(pixel_text(&inspection, kFrame, camera, {}, at, 1), HasSubstr(" d away on plane 1"));
+  EXPECT_THAT(pixel_text(&inspection, kShownFrame, camera, {}, at, 1), HasSubstr(" d away on plane 1"));
   EXPECT_THAT(pixel_text(&inspection, 0, camera, {}, at, 1), Not(HasSubstr("away")))
       << "outside of the window";
   const Inspection failed = made_inspection({.ok = false});
-  EXPECT_THAT(pixel_text(&failed, kFrame, camera, {}, at, 1), Not(HasSubstr("plane")));
+  EXPECT_THAT(pixel_text(&failed, kShownFrame, camera, {}, at, 1), Not(HasSubstr("plane")));
 }
 
 }  // namespace
