@@ -71,6 +71,8 @@ typed=$(grep -c '"note": "/c1 n' typed.json)
 [ "$typed" = "$commands" ] || fail "$commands bookmarks of as many commands typed, not $typed"
 
 # Esc shuts a menu and nothing else; its letters are no shortcuts.
+# Where the mouse rests on nothing that tells of itself.
+xdotool mousemove --window "$window" 700 708
 until_true "a window that comes to rest" at_rest
 cp before.png shut.png
 xdotool mousemove --window "$window" 30 13 click 1
