@@ -65,11 +65,11 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   return made;
 }
 
-Worker::Opened opened_for_window(std::shared_ptr<const Recording> recording) {
+Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
   Worker::Opened opened = Worker::with_inspector(recording);
   opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
-    auto calibrated = self_calibrated(*recording, stop, progress);
-    return calibrated ? opened_for_window(std::move(calibrated)) : Worker::Opened{};
+    const auto calibrated = self_calibrated(*recording, stop, progress);
+    return calibrated ? opened_for_window(calibrated) : Worker::Opened{};
   };
   return opened;
 }

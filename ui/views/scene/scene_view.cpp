@@ -256,7 +256,7 @@ bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& opt
          inspection.initialization->uncertainty.has_value();
 }
 
-constexpr int kSamples = 4;                  // a pixel
+constexpr int kSamples = 4;              // a pixel
 constexpr double kDetailOfMotion = 0.5;  // pixels of the texture a screen pixel
 
 /// VTK's objects, and what they show now. The inspection's parts are held, so that a new one cannot

@@ -31,8 +31,8 @@ struct WorkerLink {
 };
 
 /// Hands the state's new settings and wishes (open, open_example, compute, cancel) to the worker,
-/// what the open views ask for to survey and scan, and takes over what they have published. Returns at
-/// once. `example`: the recording that comes with the program.
+/// what the open views ask for to survey and scan, and takes over what they have published. Returns
+/// at once. `example`: the recording that comes with the program.
 void synchronize(WorkbenchState& state,
                  WorkerLink& link,
                  Worker& worker,

@@ -45,7 +45,8 @@ TEST(PixelText, TellsHowFarThePlaneIsWhereATrackIsOnIt) {
   const double away = (point->position - inspection.initialization->cameras[in_window].p_wc).norm();
   EXPECT_THAT(pixel_text(&inspection, kShownFrame, camera, {}, at, 1),
               HasSubstr(fmt::format("{:.1f}", away)));
-  EXPECT_THAT(pixel_text(&inspection, kShownFrame, camera, {}, at, 1), HasSubstr(" d away on plane 1"));
+  EXPECT_THAT(pixel_text(&inspection, kShownFrame, camera, {}, at, 1),
+              HasSubstr(" d away on plane 1"));
   EXPECT_THAT(pixel_text(&inspection, 0, camera, {}, at, 1), Not(HasSubstr("away")))
       << "outside of the window";
   const Inspection failed = made_inspection({.ok = false});
