@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, runs every test; ends with CTest's summary
-# and its exit code. ./test.sh ARGS... passes ARGS to ctest (e.g. -R Gpo).
+# Installs what is missing, builds with warnings as errors, runs every test; ends with CTest's summary,
+# what was skipped and why, and CTest's exit code. ./test.sh ARGS... passes ARGS to ctest (e.g. -R Gpo).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
@@ -10,4 +10,7 @@ cmake --preset ci
 cmake --build --preset ci
 # llvmpipe is what the snapshots' baselines were made with.
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-exec ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@"
+status=0
+ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@" || status=$?
+grep -h -A 1 ': Skipped$' build/ci/Testing/Temporary/LastTest.log || true
+exit "$status"

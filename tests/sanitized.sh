@@ -17,14 +17,15 @@ unreported=$PWD/tests/sanitizers
 
 # What builds or starts something else than what is sanitized here: ./run.sh its own program, tests/fuzz
 # with sanitizers of its own, the engine alone, the installed library.
-elsewhere='^(Fuzz|Readme|RunScript|Install|EngineAlone|Library)\.'
+elsewhere='^(Fuzz\.|EngineAlone\.|(Readme|RunScript|Install|Library)$)'
 # What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
 # the front door's live form.
-threads='^View\.|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
+threads='^View$|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-# In the preset: a quarantine below what the monkey may grow, and memory of threads that is not asked for where it lies:
-# the leak sanitizer of clang 14 guesses that from an address alone and may read what is not there.
+# A quarantine below what the monkey may grow, and memory of threads that is not asked for where it lies: the leak
+# sanitizer of clang 14 guesses that from an address alone and may read what is not there.
+export ASAN_OPTIONS=detect_leaks=1:quarantine_size_mb=64:intercept_tls_get_addr=0
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:suppressions=$unreported/tsan.supp
 

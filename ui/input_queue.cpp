@@ -33,6 +33,19 @@ bool types(const InputEvent& event) {
          event.code <= GLFW_KEY_WORLD_2 && (event.modifiers & kCommands) == 0;
 }
 
+namespace {
+
+bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+bool is_shift(int key) { return key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT; }
+
+/// Goes down and types nothing: Ctrl, an arrow, Backspace, Ctrl with a letter.
+bool is_command(const InputEvent& event) {
+  return event.kind == Kind::key && event.action != GLFW_RELEASE && !types(event) &&
+         !is_shift(event.code);
+}
+
+}  // namespace
+
 void InputQueue::push(InputEvent event) {
   // Where the pointer was between two frames nobody asks.
   if (event.kind == Kind::pointer && !events_.empty() && events_.back().kind == Kind::pointer)
@@ -42,7 +55,7 @@ void InputQueue::push(InputEvent event) {
 
 void InputQueue::begin_frame() {
   changed_.clear();
-  ended_ = false;
+  ended_ = typed_ = pressed_ = false;
   if (keys_wait_ > 0) --keys_wait_;
 }
 
@@ -50,6 +63,8 @@ bool InputQueue::has_next(Listener listener) const {
   if (events_.empty() || ended_) return false;
   const InputEvent& next = events_.front();
   if (is_of_keyboard(next) && (listener == Listener::nobody || keys_wait_ > 0)) return false;
+  if (next.kind == Kind::character && pressed_) return false;
+  if (is_command(next) && is_modifier(next.code) && typed_) return false;
   if (next.kind != Kind::key || listener == Listener::shortcuts || types(next)) return true;
   return !changed_.contains(next.code);
 }
@@ -58,6 +73,8 @@ InputEvent InputQueue::take() {
   InputEvent event = std::move(events_.front());
   events_.pop_front();
   if (event.kind == Kind::key) changed_.insert(event.code);
+  typed_ = typed_ || event.kind == Kind::character;
+  pressed_ = pressed_ || is_command(event);
   if (event.kind == Kind::button) {
     ended_ = true;
     keys_wait_ = kFramesToFocus;

@@ -49,7 +49,10 @@ class InputQueue {
   std::deque<InputEvent> events_;
   std::set<int> changed_;  ///< keys, in this frame
   bool ended_ = false;     ///< no more in this frame
-  int keys_wait_ = 0;      ///< frames, after what may have given a field the keyboard, or taken it
+  /// A field takes a frame's characters first, and none while Ctrl is down at its end: what is
+  /// typed after a key that types nothing, and Ctrl after what was typed, wait for the next frame.
+  bool typed_ = false, pressed_ = false;
+  int keys_wait_ = 0;  ///< frames, after what may have given a field the keyboard, or taken it
 };
 
 /// Whether the key types a character: its going down and up does not matter to a field.

@@ -52,8 +52,7 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
 void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
   switch (event.kind) {
     case Kind::key:
-      return ImGui_ImplGlfw_KeyCallback(
-          window, event.code, event.scancode, event.action, event.modifiers);
+      return hand_key_to_imgui(window, event.code, event.scancode, event.action, event.modifiers);
     case Kind::character:
       return ImGui_ImplGlfw_CharCallback(window, event.character);
     case Kind::button:
@@ -81,6 +80,7 @@ bool popup_is_open() {
 }  // namespace
 
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
+  take_events_as_they_come();
   glfwSetWindowUserPointer(window, &queue_);
   glfwSetKeyCallback(window, on_key);
   glfwSetCharCallback(window, on_character);

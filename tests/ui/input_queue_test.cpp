@@ -57,6 +57,27 @@ TEST(InputQueue, AKeyOfAFieldThatGoesDownAndUpIsSeenDown) {
   EXPECT_EQ(frame(queue, Listener::field), "-259 ");
 }
 
+TEST(InputQueue, WhatIsTypedAfterAKeyThatTypesNothingIsTheNextFrames) {
+  InputQueue queue;
+  type(queue, 'A');
+  type(queue, GLFW_KEY_BACKSPACE);
+  type(queue, 'B');
+  EXPECT_EQ(frame(queue, Listener::field), "A+259 ") << "a field takes characters first";
+  EXPECT_EQ(frame(queue, Listener::field), "-259 B");
+}
+
+TEST(InputQueue, WhatIsTypedDoesNotMeetTheNextCtrl) {
+  InputQueue queue;
+  type(queue, 'A');
+  queue.push({Kind::key, GLFW_KEY_LEFT_CONTROL, 0, GLFW_PRESS, 0});
+  type(queue, 'P', GLFW_MOD_CONTROL);
+  queue.push({Kind::key, GLFW_KEY_LEFT_CONTROL, 0, GLFW_RELEASE, GLFW_MOD_CONTROL});
+  type(queue, 'B');
+  EXPECT_EQ(frame(queue, Listener::field), "A");
+  EXPECT_EQ(frame(queue, Listener::field), "+341 +80 ");
+  EXPECT_EQ(frame(queue, Listener::field), "-80 -341 B");
+}
+
 TEST(InputQueue, ShortcutsAreAsManyAsCame) {
   InputQueue queue;
   for (int i = 0; i < 3; ++i) type(queue, GLFW_KEY_RIGHT);

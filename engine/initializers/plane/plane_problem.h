@@ -22,18 +22,17 @@ struct Split {
   static constexpr int kShared = Shared;
   static constexpr int kOwn = Own;
 };
-using KnownRotations = Split<2, 3>;     // normal | t
-using UnknownBias = Split<5, 3>;        // normal, bias | t
-using UnknownBiasOffset = Split<6, 3>;  // normal, bias, time offset | t
-using FreeRotations = Split<2, 6>;      // normal | phi, t
-// Of several planes, as many as there are (`Layout`); the latter also with a gyroscope's noise.
-using SeveralPlanes = Split<Eigen::Dynamic, 3>;
-using SeveralPlanesFree = Split<Eigen::Dynamic, 6>;
+using KnownRotations = Split<2, 3>;  // normal | t
+using FreeRotations = Split<2, 6>;   // normal | phi, t
+// As many as `Layout` says, of several planes, a bias, a time offset; the latter also with a
+// gyroscope's noise.
+using AnyShared = Split<Eigen::Dynamic, 3>;
+using AnySharedFree = Split<Eigen::Dynamic, 6>;
 
 template <class S>
-constexpr bool kSeveral = S::kShared == Eigen::Dynamic;
+constexpr bool kNormalOnly = S::kShared == 2;
 template <class S>
-constexpr int kMost = kSeveral<S> ? kMostShared : S::kShared;
+constexpr int kMost = kNormalOnly<S> ? 2 : kMostShared;
 
 /// Normal equations of a frame over shared and own unknowns, from those over (u, phi, t).
 template <class S>
@@ -45,42 +44,13 @@ struct SplitNormals {
   Eigen::Matrix<double, S::kOwn, 1> o;
 };
 
-/// The columns of what the frames share, of (u, phi).
 template <class S>
-Eigen::Matrix<double, 5, S::kShared> shared_columns(const Window& window,
-                                                    const PlaneMotion& motion,
-                                                    int frame) {
-  Eigen::Matrix<double, 5, S::kShared> M = Eigen::Matrix<double, 5, S::kShared>::Zero();
-  M.template topLeftCorner<2, 2>().setIdentity();
-  if constexpr (S::kShared > 2) {
-    const GyroSensitivity& gyro = *window.gyro;
-    const Eigen::Matrix3d turned = so3_right_jacobian(gyro_correction_rad(window, frame, motion));
-    M.template block<3, 3>(2, 2) = turned * gyro.d_bias[frame];
-    if constexpr (S::kShared == 6)
-      M.template bottomRightCorner<3, 1>() = turned * gyro.d_offset[frame];
-  }
-  return M;
-}
-
-template <class S>
-SplitNormals<S> split(const FrameNormals& f,
-                      const Window& window,
-                      const PlaneMotion& motion,
-                      int frame) {
-  if constexpr (S::kShared == 2) {
-    return {f.JtJ.topLeftCorner<2, 2>(),
-            f.JtJ.topRightCorner<2, S::kOwn>(),
-            f.JtJ.bottomRightCorner<S::kOwn, S::kOwn>(),
-            f.Jtr.head<2>(),
-            f.Jtr.tail<S::kOwn>()};
-  } else {
-    const Eigen::Matrix<double, 5, S::kShared> M = shared_columns<S>(window, motion, frame);
-    return {M.transpose() * f.JtJ.topLeftCorner<5, 5>() * M,
-            M.transpose() * f.JtJ.topRightCorner<5, 3>(),
-            f.JtJ.bottomRightCorner<3, 3>(),
-            M.transpose() * f.Jtr.head<5>(),
-            f.Jtr.tail<3>()};
-  }
+SplitNormals<S> split(const FrameNormals& f) {
+  return {f.JtJ.topLeftCorner<2, 2>(),
+          f.JtJ.topRightCorner<2, S::kOwn>(),
+          f.JtJ.bottomRightCorner<S::kOwn, S::kOwn>(),
+          f.Jtr.head<2>(),
+          f.Jtr.tail<S::kOwn>()};
 }
 
 /// Adds one plane's share of a frame.
@@ -210,19 +180,14 @@ class PlaneProblem {
     SharedVector shared = prior_gradient(motion);
     double largest = 0;
     for (int i = 1; i < frame_count(); ++i) {
-      if constexpr (kSeveral<S>) {
+      if constexpr (kNormalOnly<S>) {
+        shared += at.frames[i].Jtr.head<2>();
+        largest = std::max(largest, at.frames[i].Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
+      } else {
         const SplitNormals<S> f = split_frame(at, motion, i);
         shared += f.s;
         largest = std::max(largest, f.o.cwiseAbs().maxCoeff());
-        continue;
       }
-      const Eigen::Matrix<double, 8, 1>& Jtr = at.frames[i].Jtr;
-      if constexpr (S::kShared == 2) {
-        shared += Jtr.head<2>();
-      } else if constexpr (!kSeveral<S>) {
-        shared += shared_columns<S>(window_, motion, i).transpose() * Jtr.head<5>();
-      }
-      largest = std::max(largest, Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
     }
     return std::max(largest, shared.cwiseAbs().maxCoeff());
   }
@@ -230,7 +195,7 @@ class PlaneProblem {
   PlaneMotion moved(const PlaneMotion& from, const Step& step) const {
     PlaneMotion to = from;
     to.normal = moved_normal(from.normal, step.shared.template head<2>());
-    for (int k = 0; kSeveral<S> && k < layout_.others; ++k) {
+    for (int k = 0; !kNormalOnly<S> && k < layout_.others; ++k) {
       const Eigen::Vector3d u_s = step.shared.segment(Layout::of_plane(k + 1), 3);
       const double length = from.others[k].m.norm();
       to.others[k].m =
@@ -255,9 +220,9 @@ class PlaneProblem {
 
  private:
   // False at compile time where there is no room for them.
-  bool has_gyro() const { return (kSeveral<S> || S::kShared > 2) && layout_.gyro > 0; }
-  bool has_noise() const { return kSeveral<S> && S::kOwn == 6 && unknowns_.gyro_noise; }
-  bool has_clock() const { return (kSeveral<S> || S::kShared == 6) && layout_.gyro == 4; }
+  bool has_gyro() const { return !kNormalOnly<S> && layout_.gyro > 0; }
+  bool has_noise() const { return !kNormalOnly<S> && S::kOwn == 6 && unknowns_.gyro_noise; }
+  bool has_clock() const { return !kNormalOnly<S> && layout_.gyro == 4; }
 
   FrameNormals normals_of(const FrameObservations& f,
                           const FrameState& state,
@@ -272,8 +237,8 @@ class PlaneProblem {
   }
 
   SplitNormals<S> split_frame(const Linearized& at, const PlaneMotion& motion, int frame) const {
-    if constexpr (!kSeveral<S>) {
-      return split<S>(at.frames[frame], window_, motion, frame);
+    if constexpr (kNormalOnly<S>) {
+      return split<S>(at.frames[frame]);
     } else {
       const int size = layout_.size();
       SplitNormals<S> sum;

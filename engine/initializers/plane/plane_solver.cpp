@@ -98,13 +98,12 @@ PlaneSolution solve_plane(const Window& window,
                           const PlaneUnknowns& unknowns,
                           const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
-  const bool several = !observations.others.empty() || unknowns.gyro_noise;
   const bool free = unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
-  const auto solve = several ? (free ? solve_split<SeveralPlanesFree> : solve_split<SeveralPlanes>)
-                     : unknowns.rotations == RotationModel::known ? solve_split<KnownRotations>
-                     : unknowns.rotations == RotationModel::free  ? solve_split<FreeRotations>
-                     : unknowns.time_offset                       ? solve_split<UnknownBiasOffset>
-                                                                  : solve_split<UnknownBias>;
+  const bool normal_only = observations.others.empty() && !unknowns.gyro_noise &&
+                           unknowns.rotations != RotationModel::bias;
+  const auto solve = normal_only ? (free ? solve_split<FreeRotations> : solve_split<KnownRotations>)
+                     : free      ? solve_split<AnySharedFree>
+                                 : solve_split<AnyShared>;
   PlaneSolution solution = solve(window, observations, started(start, unknowns), unknowns, watch);
   solution.solver.residuals = residual_count(observations, unknowns);
   solution.solver.milliseconds =

@@ -1,0 +1,16 @@
+# Read by ctest when it starts, once for each program of gpo_tests() (CMakeLists.txt): one test a suite.
+# A test a process would spend a third of the time on loading libraries.
+if(NOT EXISTS ${program})
+  add_test(${target}.IsNotBuilt ${program})
+  return()
+endif()
+execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^\n]+" lines "${listed}")
+foreach(line IN LISTS lines)
+  if(NOT line MATCHES "^([^ ]+)\\.( .*)?$")
+    continue()
+  endif()
+  set(suite ${CMAKE_MATCH_1})
+  add_test(${suite} ${program} --gtest_filter=${suite}.*)
+  set_tests_properties(${suite} PROPERTIES TIMEOUT 900 COST ${cost} ENVIRONMENT ${environment})
+endforeach()
