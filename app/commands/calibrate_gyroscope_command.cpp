@@ -11,7 +11,7 @@
 #include "engine/files/output_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "ui/views/charts/figure_view.h"
+#include "ui/views/figures/figure_view.h"
 
 #include <array>
 

@@ -14,7 +14,7 @@
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "ui/views/charts/figure_view.h"
+#include "ui/views/figures/figure_view.h"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
-#include "ui/views/charts/figure_view.h"
+#include "ui/views/figures/figure_view.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 

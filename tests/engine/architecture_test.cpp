@@ -74,6 +74,7 @@ const std::vector<Room> kRooms = {
     {"ui/views/picture", {"engine/", "ui/look", "ui/context", "ui/views/overlay"}},
     {"ui/views/scene", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/picture"}},
     {"ui/views/charts", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/picture"}},
+    {"ui/views/figures", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/charts"}},
     {"ui/views/compare", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/picture"}},
     {"ui/views/normals", {"engine/", "ui/look", "ui/context", "ui/views/charts", "ui/views/overlay", "ui/views/picture", "ui/views/scene"}},
     {"ui/views", {"engine/", "ui/look", "ui/context", "ui/views/"}},

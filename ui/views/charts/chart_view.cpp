@@ -7,7 +7,7 @@
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
 #include "ui/views/charts/chart_ticks.h"
-#include "ui/views/charts/figure_plots.h"
+#include "ui/views/charts/chart_plots.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/picture_texture.h"
 

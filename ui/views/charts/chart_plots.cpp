@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/figure_plots.h"
+#include "ui/views/charts/chart_plots.h"
 
 #include "ui/look/palette.h"
 #include "ui/views/charts/axis_ticks.h"

@@ -4,8 +4,8 @@
 
 #include "engine/base/chart.h"
 #include "ui/views/charts/curve_style.h"
-#include "ui/views/charts/drawing.h"
-#include "ui/views/charts/figure_layout.h"
+#include "ui/views/figures/drawing.h"
+#include "ui/views/figures/figure_layout.h"
 
 namespace gpo {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/views/charts/drawing.h"
+#include "ui/views/figures/drawing.h"
 
 #include <array>
 #include <string>

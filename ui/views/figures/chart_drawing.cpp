@@ -1,12 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/views/figures/chart_drawing.h"
 
 #include "ui/look/palette.h"
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/chart_mapping.h"
 #include "ui/views/charts/chart_ticks.h"
-#include "ui/views/charts/figure_plots.h"
+#include "ui/views/charts/chart_plots.h"
 #include "ui/views/charts/marker_shapes.h"
 #include "ui/views/overlay/dash_pattern.h"
 

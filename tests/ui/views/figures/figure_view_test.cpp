@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/figure_view.h"
+#include "ui/views/figures/figure_view.h"
 
 #include "tests/ui/gl_test.h"
 #include "ui/look/palette.h"
 #include "ui/views/charts/curve_style.h"
-#include "ui/views/charts/glyphs.h"
+#include "ui/views/figures/glyphs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/glyphs.h"
+#include "ui/views/figures/glyphs.h"
 
 #include "ui/context/gui_style.h"
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/figure_layout.h"
+#include "ui/views/figures/figure_layout.h"
 
-#include "ui/views/charts/glyphs.h"
+#include "ui/views/figures/glyphs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/drawing.h"
-#include "ui/views/charts/glyphs.h"
+#include "ui/views/figures/drawing.h"
+#include "ui/views/figures/glyphs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/experiment/figure.h"
-#include "ui/views/charts/drawing.h"
+#include "ui/views/figures/drawing.h"
 
 #include <string>
 

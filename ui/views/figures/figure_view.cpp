@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/figure_view.h"
+#include "ui/views/figures/figure_view.h"
 
 #include "ui/look/palette.h"
-#include "ui/views/charts/chart_drawing.h"
-#include "ui/views/charts/figure_layout.h"
+#include "ui/views/figures/chart_drawing.h"
+#include "ui/views/figures/figure_layout.h"
 
 #include <algorithm>
 
