@@ -50,7 +50,7 @@ struct Verdict {
   std::optional<double> rotation_rms_px;      ///< of the best rotations alone, frame by frame
   std::optional<double> noise_px;             ///< of one coordinate, what the homographies leave
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
-  SceneKind scene = SceneKind::not_told;              ///< of inliers that are told by planes
+  SceneKind scene = SceneKind::not_told;      ///< of inliers that are told by planes
   std::vector<PlaneEvidence> planes = {};     ///< the largest one first
   std::optional<SceneCriterion> criterion = std::nullopt;
 };

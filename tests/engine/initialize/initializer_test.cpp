@@ -28,7 +28,7 @@ int ready_by_itself(const Camera& camera, const std::vector<Frame>& frames) {
   return 0;
 }
 
-LiveStatus fed(const Camera& camera, const std::vector<Frame>& frames, LiveOptions options) {
+LiveStatus fed(const Camera& camera, const std::vector<Frame>& frames, const LiveOptions& options) {
   Initializer initializer(camera, options);
   for (const Frame& frame : frames) initializer.add_frame(frame);
   return initializer.wait();

@@ -6,8 +6,8 @@
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_picture.h"
-#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/chart_plots.h"
+#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/picture/picture_texture.h"
 

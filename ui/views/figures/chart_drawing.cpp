@@ -5,8 +5,8 @@
 #include "ui/look/palette.h"
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/chart_mapping.h"
-#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/chart_plots.h"
+#include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/marker_shapes.h"
 #include "ui/views/overlay/dash_pattern.h"
 
