@@ -54,7 +54,7 @@ std::vector<std::string> keys_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t brace = type.find('{');
   if (brace != std::string::npos) return split(type.substr(brace + 1, type.find('}') - brace - 1));
-  const std::string help = option.get_description();
+  const std::string& help = option.get_description();
   const std::size_t colon = help.rfind(": ");
   if (colon == std::string::npos) return {};
   const std::string list = help.substr(colon + 2);

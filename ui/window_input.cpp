@@ -80,7 +80,6 @@ bool popup_is_open() {
 }  // namespace
 
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
-  take_events_as_they_come();
   glfwSetWindowUserPointer(window, &queue_);
   glfwSetKeyCallback(window, on_key);
   glfwSetCharCallback(window, on_character);

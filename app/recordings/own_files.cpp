@@ -26,7 +26,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 fs::path example_recording() {
   std::error_code none;
   const fs::path here = program_folder();
-  const fs::path example = fs::path("sequences") / "desk";
+  fs::path example = fs::path("sequences") / "desk";
   for (const fs::path& root : {here.parent_path() / "share" / "gpo-inspector",
                                fs::path(GPO_SOURCE_DIR),
                                here,
@@ -38,7 +38,7 @@ fs::path example_recording() {
 }
 
 fs::path made_recordings_folder() {
-  const fs::path built = GPO_RECORDINGS_DIR;
+  fs::path built = GPO_RECORDINGS_DIR;
   if (is_below(program_folder(), built.parent_path())) return built;
   return user_cache_folder() / "recordings";
 }

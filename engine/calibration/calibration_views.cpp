@@ -68,7 +68,9 @@ std::optional<double> edge_width(const cv::Mat& gray,
   const auto high = at(half);
   if (!low || !high) return std::nullopt;
   double slope = 0;
-  for (double t = -half + 0.5; t <= half - 0.5; t += 0.5) {
+  const int steps = static_cast<int>(2 * (2 * half - 1));
+  for (int k = 0; k <= steps; ++k) {
+    const double t = -half + 0.5 * (k + 1);
     slope = std::max(slope, std::abs(*at(t + 0.5) - *at(t - 0.5)));
   }
   constexpr double kLeastContrast = 20;

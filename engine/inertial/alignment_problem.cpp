@@ -98,8 +98,9 @@ AlignmentJacobian jacobian(const AlignmentProblem& problem,
   return J;
 }
 
-MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state) {
-  MatrixXd J(problem.centers.size(), 3);
+Eigen::Matrix<double, Eigen::Dynamic, 3> by_gyro_bias(const AlignmentProblem& problem,
+                                                      const AlignmentState& state) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> J(problem.centers.size(), 3);
   for (std::size_t k = 1; k < problem.path.size(); ++k) {
     const InertialFrame& frame = problem.path[k];
     J.middleRows<3>(3 * (static_cast<Eigen::Index>(k) - 1)) =
@@ -131,14 +132,16 @@ std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,
                                             const AlignmentState& state) {
   const Eigen::Index rows = problem.centers.size();
   const double s = std::exp(state.log_scale);
-  const MatrixXd J = by_gyro_bias(problem, state);
   ResidualNoise noise;
-  noise.of_path = s * s * problem.covariance.topLeftCorner(rows, rows);
-  noise.with_path = noise.of_path;
-  noise.with_path.noalias() += s * problem.covariance.topRightCorner(rows, 3) * J.transpose();
+  noise.log_scale = state.log_scale;
+  noise.with_bias = s * problem.covariance.topRightCorner(rows, 3);
+  noise.by_bias = by_gyro_bias(problem, state);
+  noise.with_path = s * s * problem.covariance.topLeftCorner(rows, rows);
+  noise.with_path.noalias() += noise.with_bias * noise.by_bias.transpose();
   MatrixXd all = noise.with_path + problem.inertial_noise;
-  all.noalias() += J * (s * problem.covariance.bottomLeftCorner(3, rows) +
-                        problem.covariance.bottomRightCorner<3, 3>() * J.transpose());
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> rest =
+      noise.with_bias + noise.by_bias * problem.covariance.bottomRightCorner<3, 3>();
+  all.noalias() += noise.by_bias * rest.transpose();
   noise.covariance.compute(all);
   if (noise.covariance.info() != Eigen::Success) return std::nullopt;
   return noise;

@@ -68,16 +68,24 @@ TurnFit turn_fit(const UncertainPoses& poses,
 }
 
 /// What of the log scale's information is due to noise: the path's errors that are left once the
-/// measurements have smoothed it, V = S - C Sigma^-1 C^T, count as motion. Expectation.
+/// measurements have smoothed it, V = S - C Sigma^-1 C^T, count as motion. Expectation. With
+/// Sigma = L L^T, K = L^-1 C^T L^-T and C^T = S + B P^T,
+///   L^-1 V L^-T = K - (L^-1 B) (L^-1 P)^T - K^T K.
 double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_columns) {
   const auto L = noise.covariance.matrixL();
-  const MatrixXd half = L.solve(noise.with_path.transpose());
-  MatrixXd V = noise.of_path;
-  V.noalias() -= half.transpose() * half;
-  const MatrixXd white = L.solve(L.solve(V).transpose());
-  const MatrixXd inside = other_columns.transpose() * white * other_columns;
+  MatrixXd K = noise.with_path;
+  L.solveInPlace(K);
+  K.transposeInPlace();
+  L.solveInPlace(K);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> b = L.solve(noise.by_bias);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> p = L.solve(noise.with_bias);
+  const MatrixXd K_others = K * other_columns;
+  MatrixXd inside = other_columns.transpose() * K_others;
+  inside.noalias() -= (other_columns.transpose() * b) * (p.transpose() * other_columns);
+  inside.noalias() -= K_others.transpose() * K_others;
   const MatrixXd squares = other_columns.transpose() * other_columns;
-  return white.trace() - squares.ldlt().solve(inside).trace();
+  return K.trace() - b.cwiseProduct(p).sum() - K.squaredNorm() -
+         squares.ldlt().solve(inside).trace();
 }
 
 AlignmentMatrix prior_of(const AlignmentProblem& problem) {
@@ -104,10 +112,12 @@ struct Refinement {
 Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   constexpr int kMostIterations = 12;
   constexpr double kConverged = 1e-2;  // of a standard deviation
+  constexpr double kAlike = 5e-3;      // scales whose noise is the same
   const AlignmentMatrix prior = prior_of(problem);
   Refinement result;
   for (; result.iterations < kMostIterations; ++result.iterations) {
-    result.noise = residual_noise(problem, state);
+    if (!result.noise || std::abs(state.log_scale - result.noise->log_scale) > kAlike)
+      result.noise = residual_noise(problem, state);
     if (!result.noise) return result;
     const VectorXd r = residuals(problem, state);
     const auto L = result.noise->covariance.matrixL();

@@ -3,6 +3,7 @@
 #include "ui/context/gui.h"
 
 #include "ui/context/gui_style.h"
+#include "ui/context/imgui_versions.h"
 #include "ui/context/window_context.h"
 #include "ui/context/window_picture.h"
 
@@ -35,6 +36,7 @@ Gui::Gui(float content_scale) : screen_scale_(content_scale), has_window_(false)
 
 Gui::Gui(WindowContext& window) : screen_scale_(window.content_scale()), has_window_(true) {
   create();
+  take_events_as_they_come();
   ImGui_ImplGlfw_InitForOpenGL(window.glfw(), false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }

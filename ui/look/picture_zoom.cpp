@@ -28,11 +28,14 @@ PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const P
 }
 
 Vector2d to_screen(const PictureMapping& mapping, const Vector2d& picture_px) {
-  return mapping.origin + mapping.scale * (picture_px + Vector2d::Constant(0.5));
+  const Vector2d shown_px =
+      mapping.undistorted != nullptr ? undistort(*mapping.undistorted, picture_px) : picture_px;
+  return mapping.origin + mapping.scale * (shown_px + Vector2d::Constant(0.5));
 }
 
 Vector2d to_picture(const PictureMapping& mapping, const Vector2d& screen_px) {
-  return (screen_px - mapping.origin) / mapping.scale - Vector2d::Constant(0.5);
+  const Vector2d shown_px = (screen_px - mapping.origin) / mapping.scale - Vector2d::Constant(0.5);
+  return mapping.undistorted != nullptr ? distort(*mapping.undistorted, shown_px) : shown_px;
 }
 
 PictureZoom zoom_about(const PictureZoom& zoom,

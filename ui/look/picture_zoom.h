@@ -20,6 +20,9 @@ struct PictureZoom {
 struct PictureMapping {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole screen pixels
   double scale = 1;                                  ///< screen pixels a picture pixel
+  /// Shown as the pinhole camera with the same intrinsics would see it; null: as recorded. Where
+  /// the lens model ends the places are NaN.
+  const Camera* undistorted = nullptr;
 };
 PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom);
 Eigen::Vector2d to_screen(const PictureMapping& mapping, const Eigen::Vector2d& picture_px);

@@ -14,11 +14,14 @@ struct ViewToggles {
   bool cube = true;
   bool truth = true;
   bool gravity = true;
+  bool undistorted = false;
+  bool legend = true;
   bool scan = false;
   bool wireframe = false;
   bool tower = false;
-  int uncertainty = 1;   ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
-  int exaggeration = 1;  ///< of the cube's distance from the true one, or the first column's
+  int uncertainty = 1;    ///< of the scene, enlarged so many times: 0 (not shown), 1, 10, 100
+  int exaggeration = 1;   ///< of the cube's distance from the true one, or the first column's
+  int point_size_px = 5;  ///< of the scene, at scale 1
 
   bool operator==(const ViewToggles&) const = default;
 };
@@ -68,6 +71,16 @@ inline constexpr std::array kViewToggles = {
         0,
         &ViewToggles::gravity,
         "Which way is up in the scene, and the horizon in the picture, by the accelerometer"},
+    ViewToggle{"undistorted",
+               "Without distortion",
+               'K',
+               &ViewToggles::undistorted,
+               "The picture as a pinhole camera with the same K would see it"},
+    ViewToggle{"legend",
+               "Legends",
+               0,
+               &ViewToggles::legend,
+               "What the signs and colors of picture and scene mean"},
     ViewToggle{"scan",
                "Scan for a start",
                0,

@@ -88,8 +88,8 @@ std::optional<Adjustment> started(Planes& planes, const Camera& camera, int norm
     if (!found) return std::nullopt;
     start.planes.push_back(*std::move(found));
   }
-  planes =
-      visible_part(std::move(planes), sight_errors(planes, camera.width, camera.height, start));
+  const auto errors = sight_errors(planes, camera.width, camera.height, start);
+  planes = visible_part(std::move(planes), errors);
   return start;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
 
 namespace gpo {
 namespace {
@@ -46,6 +47,32 @@ TEST(PictureZoom, PanFollowsThePointer) {
   zoom = pan(zoom, kZoomedCamera, kZoomedRect, {30, -12});
   const Vector2d after = to_screen(map_picture(kZoomedCamera, kZoomedRect, zoom), {320, 240});
   EXPECT_EQ(after - before, Vector2d(30, -12));
+}
+
+TEST(PictureMapping, WithoutDistortionIsWhatOpenCvsUndistortedPointsAreShownAt) {
+  Camera camera = kZoomedCamera;
+  camera.fx = camera.fy = 400;
+  camera.cx = 330;
+  camera.cy = 250;
+  camera.distortion = Distortion::radial_tangential;
+  camera.coefficients = {-0.28, 0.07, 0.0005, -0.0008};
+  PictureMapping mapping{{10, 20}, 2};
+  mapping.undistorted = &camera;
+  const cv::Mat K = (cv::Mat_<double>(3, 3) << 400, 0, 330, 0, 400, 250, 0, 0, 1);
+  for (const Vector2d& raw_px : {Vector2d(12, 30), Vector2d(330, 250), Vector2d(600, 460)}) {
+    std::vector<cv::Point2d> pinhole_px;
+    cv::undistortPoints(
+        std::vector{cv::Point2d(raw_px.x(), raw_px.y())},
+        pinhole_px,
+        K,
+        camera.coefficients,
+        {},
+        K,
+        cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
+    const Vector2d on_screen(10 + 2 * (pinhole_px[0].x + 0.5), 20 + 2 * (pinhole_px[0].y + 0.5));
+    EXPECT_LT((to_screen(mapping, raw_px) - on_screen).norm(), 1e-6);
+    EXPECT_LT((to_picture(mapping, on_screen) - raw_px).norm(), 1e-6);
+  }
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -57,6 +59,29 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
   const cv::Mat scene = cv::imread((folder / "scene.png").string());
   EXPECT_TRUE(same_bytes(snapshot_image(made_inspection(), 34), image));
   EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
+}
+
+TEST_F(Snapshot, WithoutDistortionIsThePictureAsOpenCvUndistortsIt) {
+  const Inspection inspection = made_inspection({.distorted = true});
+  const Camera& camera = inspection.recording->camera;
+  const cv::Mat drawn = snapshot_image(inspection,
+                                       20,
+                                       {},
+                                       {.tracks = false,
+                                        .cube = false,
+                                        .truth = false,
+                                        .gravity = false,
+                                        .undistorted = true,
+                                        .legend = false});
+  keep_snapshot("image_undistorted", drawn);
+  cv::Mat expected;
+  const cv::Mat K =
+      (cv::Mat_<double>(3, 3) << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  cv::undistort(inspection.recording->pictures->bgr(20), expected, K, camera.coefficients);
+  cv::Mat difference;
+  cv::absdiff(drawn, expected, difference);
+  const cv::Scalar mean = cv::mean(difference);
+  EXPECT_LT((mean[0] + mean[1] + mean[2]) / 3, 1.5) << "of 255";
 }
 
 TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {

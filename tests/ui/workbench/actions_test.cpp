@@ -50,6 +50,8 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
   run_line(state, "exaggerate 100");
   run_line(state, "exaggerate");
   EXPECT_EQ(state.view.exaggeration, 1);
+  run_line(state, "point-size 9");
+  EXPECT_EQ(state.view.point_size_px, 9);
   run_line(state, "color-by residual");
   EXPECT_EQ(state.coloring, Coloring::residual);
   run_line(state, "viewpoint top");
@@ -60,6 +62,7 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
        {std::pair{"frame", "frame: expected one word after it"},
         {"frame x", "frame: 'x', expected a number"},
         {"frame 1 2", "frame: '2' is one word too many"},
+        {"point-size 30", "point-size: '30', expected 1 to 20"},
         {"method nobody", "method: unknown value 'nobody', expected one of gpo"},
         {"start x", "start: 'x', expected"},
         {"nobody 3", "no action is called \"nobody\"; F1 lists them"},

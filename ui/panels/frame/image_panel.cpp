@@ -109,11 +109,9 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                              ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Pointer pointer{state,
-                        frame,
-                        rect,
-                        map_picture(state.recording->camera, rect, state.picture_zoom),
-                        input.scale};
+  const Camera& camera = state.recording->camera;
+  Pointer pointer{state, frame, rect, map_picture(camera, rect, state.picture_zoom), input.scale};
+  if (state.view.undistorted) pointer.mapping.undistorted = &camera;
   zoom_and_pan(pointer, commands);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
@@ -139,14 +137,14 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                               pointer.mapping,
                               highlight_of(state));
   }
-  draw_pixel_grid(list, rect, pointer.mapping, state.recording->camera);
+  draw_pixel_grid(list, rect, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   if (ImGui::IsItemHovered())
     draw_pixel_text(list,
                     rect,
                     pixel_text(input.inspection(),
                                frame,
-                               state.recording->camera,
+                               camera,
                                views.pixels,
                                to_picture(pointer.mapping, pointer.at),
                                pointer.mapping.scale / input.scale));

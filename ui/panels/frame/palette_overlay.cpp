@@ -4,6 +4,7 @@
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
+#include "ui/views/overlay/overlay_text.h"
 #include "ui/workbench/actions/actions.h"
 
 #include <cmath>
@@ -22,17 +23,20 @@ void draw_row(const Action& action, bool chosen, float width, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight() + 8 * scale;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const auto write = [&](float x, std::uint32_t rgb, const std::string& text) {
-    list.AddText({std::round(x), at.y + 4 * scale}, imgui_color(rgb), text.c_str());
+  const auto write = [&](float x, std::uint32_t rgb, const std::string& text, float room) {
+    list.AddText({std::round(x), at.y + 4 * scale},
+                 imgui_color(rgb),
+                 fitting_text(Font::regular, {text}, room).c_str());
   };
   if (chosen)
     list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::active), 4 * scale);
-  write(at.x + 8 * scale, color_of(Role::text), action.title);
-  write(at.x + width * 0.45F, color_of(Role::text_dim), usage(action));
-  if (action.shortcuts.empty()) return;
-  const std::string& keys = action.shortcuts.front().label;
-  write(
-      at.x + width - ImGui::CalcTextSize(keys.c_str()).x - 8 * scale, color_of(Role::accent), keys);
+  const float gap = 8 * scale;
+  const float usage_x = 0.45F * width;
+  write(at.x + gap, color_of(Role::text), action.title, usage_x - 2 * gap);
+  const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
+  const float keys_x = width - ImGui::CalcTextSize(keys.c_str()).x - gap;
+  write(at.x + usage_x, color_of(Role::text_dim), usage(action), keys_x - usage_x - gap);
+  write(at.x + keys_x, color_of(Role::accent), keys, width);
 }
 
 /// Rows that fit, the chosen one lit. The one that was clicked, or null.

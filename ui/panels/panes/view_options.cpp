@@ -48,8 +48,9 @@ ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kep
   options.exaggeration = state.view.exaggeration;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
+  options.undistorted = state.view.undistorted;
   options.colors = colors_of(state, kept);
-  options.legend = state.inspection != nullptr;
+  options.legend = state.view.legend && state.inspection != nullptr;
   return options;
 }
 
@@ -61,6 +62,8 @@ SceneViewOptions scene_options(const WorkbenchState& state, KeptTrackColors& kep
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.uncertainty = state.view.uncertainty;
+  options.point_size_px = state.view.point_size_px;
+  options.legend = state.view.legend;
   options.colors = colors_of(state, kept);
   return options;
 }
@@ -72,6 +75,7 @@ CompareOptions compare_options(const WorkbenchState& state) {
   options.cube_side = state.cube_side;
   options.cube_height_sides = height_sides(state);
   options.wireframe = state.view.wireframe;
+  options.undistorted = state.view.undistorted;
   options.exaggeration = state.view.exaggeration;
   options.truth = state.view.truth;
   options.residuals = state.view.residuals;

@@ -236,6 +236,7 @@ void draw_compare_view(ImDrawList& list,
   image.cube = options.cube;
   image.cube_height_sides = options.cube_height_sides;
   image.wireframe = options.wireframe;
+  image.undistorted = options.undistorted;
   image.exaggeration = options.exaggeration;
   image.reference = first;
   if (first != nullptr) image.reference_side = common_cube_side(columns, *first, options.cube_side);

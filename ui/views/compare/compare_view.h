@@ -28,6 +28,7 @@ struct CompareOptions {
   double cube_side = 0;          ///< of the first one [unit of its estimate]; 0: the default
   double cube_height_sides = 1;  ///< more: a tower
   bool wireframe = false;
+  bool undistorted = false;
   int exaggeration = 1;  ///< see `ImageViewOptions`; the reference is the first column
   bool truth = true;
   bool residuals = false;

@@ -82,6 +82,37 @@ void draw_surroundings(ImDrawList& list,
     if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, color);
 }
 
+constexpr int kCells = 64;  ///< a side, so small that the lens is straight within each
+
+/// The picture cell by cell.
+void draw_undistorted(ImDrawList& list,
+                      const Camera& camera,
+                      void* texture,
+                      const PictureMapping& mapping) {
+  const auto share = [](int i, int j) -> Vector2d { return Vector2d(i, j) / kCells; };
+  std::array<std::array<Vector2d, kCells + 1>, kCells + 1> corners;
+  for (int i = 0; i <= kCells; ++i)
+    for (int j = 0; j <= kCells; ++j)
+      corners[i][j] = to_screen(mapping,
+                                share(i, j).cwiseProduct(Vector2d(camera.width, camera.height)) -
+                                    Vector2d::Constant(0.5));
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      const Vector2d &a = corners[i][j], &b = corners[i + 1][j];
+      const Vector2d &c = corners[i + 1][j + 1], &d = corners[i][j + 1];
+      if (!(a + b + c + d).allFinite()) continue;
+      list.AddImageQuad(texture,
+                        to_imgui(a),
+                        to_imgui(b),
+                        to_imgui(c),
+                        to_imgui(d),
+                        to_imgui(share(i, j)),
+                        to_imgui(share(i + 1, j)),
+                        to_imgui(share(i + 1, j + 1)),
+                        to_imgui(share(i, j + 1)));
+    }
+}
+
 void draw_picture(ImDrawList& list,
                   const ScreenRect& rect,
                   const Camera& camera,
@@ -91,13 +122,13 @@ void draw_picture(ImDrawList& list,
   const ImVec2 high =
       to_imgui(mapping.origin + mapping.scale * Vector2d(camera.width, camera.height));
   draw_surroundings(list, rect, low, high);
-  if (picture != nullptr && picture->id() != nullptr) {
-    picture->set_screen_scale(mapping.scale);
-    mark_content(list, picture->revision());
-    list.AddImage(picture->id(), low, high);
-  } else {
-    list.AddRectFilled(low, high, imgui_color(Role::raised));
-  }
+  if (picture == nullptr || picture->id() == nullptr)
+    return list.AddRectFilled(low, high, imgui_color(Role::raised));
+  picture->set_screen_scale(mapping.scale);
+  mark_content(list, picture->revision());
+  if (mapping.undistorted == nullptr) return list.AddImage(picture->id(), low, high);
+  list.AddRectFilled(low, high, imgui_color(Role::background));
+  draw_undistorted(list, camera, picture->id(), mapping);
 }
 
 void draw_tails(const Canvas& canvas) {
@@ -251,11 +282,14 @@ void draw_results(const Canvas& canvas) {
   if (options.cube) draw_cubes(canvas);
 }
 
-std::string heading(const Inspection& inspection, int frame) {
+std::string heading(const Inspection& inspection, int frame, bool undistorted) {
   const auto& times = inspection.recording->timestamps_ns;
   const double seconds = static_cast<double>(times[frame] - times.front()) * 1e-9;
-  return fmt::format(
-      "frame {} · {:.3f} s · {}", frame, seconds, find_method(inspection.settings.method).title);
+  return fmt::format("frame {} · {:.3f} s · {}{}",
+                     frame,
+                     seconds,
+                     find_method(inspection.settings.method).title,
+                     undistorted ? " · undistorted" : "");
 }
 
 }  // namespace
@@ -274,7 +308,8 @@ void draw_image_view(ImDrawList& list,
                      const ImageViewOptions& options) {
   const Camera& camera = inspection.recording->camera;
   const int first = inspection.window->start, count = inspection.window->frame_count();
-  const PictureMapping mapping = map_picture(camera, rect, zoom);
+  PictureMapping mapping = map_picture(camera, rect, zoom);
+  if (options.undistorted) mapping.undistorted = &camera;
   const Canvas canvas{list, rect, inspection, frame - first, mapping, options, overlay_scale()};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   draw_picture(list, rect, camera, picture, mapping);
@@ -288,7 +323,9 @@ void draw_image_view(ImDrawList& list,
     rows.push_back(
         {Sign::none, 0, fmt::format("outside of the window {}–{}", first, first + count - 1)});
   }
-  if (options.legend) draw_legend(list, rect, Corner::top_left, heading(inspection, frame), rows);
+  if (options.legend)
+    draw_legend(
+        list, rect, Corner::top_left, heading(inspection, frame, options.undistorted), rows);
   if (inside && !inspection.initialization->ok)
     draw_badge(
         list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);

@@ -32,6 +32,7 @@ struct ImageViewOptions {
   double reference_side = 0;                       ///< of its cube, as `cube_side`
   bool truth = true;                               ///< the true cube, where it is known
   bool gravity = true;                             ///< the horizon, where gravity is known
+  bool undistorted = false;                        ///< as the pinhole camera would see it
   std::shared_ptr<const TrackColors> colors = {};  ///< of the tracks; null: by their planes
   bool legend = true;
 };

@@ -90,7 +90,8 @@ void draw_pixel_grid(ImDrawList& list,
                      const PictureMapping& mapping,
                      const Camera& camera) {
   constexpr double kLeastScale = 8;
-  if (mapping.scale < kLeastScale * overlay_scale()) return;
+  // Without the lens' distortion pixels are no squares.
+  if (mapping.scale < kLeastScale * overlay_scale() || mapping.undistorted != nullptr) return;
   const ImU32 color = imgui_color(Role::text, 0.12);
   const Vector2d first = to_picture(mapping, rect.min);
   const Vector2d last = to_picture(mapping, rect.min + rect.size);

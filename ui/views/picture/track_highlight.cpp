@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/picture/track_highlight.h"
 
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/plane_patches.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
+#include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/overlay_text.h"
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 namespace gpo {
@@ -136,6 +140,37 @@ void draw_highlight_in_picture(ImDrawList& list,
   list.PopClipRect();
 }
 
+std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b) {
+  const auto meters = known_scale(inspection);
+  const double distance = (b - a).norm();
+  return meters ? length_text(*meters * distance) : fmt::format("{:.3f} d", distance);
+}
+
+namespace {
+
+/// From one picked point to the other, where both are in the map and in view.
+template <class OnScreen>
+void draw_distance(ImDrawList& list,
+                   const Inspection& inspection,
+                   int column_a,
+                   int column_b,
+                   const OnScreen& on_screen) {
+  const MapPoint* a = point_of(inspection, column_a);
+  const MapPoint* b = point_of(inspection, column_b);
+  if (a == nullptr || b == nullptr) return;
+  const auto from = on_screen(a->position), to = on_screen(b->position);
+  if (!from || !to) return;
+  const float s = overlay_scale();
+  list.AddLine(to_imgui(*from), to_imgui(*to), imgui_color(Role::selected), 1.6F * s);
+  const std::string text = distance_text(inspection, a->position, b->position);
+  const Vector2d at = (*from + *to) / 2 + Vector2d(8 * s, 4 * s);
+  const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
+  list.AddRectFilled(to_imgui(at), to_imgui(at + size), imgui_color(Role::background, 0.8));
+  write_text(list, Font::small, at + Vector2d(4 * s, 2 * s), text);
+}
+
+}  // namespace
+
 void draw_highlight_in_scene(ImDrawList& list,
                              const ScreenRect& rect,
                              const Inspection& inspection,
@@ -169,6 +204,8 @@ void draw_highlight_in_scene(ImDrawList& list,
     draw_ring(list, *at, radius, rgb);
   };
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  if (highlight.picked.size() == 2)
+    draw_distance(list, inspection, highlight.picked[0], highlight.picked[1], on_screen);
   for (const int column : highlight.picked)
     draw_point(column,
                column == highlight.focus ? 8 : 6,

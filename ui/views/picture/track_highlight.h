@@ -61,8 +61,14 @@ void draw_highlight_in_picture(ImDrawList& list,
                                const PictureMapping& mapping,
                                const Highlight& highlight);
 
+/// How far apart two points of the estimate are: in meters where the accelerometer tells them, else
+/// in distances of the plane.
+std::string distance_text(const Inspection& inspection,
+                          const Eigen::Vector3d& a,
+                          const Eigen::Vector3d& b);
+
 /// Rings around the points in the scene, rays from the one in focus or hovered to the cameras that
-/// see it, and a ring around the hovered camera.
+/// see it, the distance between two that are picked, and a ring around the hovered camera.
 void draw_highlight_in_scene(ImDrawList& list,
                              const ScreenRect& rect,
                              const Inspection& inspection,

@@ -137,7 +137,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
       points.point(point.position, stage.color(point, color_of(Role::map_point)));
   }
-  stage.add(points, 5);
+  stage.add(points, stage.options.point_size_px);
 }
 
 /// The planes beside the leading one, each with its tracks in its color.
@@ -151,7 +151,7 @@ void add_patches(const Stage& stage) {
       points.point(point.position, stage.color(point, rgb));
     stage.add(face, 1);
     stage.add(border, 1.8);
-    stage.add(points, 5);
+    stage.add(points, stage.options.point_size_px);
   }
 }
 

@@ -22,8 +22,9 @@ struct SceneViewOptions {
   bool truth = true;             ///< true cameras and plane, where they are known
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
-  bool gravity = true;  ///< an arrow that points up, where gravity is known
-  bool moving = false;  ///< dragged right now: coarser, so that it keeps up
+  int point_size_px = 5;  ///< at scale 1
+  bool gravity = true;    ///< an arrow that points up, where gravity is known
+  bool moving = false;    ///< dragged right now: coarser, so that it keeps up
   std::shared_ptr<const TrackColors> colors = {};  ///< of the points; null: by their planes
   bool legend = true;
 

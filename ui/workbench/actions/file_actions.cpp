@@ -232,11 +232,11 @@ void add_file_actions(std::vector<Action>& table) {
   video.run = export_video;
   table.push_back(video);
   table.push_back(trajectory_export("trajectory",
-                                    "Export camera poses (TUM, EuRoC, KITTI)",
+                                    "Export camera poses",
                                     "Writes the estimated camera poses, for evo and others",
                                     poses));
   table.push_back(trajectory_export("true-trajectory",
-                                    "Export true camera poses (TUM, EuRoC, KITTI)",
+                                    "Export true camera poses",
                                     "Writes the true camera poses of the window's frames",
                                     true_poses));
   table.push_back(export_of("points", "Export map points (PLY)", points));

@@ -58,6 +58,22 @@ Action exaggeration() {
   return action;
 }
 
+Action point_size() {
+  Action action{"point-size", "Size of points", "View", {}, "Of the scene's points [px]"};
+  action.arguments = "1..20";
+  action.value = [](const State& s) { return fmt::format("{} px", s.view.point_size_px); };
+  action.needs_recording = false;
+  action.run = [](State& s, const Arguments& arguments) {
+    constexpr int kLargest = 20;
+    expect_count("point-size", arguments, 1, 1);
+    const int wanted = whole_number_in("point-size", arguments);
+    if (wanted < 1 || wanted > kLargest)
+      throw InputError(fmt::format("point-size: '{}', expected 1 to {}", arguments[0], kLargest));
+    s.view.point_size_px = wanted;
+  };
+  return action;
+}
+
 void add_toggles(std::vector<Action>& table) {
   for (const ViewToggle& one : kViewToggles) {
     std::vector<Shortcut> shortcuts;
@@ -80,6 +96,7 @@ void add_toggles(std::vector<Action>& table) {
   uncertainty.needs_recording = false;
   table.push_back(uncertainty);
   table.push_back(exaggeration());
+  table.push_back(point_size());
 }
 
 Action open_pane(const Pane& pane,

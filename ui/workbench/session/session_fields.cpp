@@ -93,6 +93,7 @@ struct ToJson {
     for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
     json["uncertainty"] = view.uncertainty;
     json["exaggeration"] = view.exaggeration;
+    json["point_size_px"] = view.point_size_px;
     return json;
   }
   Json operator()(const Panes& panes) const {
@@ -167,6 +168,7 @@ struct FromJson {
     for (const ViewToggle& one : kViewToggles) toggles(one.key, view.*one.shown);
     toggles("uncertainty", view.uncertainty, 0, 100);
     toggles("exaggeration", view.exaggeration, 1, 100);
+    toggles("point_size_px", view.point_size_px, 1, 20);
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);
