@@ -15,6 +15,7 @@
 #include <numeric>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
