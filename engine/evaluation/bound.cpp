@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -15,6 +15,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

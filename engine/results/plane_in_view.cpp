@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo::test {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 namespace {
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

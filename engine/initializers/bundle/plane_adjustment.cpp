@@ -9,6 +9,7 @@
 
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

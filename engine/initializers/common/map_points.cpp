@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/common/map_points.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace gpo {

@@ -15,6 +15,7 @@
 #include <limits>
 #include <map>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>

@@ -10,6 +10,7 @@
 #include <functional>
 #include <iterator>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 

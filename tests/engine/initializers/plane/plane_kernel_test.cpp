@@ -10,6 +10,7 @@
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 

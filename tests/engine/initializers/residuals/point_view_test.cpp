@@ -7,6 +7,7 @@
 
 #include <functional>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 

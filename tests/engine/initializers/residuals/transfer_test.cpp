@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace gpo {
