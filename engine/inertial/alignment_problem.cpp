@@ -98,9 +98,8 @@ AlignmentJacobian jacobian(const AlignmentProblem& problem,
   return J;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 3> by_gyro_bias(const AlignmentProblem& problem,
-                                                      const AlignmentState& state) {
-  Eigen::Matrix<double, Eigen::Dynamic, 3> J(problem.centers.size(), 3);
+Eigen::MatrixX3d by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state) {
+  Eigen::MatrixX3d J(problem.centers.size(), 3);
   for (std::size_t k = 1; k < problem.path.size(); ++k) {
     const InertialFrame& frame = problem.path[k];
     J.middleRows<3>(3 * (static_cast<Eigen::Index>(k) - 1)) =
@@ -139,7 +138,7 @@ std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,
   noise.with_path = s * s * problem.covariance.topLeftCorner(rows, rows);
   noise.with_path.noalias() += noise.with_bias * noise.by_bias.transpose();
   MatrixXd all = noise.with_path + problem.inertial_noise;
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> rest =
+  const Eigen::MatrixX3d rest =
       noise.with_bias + noise.by_bias * problem.covariance.bottomRightCorner<3, 3>();
   all.noalias() += noise.by_bias * rest.transpose();
   noise.covariance.compute(all);

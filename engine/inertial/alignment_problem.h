@@ -52,8 +52,7 @@ AlignmentJacobian jacobian(const AlignmentProblem& problem,
                            const Eigen::VectorXd& meters);
 /// Derivatives of the residuals by the gyroscope's bias, rows x 3. Without what it does to the
 /// accelerometer's bias, which is of second order.
-Eigen::Matrix<double, Eigen::Dynamic, 3> by_gyro_bias(const AlignmentProblem& problem,
-                                                      const AlignmentState& state);
+Eigen::MatrixX3d by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
 
 /// Scale, gravity and velocity from linear equations (as Qin and Shen 2018 do): gravity free, then
 /// of its known length.
@@ -63,11 +62,10 @@ AlignmentState linear_start(const AlignmentProblem& problem, double gravity_m_s2
 struct ResidualNoise {
   double log_scale = 0;                    ///< where it was taken
   Eigen::LLT<Eigen::MatrixXd> covariance;  ///< of the residuals [m^2]
-  /// Of the errors of s c_k with those of the residuals: that of the errors of s c_k, and
-  /// with_bias by_bias^T.
+  /// Of the errors of s c_k with those of the residuals: theirs, plus with_bias by_bias^T.
   Eigen::MatrixXd with_path;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> with_bias;  ///< of s c_k with the gyroscope's bias
-  Eigen::Matrix<double, Eigen::Dynamic, 3> by_bias;    ///< `by_gyro_bias`
+  Eigen::MatrixX3d with_bias;  ///< of s c_k with the gyroscope's bias
+  Eigen::MatrixX3d by_bias;    ///< `by_gyro_bias`
 };
 /// Nothing where the covariance is none.
 std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,

@@ -77,8 +77,8 @@ double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_co
   L.solveInPlace(K);
   K.transposeInPlace();
   L.solveInPlace(K);
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> b = L.solve(noise.by_bias);
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> p = L.solve(noise.with_bias);
+  const Eigen::MatrixX3d b = L.solve(noise.by_bias);
+  const Eigen::MatrixX3d p = L.solve(noise.with_bias);
   const MatrixXd K_others = K * other_columns;
   MatrixXd inside = other_columns.transpose() * K_others;
   inside.noalias() -= (other_columns.transpose() * b) * (p.transpose() * other_columns);

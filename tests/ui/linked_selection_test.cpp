@@ -21,6 +21,7 @@ namespace gpo {
 namespace {
 
 using Eigen::Vector2d;
+using testing::Contains;
 using testing::ElementsAre;
 
 /// A window with a mouse; what the user does is applied.
@@ -60,8 +61,8 @@ class LinkedSelection : public DrawingTest {
   ScreenRect picture() const { return screen_rect(layout_.picture); }
   /// Where the picture shows a track.
   Vector2d track_on_screen(int column) const {
-    const PictureMapping mapping =
-        map_picture(state_.recording->camera, picture(), state_.picture_zoom);
+    const PictureMapping mapping = map_picture(
+        state_.recording->camera, picture(), state_.picture_zoom, state_.view.undistorted);
     return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
   }
   OrbitCamera camera() const {
@@ -157,6 +158,30 @@ TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
   EXPECT_GT(state_.selection.tracks.size(), 3U);
   EXPECT_EQ(state_.picture_zoom.factor, 1);
   EXPECT_EQ(state_.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
+}
+
+TEST_F(LinkedSelection, WithoutDistortionTracksArePickedWhereTheyAreShown) {
+  const Eigen::AlignedBox2d inside(picture().min + Vector2d(20, 20),
+                                   picture().min + picture().size - Vector2d(20, 20));
+  const auto moved = [&](int column) {
+    state_.view.undistorted = false;
+    const Vector2d recorded = track_on_screen(column);
+    state_.view.undistorted = true;
+    const Vector2d shown = track_on_screen(column);
+    return inside.contains(shown) ? (shown - recorded).norm() : 0.0;
+  };
+  int column = 0;
+  for (int k = 0; k < inspection_->tracks->track_count(); ++k)
+    if (inspection_->tracks->seen(kFrame - kStart, k) && moved(k) > moved(column)) column = k;
+  ASSERT_GT(moved(column), 12) << "[px], more than a click reaches";
+  const Vector2d at = track_on_screen(column);
+  test::hold(false, true);
+  point_at(at - Vector2d(6, 6));
+  press(0, true);
+  point_at(at + Vector2d(6, 6));
+  press(0, false);
+  test::hold(false, false);
+  EXPECT_THAT(state_.selection.tracks, Contains(inspection_->tracks->ids[column]));
 }
 
 TEST_F(LinkedSelection, PointOfTheSceneIsTheSameTrack) {

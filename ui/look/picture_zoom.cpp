@@ -20,11 +20,16 @@ double fitting_scale(const Camera& camera, const ScreenRect& rect) {
 
 }  // namespace
 
-PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom) {
+PictureMapping map_picture(const Camera& camera,
+                           const ScreenRect& rect,
+                           const PictureZoom& zoom,
+                           bool undistorted) {
   const double scale = fitting_scale(camera, rect) * zoom.factor;
   const Vector2d corner =
       rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
-  return {Vector2d(std::round(corner.x()), std::round(corner.y())), scale};
+  return {Vector2d(std::round(corner.x()), std::round(corner.y())),
+          scale,
+          undistorted ? &camera : nullptr};
 }
 
 Vector2d to_screen(const PictureMapping& mapping, const Vector2d& picture_px) {

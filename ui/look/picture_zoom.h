@@ -24,7 +24,11 @@ struct PictureMapping {
   /// the lens model ends the places are NaN.
   const Camera* undistorted = nullptr;
 };
-PictureMapping map_picture(const Camera& camera, const ScreenRect& rect, const PictureZoom& zoom);
+/// Refers to the camera where it is `undistorted`.
+PictureMapping map_picture(const Camera& camera,
+                           const ScreenRect& rect,
+                           const PictureZoom& zoom,
+                           bool undistorted = false);
 Eigen::Vector2d to_screen(const PictureMapping& mapping, const Eigen::Vector2d& picture_px);
 Eigen::Vector2d to_picture(const PictureMapping& mapping, const Eigen::Vector2d& screen_px);
 

@@ -56,8 +56,7 @@ TEST(PictureMapping, WithoutDistortionIsWhatOpenCvsUndistortedPointsAreShownAt) 
   camera.cy = 250;
   camera.distortion = Distortion::radial_tangential;
   camera.coefficients = {-0.28, 0.07, 0.0005, -0.0008};
-  PictureMapping mapping{{10, 20}, 2};
-  mapping.undistorted = &camera;
+  const PictureMapping mapping{{10, 20}, 2, &camera};
   const cv::Mat K = (cv::Mat_<double>(3, 3) << 400, 0, 330, 0, 400, 250, 0, 0, 1);
   for (const Vector2d& raw_px : {Vector2d(12, 30), Vector2d(330, 250), Vector2d(600, 460)}) {
     std::vector<cv::Point2d> pinhole_px;

@@ -18,6 +18,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 namespace {
 
@@ -59,6 +61,21 @@ void zoom_and_pan(const Pointer& pointer, Commands& commands) {
   }
 }
 
+/// Between where the mouse was pressed and where it is, on the screen: without distortion that is
+/// no rectangle of the picture.
+std::vector<std::int64_t> tracks_in_rectangle(const Pointer& pointer) {
+  const Eigen::AlignedBox2d box(pointer.at.cwiseMin(pointer.pressed_at),
+                                pointer.at.cwiseMax(pointer.pressed_at));
+  std::vector<std::int64_t> ids = tracks_in_view(pointer.state);
+  std::erase_if(ids, [&](std::int64_t id) {
+    const Tracks& tracks = *pointer.state.inspection->tracks;
+    const Vector2d raw_px =
+        tracks.raw_px[pointer.state.frame - tracks.start].col(*column_of(tracks, id));
+    return !box.contains(to_screen(pointer.mapping, raw_px));
+  });
+  return ids;
+}
+
 /// Click: picks the track; with Ctrl beside the others. Shift and drag: those in a rectangle. Right
 /// click: the cube comes here, where this is the reference frame.
 void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands& commands) {
@@ -72,9 +89,7 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands&
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
     push(commands, SelectTracks{});
   } else if (!clicked && io.KeyShift) {
-    const Vector2d a = to_picture(pointer.mapping, pointer.pressed_at);
-    const Vector2d b = to_picture(pointer.mapping, pointer.at);
-    const std::vector<std::int64_t> within = tracks_within(pointer.state, a, b);
+    const std::vector<std::int64_t> within = tracks_in_rectangle(pointer);
     push(commands, SelectTracks{io.KeyCtrl ? extended(selection, within) : selected(within)});
   }
 }
@@ -110,8 +125,11 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                              ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
   const Camera& camera = state.recording->camera;
-  Pointer pointer{state, frame, rect, map_picture(camera, rect, state.picture_zoom), input.scale};
-  if (state.view.undistorted) pointer.mapping.undistorted = &camera;
+  const Pointer pointer{state,
+                        frame,
+                        rect,
+                        map_picture(camera, rect, state.picture_zoom, state.view.undistorted),
+                        input.scale};
   zoom_and_pan(pointer, commands);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});

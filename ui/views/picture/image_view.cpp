@@ -308,8 +308,7 @@ void draw_image_view(ImDrawList& list,
                      const ImageViewOptions& options) {
   const Camera& camera = inspection.recording->camera;
   const int first = inspection.window->start, count = inspection.window->frame_count();
-  PictureMapping mapping = map_picture(camera, rect, zoom);
-  if (options.undistorted) mapping.undistorted = &camera;
+  const PictureMapping mapping = map_picture(camera, rect, zoom, options.undistorted);
   const Canvas canvas{list, rect, inspection, frame - first, mapping, options, overlay_scale()};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   draw_picture(list, rect, camera, picture, mapping);
