@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/gyroscope_alignment.h"
 
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -9,7 +10,6 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace gpo {
 namespace {
@@ -40,9 +40,7 @@ Alignment align(const Pairs& pairs) {
     Matrix3d B = Matrix3d::Zero();
     for (std::size_t k = 0; k < n; ++k)
       B += weights[k] * (pairs.gyroscope[k] - mean_g) * (pairs.pictures[k] - mean_p).transpose();
-    const Eigen::JacobiSVD<Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    result.R = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    result.R = nearest_rotation(B);
     result.bias = mean_g - result.R * mean_p;
     result.errors_rad_s.resize(n);
     for (std::size_t k = 0; k < n; ++k)

@@ -4,6 +4,7 @@
 
 #include "engine/calibration/gyroscope_alignment.h"
 #include "engine/frontend/rotations.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -194,7 +194,7 @@ std::optional<Refined> refine(const std::vector<Observed>& windows, State state,
     for (int tries = 0; tries < 8; ++tries) {
       Eigen::Matrix<double, 8, 8> damped = A;
       damped.diagonal() *= 1 + damping;
-      const Parameters step = -damped.ldlt().solve(g);
+      const Parameters step = -solve_symmetric(damped, g);
       const State next = moved(state, step);
       if (errors_of(windows, next, knee).cost <= errors.cost) {
         damping = std::max(1e-9, damping / 10);
@@ -214,13 +214,13 @@ std::optional<Refined> refine(const std::vector<Observed>& windows, State state,
 Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(unknowns, unknowns);
   for (const WindowNormals& w : fit.normals) A += w.JtJ.topLeftCorner(unknowns, unknowns);
-  const Eigen::MatrixXd inverse = A.ldlt().solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
+  const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
   // Each window's residuals as if it had been left out (Bell and McCaffrey): the step that the
   // others take without it.
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
   for (const WindowNormals& w : fit.normals) {
     const Eigen::MatrixXd left = A - w.JtJ.topLeftCorner(unknowns, unknowns);
-    const Eigen::VectorXd x = left.ldlt().solve(w.Jtr.head(unknowns));
+    const Eigen::VectorXd x = solve_symmetric(left, w.Jtr.head(unknowns));
     covariance += x * x.transpose();
   }
   const auto n = static_cast<double>(fit.normals.size());

@@ -3,6 +3,7 @@
 #include "engine/calibration/lens_fit.h"
 
 #include "engine/calibration/camera_parameters.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/board/board_pose.h"
 
@@ -10,7 +11,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 
 namespace gpo {
@@ -88,8 +88,8 @@ double bend_of(const cv::Mat& points) {
     all.col(i) << p.x, p.y, p.z;
   }
   all.colwise() -= all.rowwise().mean().eval();
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(all, Eigen::ComputeFullU);
-  return (svd.matrixU().col(2).transpose() * all).cwiseAbs().maxCoeff();
+  const Eigen::Vector3d normal = symmetric_eigen(all * all.transpose()).vectors.col(0);
+  return (normal.transpose() * all).cwiseAbs().maxCoeff();
 }
 
 /// `columns`: of corners. The last of the first row is held, with the first and the last corner's

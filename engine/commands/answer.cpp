@@ -105,7 +105,7 @@ Matrix3d rotation_in(const Json& json, const std::string& where, const char* key
   numbers(member(json, where, key), name, kExpected, values);
   if (values.size() != 9) refuse(name, kExpected);
   const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
-  const auto rotation = nearest_rotation(R, kMostSkew);
+  const auto rotation = rotation_meant(R, kMostSkew);
   if (!rotation) refuse(name, "a rotation matrix, row by row");
   return *rotation;
 }

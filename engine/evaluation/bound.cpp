@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/bound.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/residuals/transfer.h"
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -35,7 +35,7 @@ std::optional<double> normal_bound_deg(const Window& window,
       nt += J_n.transpose() * transfer.d_tau;
       tt += transfer.d_tau.transpose() * transfer.d_tau;
     }
-    information += nn - nt * tt.ldlt().solve(nt.transpose());  // Schur complement over tau_i
+    information += nn - nt * solve_symmetric(tt, nt.transpose());  // Schur complement over tau_i
   }
   const Eigen::Matrix2d covariance = sigma_px * sigma_px * information.inverse();
   const double bound_deg = degrees(std::sqrt(covariance.trace()));

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -59,8 +58,8 @@ GyroBias fit_gyro_bias(const Gyroscope& given,
       JtJ += weight * J[i].transpose() * J[i];
       Jtr += weight * J[i].transpose() * residuals[i];
     }
-    const Vector3d step = JtJ.ldlt().solve(-Jtr);
     covariance = JtJ.inverse();
+    const Vector3d step = -covariance * Jtr;
     bias += step;
     if (step.norm() < 1e-9) break;
   }

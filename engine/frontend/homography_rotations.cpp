@@ -5,6 +5,7 @@
 #include "engine/frontend/rotation_averaging.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/homography_decomposition.h"
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -17,7 +18,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -68,13 +68,9 @@ Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
   from.col(0) = normal.unitOrthogonal();
   from.col(1) = normal.cross(from.col(0));
   from.col(2) = normal;
-  const Eigen::Matrix<double, 3, 2> M = H_ji * from.leftCols<2>();
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>, Eigen::HouseholderQRPreconditioner> svd(
-      M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d to;
-  to.leftCols<2>() = svd.matrixU().leftCols<2>() * svd.matrixV().transpose();
-  to.col(2) = to.col(0).cross(to.col(1));
-  return to * from.transpose();
+  Matrix3d to = H_ji * from;
+  to.col(2) = to.col(0).cross(to.col(1)).normalized();
+  return nearest_rotation(to) * from.transpose();
 }
 
 double weight_of(const HomographyMotion& motion) {

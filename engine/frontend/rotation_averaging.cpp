@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotation_averaging.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-
-#include <Eigen/Cholesky>
 
 namespace gpo {
 namespace {
@@ -36,9 +35,8 @@ Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
     right.row(i) -= w * residuals[k].transpose();
   }
   Eigen::MatrixX3d x = Eigen::MatrixX3d::Zero(frames, 3);
-  x.bottomRows(frames - 1) = laplacian.bottomRightCorner(frames - 1, frames - 1)
-                                 .ldlt()
-                                 .solve(right.bottomRows(frames - 1));
+  x.bottomRows(frames - 1) = solve_symmetric(laplacian.bottomRightCorner(frames - 1, frames - 1),
+                                             right.bottomRows(frames - 1));
   return x;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera_resection.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/sqpnp.h"
 #include "engine/geometry/statistics.h"
 
@@ -9,7 +10,6 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -59,7 +59,7 @@ Eigen::Matrix<double, 6, 1> gauss_newton_step(const Pose& pose,
     JtJ += J.transpose() * J;
     Jtr += J.transpose() * r;
   }
-  return JtJ.ldlt().solve(-Jtr);
+  return solve_symmetric(JtJ, -Jtr);
 }
 
 }  // namespace

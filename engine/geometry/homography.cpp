@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/homography.h"
 
+#include "engine/geometry/decompositions.h"
+
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace gpo {
 namespace {
@@ -28,16 +26,28 @@ Matrix3d normalization(const Matrix2Xd& x) {
   return T;
 }
 
-/// Two rows of the direct linear transform for each pair: to x (H from) = 0.
-Eigen::Matrix<double, Eigen::Dynamic, 9> linear_system(const Matrix2Xd& from, const Matrix2Xd& to) {
-  Eigen::Matrix<double, Eigen::Dynamic, 9> A(2 * from.cols(), 9);
-  for (Eigen::Index j = 0; j < from.cols(); ++j) {
-    const Eigen::RowVector3d x = from.col(j).homogeneous().transpose();
-    A.row(2 * j) << x, Eigen::RowVector3d::Zero(), -to(0, j) * x;
-    A.row(2 * j + 1) << Eigen::RowVector3d::Zero(), x, -to(1, j) * x;
+/// sum w Q (x) x x^T over points, Q = [1 0 -u; 0 1 -v; -u -v u^2 + v^2]: the squares of
+/// p - pi(H x) weighted, over the rows of H, to first order; with w = 1 those of the direct linear
+/// transform's two rows, (x, 0, -u x) and (0, x, -v x).
+class LinearForm {
+ public:
+  void add(const Vector3d& x, const Vector2d& p, double w) {
+    const Matrix3d xx = w * x * x.transpose();
+    of_1_ += xx;
+    of_u_ += p.x() * xx;
+    of_v_ += p.y() * xx;
+    of_pp_ += p.squaredNorm() * xx;
   }
-  return A;
-}
+  Eigen::MatrixXd matrix() const {
+    Eigen::MatrixXd A(9, 9);
+    A << of_1_, Matrix3d::Zero(), -of_u_, Matrix3d::Zero(), of_1_, -of_v_, -of_u_, -of_v_, of_pp_;
+    return A;
+  }
+
+ private:
+  Matrix3d of_1_ = Matrix3d::Zero(), of_u_ = Matrix3d::Zero(), of_v_ = Matrix3d::Zero(),
+           of_pp_ = Matrix3d::Zero();
+};
 
 }  // namespace
 
@@ -48,23 +58,13 @@ Vector2d transfer(const Matrix3d& H, const Vector2d& x) {
 std::optional<Matrix3d> fit_homography(const Matrix2Xd& from, const Matrix2Xd& to) {
   const Matrix3d T_from = normalization(from);
   const Matrix3d T_to = normalization(to);
-  const auto normalized = [](const Matrix3d& T, const Matrix2Xd& x) -> Matrix2Xd {
-    return (T * x.colwise().homogeneous()).colwise().hnormalized();
-  };
-  const auto A = linear_system(normalized(T_from, from), normalized(T_to, to));
-  Eigen::Matrix<double, 9, 1> h;
-  if (from.cols() == 4) {
-    // The null space of a full-rank 8x9 system, some ten times faster than the SVD in RANSAC's
-    // loop.
-    const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 9, 8>> qr(A.transpose());
-    if (qr.rank() < 8) return std::nullopt;
-    h = qr.householderQ() * Eigen::Matrix<double, 9, 1>::Unit(8);
-  } else {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(A.transpose() * A);
-    if (!(eigen.eigenvalues()(1) > 1e-12 * eigen.eigenvalues()(8))) return std::nullopt;
-    h = eigen.eigenvectors().col(0);
-  }
-  const Matrix3d Hn = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(h.data());
+  LinearForm form;
+  for (Eigen::Index j = 0; j < from.cols(); ++j)
+    form.add(T_from * from.col(j).homogeneous(), transfer(T_to, to.col(j)), 1);
+  const SymmetricEigen eigen = symmetric_eigen(form.matrix());
+  if (!(eigen.values(1) > 1e-12 * eigen.values(8))) return std::nullopt;
+  const Eigen::VectorXd h = eigen.vectors.col(0);
+  const Matrix3d Hn = h.reshaped<Eigen::RowMajor>(3, 3);
   Matrix3d H = T_to.inverse() * Hn * T_from;
   const Eigen::RowVectorXd depth = H.row(2) * from.colwise().homogeneous();
   if (depth(0) < 0) H = -H;
@@ -84,31 +84,26 @@ Eigen::Matrix3d homography_through_four(const Eigen::Matrix<double, 2, 4>& from,
 }
 
 Matrix3d refine_homography(const Matrix3d& H_start, const Matrix2Xd& from, const Matrix2Xd& to) {
-  using Vector8d = Eigen::Matrix<double, 8, 1>;
   const Matrix3d T_from = normalization(from);
   const Matrix3d T_to = normalization(to);
   Matrix3d H = T_to * H_start * T_from.inverse();
   H /= H(2, 2);
   for (int step = 0; step < 5; ++step) {
-    Eigen::Matrix<double, 8, 8> JtJ = Eigen::Matrix<double, 8, 8>::Zero();
-    Vector8d Jtr = Vector8d::Zero();
+    LinearForm form;
+    Matrix3d gradient = Matrix3d::Zero();
     for (Eigen::Index j = 0; j < from.cols(); ++j) {
       const Vector3d x = T_from * from.col(j).homogeneous();
       const Vector3d y = H * x;
       const Vector2d p = y.hnormalized();
-      const Vector2d r = p - (T_to * to.col(j).homogeneous()).hnormalized();
-      Eigen::Matrix<double, 2, 8> J;
-      J << x.transpose(), Eigen::RowVector3d::Zero(), -p.x() * x.head<2>().transpose(),
-          Eigen::RowVector3d::Zero(), x.transpose(), -p.y() * x.head<2>().transpose();
-      J /= y.z();
-      JtJ += J.transpose() * J;
-      Jtr += J.transpose() * r;
+      const Vector2d r = p - transfer(T_to, to.col(j));
+      form.add(x, p, 1 / (y.z() * y.z()));
+      gradient += Vector3d(r.x(), r.y(), -p.dot(r)) * x.transpose() / y.z();
     }
-    const Vector8d delta = JtJ.ldlt().solve(-Jtr);
+    Eigen::VectorXd delta = Eigen::VectorXd::Zero(9);
+    delta.head(8) = solve_symmetric(form.matrix().topLeftCorner(8, 8),
+                                    -gradient.reshaped<Eigen::RowMajor>().head(8));
     if (!delta.allFinite()) break;
-    Matrix3d D;
-    D << delta(0), delta(1), delta(2), delta(3), delta(4), delta(5), delta(6), delta(7), 0;
-    H += D;
+    H += delta.reshaped<Eigen::RowMajor>(3, 3);
     if (delta.norm() < 1e-10) break;
   }
   const Matrix3d refined = T_to.inverse() * H * T_from;

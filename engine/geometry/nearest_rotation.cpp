@@ -7,13 +7,17 @@
 
 namespace gpo {
 
-std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& M, double most_skew) {
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew) {
   constexpr double kRounding = 1e-12;
   const double skew = (M * M.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(skew <= most_skew) || M.determinant() < 0) return std::nullopt;
-  if (skew <= kRounding) return M;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  return skew <= kRounding ? M : nearest_rotation(M);
 }
 
 }  // namespace gpo

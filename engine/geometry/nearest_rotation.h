@@ -8,9 +8,13 @@
 
 namespace gpo {
 
-/// The rotation nearest to a matrix that is meant to be one, written with few digits: as it is
-/// where it is one but for rounding; nothing where an entry of M M^T is off by more than
-/// `most_skew`, or where M mirrors.
-std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& M, double most_skew);
+/// The rotation with the least |R - M| (Frobenius); of a matrix that mirrors the nearest that does
+/// not.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
+
+/// The rotation that a matrix written with few digits is meant to be: as it is where it is one but
+/// for rounding; nothing where an entry of M M^T is off by more than `most_skew`, or where M
+/// mirrors.
+std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
 
 }  // namespace gpo

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/sqpnp.h"
 
+#include "engine/geometry/decompositions.h"
+#include "engine/geometry/nearest_rotation.h"
+
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 
 namespace gpo {
 namespace {
@@ -41,25 +42,21 @@ Cost cost_of(const Eigen::Matrix3Xd& points, const Eigen::Matrix2Xd& seen) {
   Matrix39 tr = Matrix39::Zero();
   Matrix3d tt = Matrix3d::Zero();
   for (Eigen::Index k = 0; k < points.cols(); ++k) {
-    Eigen::Matrix<double, 2, 3> B;
-    B << 1, 0, -seen(0, k), 0, 1, -seen(1, k);
-    Matrix39 by_r = Matrix39::Zero();  // R X = by_r r
-    for (int row = 0; row < 3; ++row) by_r.block<1, 3>(row, 3 * row) = points.col(k).transpose();
-    const Matrix3d Q = B.transpose() * B;
-    rr += by_r.transpose() * Q * by_r;
-    tr += Q * by_r;
+    const Vector3d X = points.col(k);
+    const double u = seen(0, k);
+    const double v = seen(1, k);
+    Matrix3d Q;  // B^T B
+    Q << 1, 0, -u, 0, 1, -v, -u, -v, u * u + v * v;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) rr.block<3, 3>(3 * i, 3 * j) += Q(i, j) * X * X.transpose();
+      tr.block<3, 3>(0, 3 * i) += Q.col(i) * X.transpose();
+    }
     tt += Q;
   }
   Cost cost;
-  cost.translation = -tt.ldlt().solve(tr);
+  cost.translation = -tt.inverse() * tr;
   cost.form = rr + tr.transpose() * cost.translation;
   return cost;
-}
-
-Matrix3d nearest_rotation(const Matrix3d& M) {
-  const Eigen::JacobiSVD<Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
 double value(const Cost& cost, const Matrix3d& R) {
@@ -76,7 +73,7 @@ Matrix3d minimized(const Cost& cost, Matrix3d R) {
     for (int k = 0; k < 3; ++k) d_r.col(k) = vector_of(R * skew(Vector3d::Unit(k)));
     Matrix3d JtJ = d_r.transpose() * cost.form * d_r;
     JtJ.diagonal().array() += damping * JtJ.trace();
-    const Vector3d w = -JtJ.ldlt().solve(d_r.transpose() * (cost.form * vector_of(R)));
+    const Vector3d w = solve_symmetric(JtJ, -d_r.transpose() * (cost.form * vector_of(R)));
     if (!w.allFinite()) break;
     const Matrix3d moved = nearest_rotation(R * so3_exp(w));
     const double moved_to = value(cost, moved);
@@ -107,12 +104,12 @@ std::optional<Pose> pose_of_least_algebraic_error(const Eigen::Matrix3Xd& points
   const Eigen::Matrix3Xd points = points_w.colwise() - middle;
   const Cost cost = cost_of(points, seen);
   if (!cost.form.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(cost.form);
+  const SymmetricEigen eigen = symmetric_eigen(cost.form);
   std::optional<Pose> best;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kStarts; ++k) {
     for (const double sign : {1.0, -1.0}) {
-      const Matrix3d start = nearest_rotation(sign * matrix_of(eigen.eigenvectors().col(k)));
+      const Matrix3d start = nearest_rotation(sign * matrix_of(eigen.vectors.col(k)));
       const Matrix3d R_cw = minimized(cost, start);
       const Vector3d t_cw = cost.translation * vector_of(R_cw);
       const double found = value(cost, R_cw);

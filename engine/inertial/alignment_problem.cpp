@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inertial/alignment_problem.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 namespace gpo {
 
@@ -44,7 +44,7 @@ VectorXd linear_solution(const AlignmentProblem& problem, const Vector3d& g_0, c
     A.block(row, 4, 3, B.cols()) = -0.5 * t * t * B;
     b.segment<3>(row) += 0.5 * t * t * g_0;
   }
-  return A.colPivHouseholderQr().solve(b);
+  return least_squares(A, b);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ Eigen::Matrix<double, 3, 2> gravity_tangents(const Vector3d& gravity) {
   return tangents;
 }
 
-AlignmentState stepped(const AlignmentState& state, const AlignmentVector& step) {
+AlignmentState stepped(const AlignmentState& state, const VectorXd& step) {
   AlignmentState next = state;
   next.velocity += step.head<3>();
   const Vector3d turned =
@@ -80,10 +80,10 @@ VectorXd residuals(const AlignmentProblem& problem, const AlignmentState& state)
   return all;
 }
 
-AlignmentJacobian jacobian(const AlignmentProblem& problem,
-                           const AlignmentState& state,
-                           const VectorXd& meters) {
-  AlignmentJacobian J(meters.size(), kAlignmentUnknowns);
+MatrixXd jacobian(const AlignmentProblem& problem,
+                  const AlignmentState& state,
+                  const VectorXd& meters) {
+  MatrixXd J(meters.size(), kAlignmentUnknowns);
   const auto tangents = gravity_tangents(state.gravity);
   J.col(kScaleUnknown) = meters;
   for (std::size_t k = 1; k < problem.path.size(); ++k) {
@@ -98,8 +98,8 @@ AlignmentJacobian jacobian(const AlignmentProblem& problem,
   return J;
 }
 
-Eigen::MatrixX3d by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state) {
-  Eigen::MatrixX3d J(problem.centers.size(), 3);
+MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state) {
+  MatrixXd J(problem.centers.size(), 3);
   for (std::size_t k = 1; k < problem.path.size(); ++k) {
     const InertialFrame& frame = problem.path[k];
     J.middleRows<3>(3 * (static_cast<Eigen::Index>(k) - 1)) =
@@ -138,7 +138,7 @@ std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,
   noise.with_path = s * s * problem.covariance.topLeftCorner(rows, rows);
   noise.with_path.noalias() += noise.with_bias * noise.by_bias.transpose();
   MatrixXd all = noise.with_path + problem.inertial_noise;
-  const Eigen::MatrixX3d rest =
+  const MatrixXd rest =
       noise.with_bias + noise.by_bias * problem.covariance.bottomRightCorner<3, 3>();
   all.noalias() += noise.by_bias * rest.transpose();
   noise.covariance.compute(all);

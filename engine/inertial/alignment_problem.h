@@ -36,23 +36,20 @@ struct AlignmentState {
 };
 inline constexpr int kAlignmentUnknowns = 12;
 inline constexpr int kScaleUnknown = 5;
-using AlignmentMatrix = Eigen::Matrix<double, kAlignmentUnknowns, kAlignmentUnknowns>;
-using AlignmentVector = Eigen::Matrix<double, kAlignmentUnknowns, 1>;
-using AlignmentJacobian = Eigen::Matrix<double, Eigen::Dynamic, kAlignmentUnknowns>;
 
 /// Two unit vectors that are normal to gravity and each other.
 Eigen::Matrix<double, 3, 2> gravity_tangents(const Eigen::Vector3d& gravity);
 /// A state after a step; gravity turns.
-AlignmentState stepped(const AlignmentState& state, const AlignmentVector& step);
+AlignmentState stepped(const AlignmentState& state, const Eigen::VectorXd& step);
 
 Eigen::VectorXd residuals(const AlignmentProblem& problem, const AlignmentState& state);
 /// Derivatives of the residuals by a step; the scale's with the path `meters` in place of s c_k.
-AlignmentJacobian jacobian(const AlignmentProblem& problem,
-                           const AlignmentState& state,
-                           const Eigen::VectorXd& meters);
+Eigen::MatrixXd jacobian(const AlignmentProblem& problem,
+                         const AlignmentState& state,
+                         const Eigen::VectorXd& meters);
 /// Derivatives of the residuals by the gyroscope's bias, rows x 3. Without what it does to the
 /// accelerometer's bias, which is of second order.
-Eigen::MatrixX3d by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
+Eigen::MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
 
 /// Scale, gravity and velocity from linear equations (as Qin and Shen 2018 do): gravity free, then
 /// of its known length.
@@ -64,8 +61,8 @@ struct ResidualNoise {
   Eigen::LLT<Eigen::MatrixXd> covariance;  ///< of the residuals [m^2]
   /// Of the errors of s c_k with those of the residuals: theirs, plus with_bias by_bias^T.
   Eigen::MatrixXd with_path;
-  Eigen::MatrixX3d with_bias;  ///< of s c_k with the gyroscope's bias
-  Eigen::MatrixX3d by_bias;    ///< `by_gyro_bias`
+  Eigen::MatrixXd with_bias;  ///< of s c_k with the gyroscope's bias
+  Eigen::MatrixXd by_bias;    ///< `by_gyro_bias`
 };
 /// Nothing where the covariance is none.
 std::optional<ResidualNoise> residual_noise(const AlignmentProblem& problem,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inertial/inertial_alignment.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/inertial/alignment_problem.h"
 #include "engine/inertial/imu_intervals.h"
 #include "engine/inertial/inertial_path.h"
@@ -13,7 +14,6 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ TurnFit turn_fit(const UncertainPoses& poses,
     b += D.transpose() * error;
     squares += error.squaredNorm();
   }
-  const Vector3d step = N.ldlt().solve(b);
+  const Vector3d step = solve_symmetric(N, b);
   const double left = std::max(0.0, squares - step.dot(b));
   const double freedom = std::max(1.0, 3.0 * static_cast<double>(path.size()) - 6);
   return {bias_rad_s + step, kAlike * left / freedom * N.inverse()};
@@ -77,20 +77,20 @@ double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_co
   L.solveInPlace(K);
   K.transposeInPlace();
   L.solveInPlace(K);
-  const Eigen::MatrixX3d b = L.solve(noise.by_bias);
-  const Eigen::MatrixX3d p = L.solve(noise.with_bias);
+  const MatrixXd b = L.solve(noise.by_bias);
+  const MatrixXd p = L.solve(noise.with_bias);
   const MatrixXd K_others = K * other_columns;
   MatrixXd inside = other_columns.transpose() * K_others;
   inside.noalias() -= (other_columns.transpose() * b) * (p.transpose() * other_columns);
   inside.noalias() -= K_others.transpose() * K_others;
   const MatrixXd squares = other_columns.transpose() * other_columns;
   return K.trace() - b.cwiseProduct(p).sum() - K.squaredNorm() -
-         squares.ldlt().solve(inside).trace();
+         solve_symmetric(squares, inside).trace();
 }
 
-AlignmentMatrix prior_of(const AlignmentProblem& problem) {
+MatrixXd prior_of(const AlignmentProblem& problem) {
   constexpr double kHardlyAny = 1e-6;  // so that it can be inverted where nothing moves
-  AlignmentMatrix prior = AlignmentMatrix::Zero();
+  MatrixXd prior = MatrixXd::Zero(kAlignmentUnknowns, kAlignmentUnknowns);
   prior(kScaleUnknown, kScaleUnknown) = kHardlyAny;
   prior.diagonal().segment<3>(6).setConstant(std::pow(problem.bias_sigma_m_s2, -2));
   prior.diagonal().segment<3>(9).setConstant(std::pow(problem.lever_sigma_m, -2));
@@ -99,8 +99,8 @@ AlignmentMatrix prior_of(const AlignmentProblem& problem) {
 
 struct Refinement {
   AlignmentState state;
-  AlignmentMatrix information = AlignmentMatrix::Zero();
-  AlignmentJacobian white;  ///< Jacobian in units of the residuals' noise
+  MatrixXd information;
+  MatrixXd white;  ///< Jacobian in units of the residuals' noise
   std::optional<ResidualNoise> noise;
   double cost = 0;  ///< squared residuals, priors among them
   int iterations = 0;
@@ -113,7 +113,7 @@ Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   constexpr int kMostIterations = 12;
   constexpr double kConverged = 1e-2;  // of a standard deviation
   constexpr double kAlike = 5e-3;      // scales whose noise is the same
-  const AlignmentMatrix prior = prior_of(problem);
+  const MatrixXd prior = prior_of(problem);
   Refinement result;
   for (; result.iterations < kMostIterations; ++result.iterations) {
     if (!result.noise || std::abs(state.log_scale - result.noise->log_scale) > kAlike)
@@ -127,12 +127,12 @@ Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
     result.white = L.solve(jacobian(problem, state, path));
     result.information = prior;
     result.information.noalias() += result.white.transpose() * result.white;
-    AlignmentVector off = AlignmentVector::Zero();
+    VectorXd off = VectorXd::Zero(kAlignmentUnknowns);
     off.segment<3>(6) = state.bias;
     off.segment<3>(9) = state.lever - problem.lever_m;
     result.cost = white_r.squaredNorm() + off.dot(prior * off);
-    const AlignmentVector gradient = result.white.transpose() * white_r + prior * off;
-    AlignmentVector step = -result.information.ldlt().solve(gradient);
+    const VectorXd gradient = result.white.transpose() * white_r + prior * off;
+    VectorXd step = -solve_symmetric(result.information, gradient);
     const double converged = step.dot(result.information * step);
     step(kScaleUnknown) = std::clamp(step(kScaleUnknown), -1.0, 1.0);
     state = stepped(state, step);
@@ -146,7 +146,7 @@ Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
 void tell_certainty(const Refinement& refined,
                     const InertialOptions& options,
                     InertialAlignment& result) {
-  const AlignmentMatrix rough = refined.information.inverse();
+  const MatrixXd rough = inverse_of_symmetric(refined.information);
   MatrixXd others(refined.white.rows(), kAlignmentUnknowns - 1);
   others << refined.white.leftCols<kScaleUnknown>(),
       refined.white.rightCols<kAlignmentUnknowns - 1 - kScaleUnknown>();
@@ -161,7 +161,7 @@ void tell_certainty(const Refinement& refined,
   const double by_motion = by_all - by_noise;
   const double scatter = 2 * std::sqrt(0.5 * std::max(0.0, by_noise));
   const double spread = std::max(1.0, result.misfit);
-  const AlignmentMatrix covariance = spread * rough;
+  const MatrixXd covariance = spread * rough;
   const auto tangents = gravity_tangents(refined.state.gravity);
   result.direction_covariance = tangents * covariance.block<2, 2>(3, 3) * tangents.transpose();
   result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));

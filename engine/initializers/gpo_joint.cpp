@@ -332,9 +332,9 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
-  if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
-    return failed(wrong, solver);
   Initialization result = deliver(fit.window, fit.solution.motion, solver);
+  if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
+    return refused(wrong, std::move(result));
   if (!result.ok) return result;
   add_uncertainty(fit, result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;

@@ -154,10 +154,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
         uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
   say_what_is_lost(result.uncertainty, *result.verdict);
   if (result.verdict->readiness != Readiness::degenerate) return result;
-  Initialization refused = failed(result.verdict->reason, result.solver);
-  refused.candidates = std::move(result.candidates);
-  refused.verdict = std::move(result.verdict);
-  return refused;
+  return refused(result.verdict->reason, std::move(result));
 }
 
 std::vector<std::string> readers_of(const std::string& option) {

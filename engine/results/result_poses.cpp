@@ -109,7 +109,7 @@ ResultPoses read_kitti(const fs::path& file) {
   for (const CsvRow& row : table.rows) {
     Eigen::Matrix<double, 3, 4> T;
     for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = csv_number(table, row, i);
-    const auto R = nearest_rotation(T.leftCols<3>(), kMostSkew);
+    const auto R = rotation_meant(T.leftCols<3>(), kMostSkew);
     if (!R) csv_fail(table, row.line, "no rotation", "[R t], row by row");
     result.poses.push_back({*R, T.col(3)});
   }

@@ -3,6 +3,7 @@
 #include "engine/window/frame_errors.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/similarity.h"
 #include "engine/geometry/statistics.h"
 
 #include <utility>
@@ -40,7 +41,7 @@ FrameErrors errors_of(const Window& window, int frame) {
   const Matrix3d K_inverse = window.K.inverse();
   const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
   const Matrix3Xd rays_i = (K_inverse * pairs.to.colwise().homogeneous()).colwise().normalized();
-  const Matrix3d R_i1 = Eigen::umeyama(rays_1, rays_i, false).topLeftCorner<3, 3>();
+  const Matrix3d R_i1 = align(rays_1, rays_i).R_ab;
   auto homography = transfer_errors_px(window.H_i1[frame], pairs);
   auto rotation = transfer_errors_px(window.K * R_i1 * K_inverse, pairs);
   FrameErrors errors{.inliers = static_cast<int>(homography.size())};

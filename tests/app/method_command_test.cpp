@@ -42,7 +42,7 @@ std::string run_mine(const std::string& command, const std::string& more = "") {
                      more);
 }
 
-json result_of(const std::string& arguments, const fs::path& file) {
+json result_in(const std::string& arguments, const fs::path& file) {
   const Outcome outcome = program(arguments + " --json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
@@ -66,10 +66,10 @@ std::string answer_of(const json& result) {
 TEST(MethodCommand, WhatOursFoundComesBackAsItIs) {
   const fs::path folder = fresh_folder();
   const json ours =
-      result_of("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
+      result_in("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
   write_file(folder / "answer", answer_of(ours) + "\n");
   const json theirs =
-      result_of(run_mine(fmt::format("read w; cat '{}'", (folder / "answer").string())),
+      result_in(run_mine(fmt::format("read w; cat '{}'", (folder / "answer").string())),
                 folder / "theirs.json");
   EXPECT_EQ(theirs["method"], "mine");
   for (int k = 0; k < 3; ++k) {
@@ -143,7 +143,7 @@ TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
 TEST(MethodCommand, ItStandsInTheComparisonAndTheCurves) {
   const fs::path folder = fresh_folder();
   const json ours =
-      result_of("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
+      result_in("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
   write_file(folder / "answer", answer_of(ours) + "\n");
   for (const std::string view : {"compare", "curves --lengths 10"}) {
     const Outcome outcome = program(fmt::format(
@@ -249,7 +249,7 @@ std::string opencv_command() {
 
 TEST(OpencvInitializer, SolvesTheDesk) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
-  const json result = result_of("run " + desk().string() + " --method opencv " + opencv_command(),
+  const json result = result_in("run " + desk().string() + " --method opencv " + opencv_command(),
                                 fresh_folder() / "a.json");
   EXPECT_EQ(result["frames"].size(), 30U);
   EXPECT_LT(result["metrics"]["pne_deg"], 3);

@@ -230,6 +230,9 @@ Inspection made_inspection(const MadeOptions& options) {
         "no parallax: rotation alone explains the tracks to 0.48 px, where noise is 0.40 px";
     inspection.initialization = estimate;
   }
+  if (options.refused)
+    inspection.initialization = std::make_shared<Initialization>(refused(
+        "wrong minimum: the plane's horizon runs through the points", *inspection.initialization));
   if (options.normal_sigma_deg > 0) add_uncertainty(inspection, options.normal_sigma_deg);
   if (options.truth) add_truth(inspection);
   return inspection;

@@ -11,6 +11,7 @@ struct MadeOptions {
   bool distorted = true;        ///< through a lens with radial-tangential distortion
   bool pictures = true;         ///< a drawn checkered floor
   bool ok = true;               ///< else it failed, with a reason
+  bool refused = false;         ///< what it found was not believed
   bool truth = true;            ///< known true cameras and plane
   double estimate_error = 0;    ///< tilt of the estimated world [deg]
   double normal_sigma_deg = 0;  ///< above 0: with uncertainty and verdicts, of a window that grows

@@ -3,6 +3,7 @@
 #include "engine/calibration/plane/plane_start.h"
 
 #include "engine/geometry/homography.h"
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -13,7 +14,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace gpo {
 namespace {
@@ -128,10 +128,8 @@ Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
   H /= scale;
   Matrix3d M;
   M << H.col(0), H.col(1), H.col(0).cross(H.col(1));
-  const Eigen::JacobiSVD<Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
   Eigen::Matrix<double, 6, 1> pose;
-  pose << so3_log(R), H.col(2);
+  pose << so3_log(nearest_rotation(M)), H.col(2);
   return pose;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/bend.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/initializers/certainty/sandwich.h"
 #include "engine/initializers/plane/plane_weights.h"
 
@@ -9,7 +10,6 @@
 #include <map>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -86,13 +86,12 @@ std::optional<Eigen::Matrix2d> bend_of(const PlaneObservations& observations,
     right += weight * q * height;
     squares += weight * height * height;
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> factor(A);
-  const Quadratic fit = factor.solve(right);
+  const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
+  const Quadratic fit = inverse * right;
   if (!fit.allFinite()) return std::nullopt;
   const double freedom = static_cast<double>(heights.size()) - 6;
   const double noise = std::max(1.0, (squares - right.dot(fit)) / freedom);
-  const Eigen::Matrix3d covariance =
-      noise * factor.solve(Eigen::Matrix<double, 6, 6>::Identity()).bottomRightCorner<3, 3>();
+  const Eigen::Matrix3d covariance = noise * inverse.bottomRightCorner<3, 3>();
   const Vector3d curvature = fit.tail<3>();
   if (!(curvature.dot(covariance.inverse() * curvature) > kLeastBend)) return std::nullopt;
   Eigen::Matrix2d slope;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/growth.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/certainty/uncertainty.h"
 #include "engine/initializers/certainty/window_evidence.h"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace gpo {
@@ -64,7 +64,7 @@ bool linearize(const Window& window,
         frame_normals(f.observations, frame_state(growing.camera, motion, 0), Rotating::yes);
     if (!f.normals.in_front) return false;
     const Vector3d step =
-        -f.normals.JtJ.bottomRightCorner<3, 3>().llt().solve(f.normals.Jtr.tail<3>());
+        -solve_symmetric(f.normals.JtJ.bottomRightCorner<3, 3>(), f.normals.Jtr.tail<3>());
     if (!(step.norm() > kTauSettled)) break;
     motion.tau[0] += R_wc * step;
   }
@@ -72,7 +72,8 @@ bool linearize(const Window& window,
   const auto& JtJ = f.normals.JtJ;
   const Eigen::Matrix<double, 2, 3> nt = JtJ.topRightCorner<2, 3>();
   const Eigen::Matrix2d reduced =
-      JtJ.topLeftCorner<2, 2>() - nt * JtJ.bottomRightCorner<3, 3>().llt().solve(nt.transpose());
+      JtJ.topLeftCorner<2, 2>() -
+      nt * solve_symmetric(JtJ.bottomRightCorner<3, 3>(), nt.transpose());
   f.normal = normal;
   f.tau = motion.tau[0];
   f.hessian = N * reduced * N.transpose();
@@ -90,7 +91,7 @@ Eigen::Vector2d normal_step(const Growing& growing) {
     gradient += f.gradient + f.hessian * (growing.normal - f.normal);
   }
   const Eigen::Matrix<double, 3, 2> N = normal_tangents(growing.normal);
-  return -(N.transpose() * hessian * N).ldlt().solve(N.transpose() * gradient);
+  return -solve_symmetric(N.transpose() * hessian * N, N.transpose() * gradient);
 }
 
 /// The closed form's, with the sign nearest to `like`.

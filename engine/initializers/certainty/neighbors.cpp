@@ -202,7 +202,7 @@ std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const Window& windo
   const auto sixteenths = leave_out(window, motion, model, blocks, whole, *independent, kBlocks);
   if (!quarters || !sixteenths) return spreads;
   for (int k = 0; k < planes; ++k) {
-    const int at = Layout::of_plane(k);
+    const int at = UnknownsLayout::of_plane(k);
     const auto trace = [&](const SharedMatrix& m) { return m.block<2, 2>(at, at).trace(); };
     const double over_independent = trace(noise) / (sigma_px * sigma_px * trace(*independent));
     const auto excess = [&](const Moved& moved) {

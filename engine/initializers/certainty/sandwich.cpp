@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/sandwich.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/initializers/plane/plane_weights.h"
 
@@ -9,8 +10,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 namespace gpo {
@@ -156,7 +155,7 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
     }
   }
   const int unknowns =
-      Layout{others, gyro_size(model)}.size() + own_size(model, motion) * (frames - 1);
+      UnknownsLayout{others, gyro_size(model)}.size() + own_size(model, motion) * (frames - 1);
   all.sigma_px = noise_px(2 * cost, 2 * observations.count(), unknowns);
   if (huber) all.sigma_px /= kSigmaOfHuber;
   return all;
@@ -164,8 +163,8 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
 
 std::vector<int> Bread::places(int plane) const {
   std::vector<int> places;
-  for (int k = 0; k < Layout::size_of_plane(plane); ++k)
-    places.push_back(Layout::of_plane(plane) + k);
+  for (int k = 0; k < UnknownsLayout::size_of_plane(plane); ++k)
+    places.push_back(UnknownsLayout::of_plane(plane) + k);
   for (int k = 0; k < layout.gyro; ++k) places.push_back(layout.of_gyro() + k);
   return places;
 }
@@ -206,7 +205,7 @@ Bread bread_of(const Window& window,
       bread.noise_weights[i] = ratio * ratio;
       oo.diagonal().head<3>().array() += bread.noise_weights[i];
     }
-    const OwnMatrix inverse = oo.ldlt().solve(OwnMatrix::Identity(own, own));
+    const OwnMatrix inverse = inverse_of_symmetric(oo);
     bread.information -= so * inverse * so.transpose();
     bread.frames[i] = {inverse, inverse * so.transpose()};
   }
@@ -241,8 +240,7 @@ Spread spread_of(const Window& window,
   // What frames share may add to what tracks share, never take from it: of few frames it is noise.
   const SharedMatrix both = spread.shared + spread_by_frame(all, size, frames, degrees_of_freedom);
   const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
-  const Eigen::SelfAdjointEigenSolver<SharedMatrix> eigen(both);
-  if (of_normal(both) > of_normal(spread.shared) && eigen.eigenvalues()(0) >= 0)
+  if (of_normal(both) > of_normal(spread.shared) && symmetric_eigen(both).values(0) >= 0)
     spread.shared = both;
   return spread;
 }

@@ -17,12 +17,12 @@
 
 namespace gpo {
 
-/// Over what all frames share (`Layout`).
+/// Over what all frames share (`UnknownsLayout`).
 using SharedMatrix = Eigen::MatrixXd;
 /// Over what is a frame's own: t, or phi and t where rotations are free or a gyroscope's noise is
 /// unknown.
-using OwnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-using OwnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using OwnMatrix = Eigen::MatrixXd;
+using OwnVector = Eigen::VectorXd;
 
 int own_size(RotationModel model, const PlaneMotion& motion);
 
@@ -66,7 +66,7 @@ struct Eliminated {
 
 /// The bread: a linearized problem, its frames' own unknowns eliminated.
 struct Bread {
-  Layout layout = {};
+  UnknownsLayout layout = {};
   std::vector<std::vector<PlaneColumns>> columns = {};  ///< of each plane, of each frame
   std::vector<Eliminated> frames = {};                  ///< the first one's is empty
   SharedMatrix prior = {};                              ///< the bias' [px^2]

@@ -2,25 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/shared_information.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace gpo {
 namespace {
-
-using OwnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-using MixedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 int shared_size(RotationModel model) { return model == RotationModel::bias ? 5 : 2; }
 
 /// A frame's information over what it shares (normal, bias) and what is its own (phi where the
 /// rotations are free, translation last).
 struct SplitInformation {
-  SharedInformation ss;
-  MixedMatrix so;
-  OwnMatrix oo;
+  Eigen::MatrixXd ss, so, oo;
 };
 
 SplitInformation split(const Window& window,
@@ -30,8 +23,7 @@ SplitInformation split(const Window& window,
   const auto& F = normals.JtJ;
   if (model == RotationModel::free)
     return {F.topLeftCorner<2, 2>(), F.topRightCorner<2, 6>(), F.bottomRightCorner<6, 6>()};
-  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, 5> M;
-  M.setZero(5, shared_size(model));
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, shared_size(model));
   M.topLeftCorner<2, 2>().setIdentity();
   if (model == RotationModel::bias) M.bottomRightCorner<3, 3>() = window.gyro->d_bias[frame];
   return {M.transpose() * F.topLeftCorner<5, 5>() * M,
@@ -56,7 +48,7 @@ SharedInformation frame_information(const Window& window,
                                     const FrameNormals& normals,
                                     RotationModel model) {
   const SplitInformation f = split(window, frame, normals, model);
-  return f.ss - f.so * f.oo.ldlt().solve(f.so.transpose());
+  return f.ss - f.so * solve_symmetric(f.oo, f.so.transpose());
 }
 
 std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px) {
@@ -69,11 +61,10 @@ std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& inform
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return std::nullopt;
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  if (!(eigen.eigenvalues()(0) > 1e-12)) return std::nullopt;
-  const Eigen::MatrixXd inverse = eigen.eigenvectors() *
-                                  eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                                  eigen.eigenvectors().transpose();
+  const auto [values, vectors] = symmetric_eigen(scaled);
+  if (!(values(0) > 1e-12)) return std::nullopt;
+  const Eigen::MatrixXd inverse =
+      vectors * values.cwiseInverse().asDiagonal() * vectors.transpose();
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 

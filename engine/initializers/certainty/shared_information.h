@@ -14,7 +14,7 @@ namespace gpo {
 
 /// Information on what the frames share, the translations (and free rotations) marginalized, per
 /// square pixel of noise: over the normal's tangents u and, with an unknown bias, the bias.
-using SharedInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 5, 5>;
+using SharedInformation = Eigen::MatrixXd;
 
 /// What the prior says before the first frame.
 SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px);

@@ -133,7 +133,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
     neighbors =
         neighbors_spread(window, observations, motion, model, linearized->sigma_px, spread.shared);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
-    const int at = Layout::of_plane(static_cast<int>(k));
+    const int at = UnknownsLayout::of_plane(static_cast<int>(k));
     if (neighbors[k]) *neighbors[k] -= spread.shared.block<2, 2>(at, at);
   }
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
@@ -163,7 +163,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
       tangents * bent(covariance.topLeftCorner<2, 2>(), 0) * tangents.transpose();
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
   for (std::size_t k = 0; k < motion.others.size(); ++k) {
-    const int at = Layout::of_plane(static_cast<int>(k) + 1);
+    const int at = UnknownsLayout::of_plane(static_cast<int>(k) + 1);
     const auto N = normal_tangents(motion.others[k].m.normalized());
     const Eigen::Matrix2d of_normal = bent(covariance.block<2, 2>(at, at), static_cast<int>(k) + 1);
     result.others.push_back(

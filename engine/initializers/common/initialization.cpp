@@ -15,6 +15,15 @@ Initialization failed(std::string reason, SolverReport solver) {
   return result;
 }
 
+Initialization refused(std::string reason, Initialization found) {
+  Initialization result = failed(std::move(reason), std::move(found.solver));
+  result.candidates = std::move(found.candidates);
+  result.verdict = std::move(found.verdict);
+  result.refused = std::move(found.refused);
+  if (!found.cameras.empty()) result.refused = {found.plane, std::move(found.cameras)};
+  return result;
+}
+
 Initialization not_converged(SolverReport solver) {
   std::string reason = fmt::format("no convergence after {} iterations", solver.iterations);
   return failed(std::move(reason), std::move(solver));

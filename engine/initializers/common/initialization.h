@@ -97,6 +97,12 @@ struct PlaneEstimate {
   std::optional<double> distance_sigma = {};              ///< of its distance
 };
 
+/// What a method had found when it was refused, for people to look at.
+struct RefusedSolution {
+  Plane plane;
+  std::vector<Pose> cameras;  ///< one a frame
+};
+
 /// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
 /// false, `reason` says why and no poses, points or plane are delivered.
 struct Initialization {
@@ -117,9 +123,13 @@ struct Initialization {
   std::optional<Verdict> verdict;             ///< also of a window that was refused
   /// Of methods that decompose homographies: all readings, also where the method failed.
   std::vector<HomographyCandidate> candidates;
+  /// Of a failure of a method that came to a solution.
+  std::optional<RefusedSolution> refused = {};
 };
 
 Initialization failed(std::string reason, SolverReport solver = {});
+/// Of a solution that is not to be believed: what was found is kept in `refused`.
+Initialization refused(std::string reason, Initialization found);
 /// Of a solver that did not converge.
 Initialization not_converged(SolverReport solver);
 /// Of a method that its watch stopped.

@@ -147,14 +147,10 @@ std::vector<int> beyond_horizon(const Window& window, const Plane& plane) {
 }
 
 Initialization trusted(const Window& window, Initialization result) {
-  auto reason = reason_to_distrust(window, result.plane, result.cameras);
-  if (!reason) {
-    result.ok = true;
-    return result;
-  }
-  Initialization refused = failed(*reason, std::move(result.solver));
-  refused.candidates = std::move(result.candidates);
-  return refused;
+  if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
+    return refused(*reason, std::move(result));
+  result.ok = true;
+  return result;
 }
 
 }  // namespace gpo

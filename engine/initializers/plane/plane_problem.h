@@ -24,8 +24,8 @@ struct Split {
 };
 using KnownRotations = Split<2, 3>;  // normal | t
 using FreeRotations = Split<2, 6>;   // normal | phi, t
-// As many as `Layout` says, of several planes, a bias, a time offset; the latter also with a
-// gyroscope's noise.
+// As many as `UnknownsLayout` says, of several planes, a bias, a time offset; the latter also with
+// a gyroscope's noise.
 using AnyShared = Split<Eigen::Dynamic, 3>;
 using AnySharedFree = Split<Eigen::Dynamic, 6>;
 
@@ -56,15 +56,15 @@ SplitNormals<S> split(const FrameNormals& f) {
 /// Adds one plane's share of a frame.
 template <class S>
 void add_plane(const FrameNormals& f,
-               const Layout& layout,
+               const UnknownsLayout& layout,
                int plane,
                const PlaneColumns& M,
                SplitNormals<S>& sum) {
   const Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7> FM = f.JtJ * M;
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> MFM = M.transpose() * FM;
   const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1> Mr = M.transpose() * f.Jtr;
-  const int p = Layout::of_plane(plane);
-  const int n = Layout::size_of_plane(plane);
+  const int p = UnknownsLayout::of_plane(plane);
+  const int n = UnknownsLayout::size_of_plane(plane);
   const int g = layout.of_gyro();
   const int b = layout.gyro;
   sum.ss.block(p, p, n, n) += MFM.topLeftCorner(n, n);
@@ -196,7 +196,7 @@ class PlaneProblem {
     PlaneMotion to = from;
     to.normal = moved_normal(from.normal, step.shared.template head<2>());
     for (int k = 0; !kNormalOnly<S> && k < layout_.others; ++k) {
-      const Eigen::Vector3d u_s = step.shared.segment(Layout::of_plane(k + 1), 3);
+      const Eigen::Vector3d u_s = step.shared.segment(UnknownsLayout::of_plane(k + 1), 3);
       const double length = from.others[k].m.norm();
       to.others[k].m =
           length * std::exp(u_s(2)) * moved_normal(from.others[k].m / length, u_s.head<2>());
@@ -303,7 +303,7 @@ class PlaneProblem {
   const Window& window_;
   const PlaneObservations& observations_;
   const PlaneUnknowns& unknowns_;
-  const Layout layout_;
+  const UnknownsLayout layout_;
 };
 
 }  // namespace gpo

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_translations.h"
 
-#include <Eigen/Cholesky>
+#include "engine/geometry/decompositions.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -32,7 +33,7 @@ Vector3d translation_given_normal(const Window& window, int frame, const Vector3
       AtA += height * height * rows.transpose() * rows;
       Atb += height * rows.transpose() * (rows * ray_1);
     }
-    tau = AtA.ldlt().solve(Atb);
+    tau = solve_symmetric(AtA, Atb);
   }
   return tau;
 }

@@ -17,7 +17,7 @@ GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int fr
 }
 
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro) {
-  const int size = Layout::size_of_plane(plane);
+  const int size = UnknownsLayout::size_of_plane(plane);
   PlaneColumns columns = PlaneColumns::Zero(8, size + gyro.cols());
   columns.topLeftCorner<2, 2>().setIdentity();
   if (plane > 0) columns.col(2).tail<3>() = tau_c;

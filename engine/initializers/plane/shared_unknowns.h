@@ -28,7 +28,7 @@ inline constexpr int kMostShared = 2 + 3 * kMostOtherPlanes + 4;
 
 /// Where the unknowns that all frames share stand: the leading plane's normal (2), normal and log
 /// 1 / d of each further plane (3), the gyroscope's bias (3) and time offset (1).
-struct Layout {
+struct UnknownsLayout {
   int others = 0;
   int gyro = 0;  ///< 0, 3 or 4
   static int of_plane(int plane) { return plane == 0 ? 0 : 3 * plane - 1; }

@@ -72,6 +72,19 @@ ordered_json frames_json(const Inspection& inspection) {
   return frames;
 }
 
+/// The plane and the cameras that were found and not believed.
+ordered_json refused_json(const Inspection& inspection) {
+  const RefusedSolution& refused = *inspection.initialization->refused;
+  ordered_json frames = ordered_json::array();
+  for (std::size_t i = 0; i < refused.cameras.size(); ++i)
+    frames.push_back({{"index", inspection.window->start + static_cast<int>(i)},
+                      {"p_wc", vector_json(refused.cameras[i].p_wc)},
+                      {"q_wc_xyzw", vector_json(quaternion_xyzw(refused.cameras[i].R_wc))}});
+  return {{"plane",
+           {{"normal", vector_json(refused.plane.normal)}, {"distance", refused.plane.distance}}},
+          {"frames", frames}};
+}
+
 ordered_json points_json(const Inspection& inspection) {
   ordered_json points = ordered_json::array();
   for (const MapPoint& point : inspection.initialization->points) {
@@ -329,6 +342,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
+  if (result.refused) json["refused"] = refused_json(inspection);
   if (!result.dropped.empty()) json["dropped"] = dropped_json(inspection);
   json["solver"] = {{"iterations", solver.iterations},
                     {"initial_cost", solver.initial_cost},

@@ -5,6 +5,7 @@
 #include "engine/inspection/inspection.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,5 +22,8 @@ struct PlanePatch {
 
 /// One a further plane of an initialization that is ok.
 std::vector<PlanePatch> plane_patches(const Inspection& inspection);
+
+/// Of the plane of a solution that was refused; nothing where none of its tracks meets it.
+std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/rotations_over_recording.h"
 
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/statistics.h"
 #include "engine/initializers/certainty/window_evidence.h"
 #include "engine/inspection/inspector.h"
@@ -10,7 +11,6 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace gpo {
 namespace {
@@ -37,8 +37,7 @@ std::vector<Eigen::Matrix3d> turning_only(const Window& window) {
     if (!window.H_i1[i].allFinite()) return {};
     Eigen::Matrix3d M = window.K.inverse() * window.H_i1[i] * window.K;
     if (M.determinant() < 0) M = -M;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    R_wc.emplace_back(svd.matrixV() * svd.matrixU().transpose());
+    R_wc.emplace_back(nearest_rotation(M).transpose());
   }
   return R_wc;
 }

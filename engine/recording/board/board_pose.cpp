@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_pose.h"
 
+#include "engine/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
@@ -133,7 +134,7 @@ Pose refined(const Seen& seen, const Camera& camera, Pose T_camera_board) {
     const Linearized now = linearize(seen, camera, T_camera_board);
     Matrix6 A = now.JtJ;
     A.diagonal() *= 1 + damping;
-    const Vector6 step = -A.ldlt().solve(now.Jtr);
+    const Vector6 step = -solve_symmetric(A, now.Jtr);
     const Pose moved = Pose{so3_exp(step.head<3>()), step.tail<3>()} * T_camera_board;
     const double moved_error = squared_error(seen, camera, moved);
     if (moved_error < error) {
@@ -153,8 +154,7 @@ Pose refined(const Seen& seen, const Camera& camera, Pose T_camera_board) {
 BoardPose with_uncertainty(const Seen& seen, const Camera& camera, const Pose& T_camera_board) {
   const Linearized at = linearize(seen, camera, T_camera_board);
   const auto n = static_cast<double>(seen.points.size());
-  const Matrix6 covariance =
-      at.squared_px2 / (2 * n - 6) * at.JtJ.ldlt().solve(Matrix6::Identity());
+  const Matrix6 covariance = at.squared_px2 / (2 * n - 6) * inverse_of_symmetric(at.JtJ);
   const Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
   const Eigen::Vector3d normal = T_camera_board.R_wc.col(2);
   const auto sigma = [](double variance) { return std::sqrt(std::max(0.0, variance)); };

@@ -6,6 +6,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/xml_file.h"
+#include "engine/geometry/nearest_rotation.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include <set>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -247,8 +247,7 @@ Pose rigid_motion(const YamlEntry& entry) {
   if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     yaml_fail(entry, "another last row", "0, 0, 0, 1");
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return {svd.matrixU() * svd.matrixV().transpose(), T.topRightCorner<3, 1>()};
+  return {nearest_rotation(R), T.topRightCorner<3, 1>()};
 }
 
 bool is_picture_rate(double rate_hz) {

@@ -4,6 +4,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/loggers/logger_files.h"
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include <vector>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -123,9 +123,8 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
   }
   constexpr double kMostOff = 0.05;  // written with few digits, as documentation does
   Eigen::Matrix3d& R = T_camera_imu.R_wc;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
-  if (!((nearest - R).norm() < kMostOff) || nearest.determinant() < 0)
+  const Eigen::Matrix3d nearest = nearest_rotation(R);
+  if (!((nearest - R).norm() < kMostOff))
     place.fail("no rotation in `imuToCamera`", "a rigid motion");
   R = nearest;
   return inverse(T_camera_imu);

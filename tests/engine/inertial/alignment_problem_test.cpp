@@ -54,10 +54,10 @@ TEST(AlignmentProblem, JacobiansAreThoseOfFiniteDifferences) {
   const AlignmentProblem problem = problem_of(made, *made.poses.bias_rad_s);
   AlignmentState state = true_state(made, problem);
   state.lever += Vector3d(0.01, -0.02, 0.03);
-  const AlignmentJacobian J = jacobian(problem, state, std::exp(state.log_scale) * problem.centers);
+  const Eigen::MatrixXd J = jacobian(problem, state, std::exp(state.log_scale) * problem.centers);
   constexpr double kSmall = 1e-5;
   for (int k = 0; k < kAlignmentUnknowns; ++k) {
-    const AlignmentVector step = kSmall * AlignmentVector::Unit(k);
+    const Eigen::VectorXd step = kSmall * Eigen::VectorXd::Unit(kAlignmentUnknowns, k);
     const VectorXd slope =
         (residuals(problem, stepped(state, step)) - residuals(problem, stepped(state, -step))) /
         (2 * kSmall);

@@ -111,6 +111,10 @@ TEST(GpoJoint, OfAnAbsurdBiasSaysSo) {
   if (result.uncertainty && result.uncertainty->rotations == RotationModel::free) return;
   EXPECT_FALSE(result.ok);
   EXPECT_THAT(result.reason, HasSubstr("standard deviations from what is known"));
+  ASSERT_TRUE(result.refused);  // what was found can be looked at
+  EXPECT_TRUE(result.cameras.empty());
+  EXPECT_EQ(std::ssize(result.refused->cameras), truth.window.frame_count());
+  EXPECT_NEAR(result.refused->plane.normal.norm(), 1, 1e-12);
 }
 
 TEST(GpoJoint, IsGpoWhereTheRotationsAreKnown) {

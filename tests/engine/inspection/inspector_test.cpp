@@ -8,9 +8,9 @@
 #include "engine/inspection/moved_cube.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
+#include "tests/engine/desk.h"
 
 #include <algorithm>
 
@@ -21,9 +21,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::shared_ptr<const Recording> desk() {
-  return open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
-}
+using test::desk;
 
 TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
   Inspector inspector(desk());
@@ -105,6 +103,25 @@ std::string result_of(const Inspection& inspection) {
   nlohmann::ordered_json json = to_json(inspection);
   json.erase("timing_ms");
   return json.dump();
+}
+
+TEST(Inspector, WritesWhatWasFoundAndNotBelieved) {
+  Settings settings;
+  settings.frames = 12;
+  const auto believed = Inspector(desk()).inspect(settings);
+  EXPECT_FALSE(to_json(*believed).contains("refused"));
+  Inspection inspection = *believed;
+  inspection.initialization =
+      std::make_shared<Initialization>(refused("wrong minimum", *believed->initialization));
+  const auto json = to_json(inspection);
+  EXPECT_EQ(json["reason"], "wrong minimum");
+  EXPECT_TRUE(json["plane"].is_null());
+  EXPECT_TRUE(json["frames"][11]["p_wc"].is_null());
+  const auto before = to_json(*believed);
+  EXPECT_EQ(json["refused"]["plane"], before["plane"]);
+  EXPECT_EQ(json["refused"]["frames"].size(), 12U);
+  for (const char* key : {"index", "p_wc", "q_wc_xyzw"})
+    EXPECT_EQ(json["refused"]["frames"][11][key], before["frames"][11][key]);
 }
 
 TEST(Inspector, AShorterWindowIsTheBeginningOfALongerOne) {

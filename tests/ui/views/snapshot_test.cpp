@@ -100,6 +100,7 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
                   snapshot_scene(uncertain, 30, {960, 720}, {.uncertainty = times}));
   keep_snapshot("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
   keep_snapshot("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
+  keep_snapshot("scene_refused", snapshot_scene(made_inspection({.refused = true}), 20));
   keep_snapshot("scene_failed_blind",
                 snapshot_scene(made_inspection({.ok = false, .truth = false}), 20));
   keep_snapshot("scene_outside", snapshot_scene(made_inspection(), 2, cv::Size(600, 900)));

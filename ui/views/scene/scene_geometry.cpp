@@ -38,7 +38,7 @@ void add_frusta(const Inspection& inspection, std::vector<Vector3d>& extent) {
     for (const Vector3d& corner : frustum(inspection.recording->camera, pose, depth))
       extent.push_back(corner);
   };
-  for (const Pose& pose : inspection.initialization->cameras) add(pose);
+  for (const Pose& pose : found_cameras(*inspection.initialization)) add(pose);
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
   for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i)
@@ -46,6 +46,10 @@ void add_frusta(const Inspection& inspection, std::vector<Vector3d>& extent) {
 }
 
 }  // namespace
+
+const std::vector<Pose>& found_cameras(const Initialization& estimate) {
+  return estimate.refused ? estimate.refused->cameras : estimate.cameras;
+}
 
 std::optional<Similarity> estimate_from_truth(const Inspection& inspection) {
   if (!inspection.truth) return std::nullopt;
@@ -87,14 +91,15 @@ std::array<Vector3d, 6> frustum(const Camera& camera, const Pose& pose, double d
 
 double frustum_depth(const Inspection& inspection) {
   const Initialization& estimate = *inspection.initialization;
-  if (!estimate.ok) return 0.08;
+  const std::vector<Pose>& cameras = found_cameras(estimate);
+  if (cameras.empty()) return 0.08;
+  const double distance = estimate.ok ? estimate.plane.distance : estimate.refused->plane.distance;
   Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();
-  for (const Pose& pose : estimate.cameras) {
+  for (const Pose& pose : cameras) {
     low = low.cwiseMin(pose.p_wc);
     high = high.cwiseMax(pose.p_wc);
   }
-  return std::clamp(
-      0.3 * (high - low).norm(), 0.09 * estimate.plane.distance, 0.14 * estimate.plane.distance);
+  return std::clamp(0.3 * (high - low).norm(), 0.09 * distance, 0.14 * distance);
 }
 
 double axes_length(const Inspection& inspection) { return 1.6 * frustum_depth(inspection); }
@@ -108,6 +113,8 @@ std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_sid
   add_frusta(inspection, extent);
   for (int axis = 0; axis < 3; ++axis)
     extent.push_back(axes_length(inspection) * Vector3d::Unit(axis));
+  if (const auto patch = refused_patch(inspection))
+    extent.insert(extent.end(), patch->corners.begin(), patch->corners.end());
   if (!inspection.initialization->ok) return extent;
   const PlaneGrid grid = plane_grid(inspection, cube_side);
   for (const int i : {grid.low[0], grid.high[0]})

@@ -28,6 +28,9 @@ std::optional<Pose> true_camera(const Inspection& inspection,
 /// bottom-right, bottom-left), and the tip of a mark above the upper edge.
 std::array<Eigen::Vector3d, 6> frustum(const Camera& camera, const Pose& pose, double depth);
 
+/// Those of the estimate, or of what was refused; empty where there is neither.
+const std::vector<Pose>& found_cameras(const Initialization& estimate);
+
 /// How deep the frusta are drawn, so that they neither hide each other nor vanish.
 double frustum_depth(const Inspection& inspection);
 

@@ -142,6 +142,9 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
                       color_of(Role::gravity),
                       "up, certain to " + angle_text(inspection.inertial->gravity_sigma_deg)});
   }
+  if (inspection.initialization->refused)
+    rows.push_back(
+        {Sign::frustum, color_of(Role::bad), "what " + method.title + " found, refused"});
   if (shows_uncertainty(inspection, options)) {
     const int times = options.uncertainty;
     rows.push_back({Sign::circle,
@@ -206,7 +209,8 @@ void draw_scene_view(ImDrawList& list,
   list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
   const int frame_in_window = frame - inspection.window->start;
   draw_scene_moment(list, rect, inspection, frame_in_window, camera, options);
-  const bool shows_something = inspection.initialization->ok || estimate_from_truth(inspection);
+  const bool shows_something =
+      !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
   if (shows_up(inspection, options)) draw_up(list, rect, inspection, camera);
   if (options.legend)

@@ -60,25 +60,27 @@ void add_reference(const Stage& stage, const std::array<Vector3d, 6>& corners) {
 
 void add_cameras(const Stage& stage) {
   const Inspection& inspection = stage.inspection;
-  const Initialization& estimate = *inspection.initialization;
-  if (!estimate.ok) return;
-  const std::uint32_t rgb = find_method(inspection.settings.method).rgb;
+  const std::vector<Pose>& cameras = found_cameras(*inspection.initialization);
+  if (cameras.empty()) return;
+  const std::uint32_t rgb = inspection.initialization->ok
+                                ? find_method(inspection.settings.method).rgb
+                                : color_of(Role::bad);
   const double depth = frustum_depth(inspection);
   const Camera& camera = inspection.recording->camera;
   const int stride = frustum_stride(inspection);
   Shapes frusta, path;
   std::vector<Vector3d> centers;
-  for (int i = 0; i < static_cast<int>(estimate.cameras.size()); ++i) {
-    centers.push_back(estimate.cameras[i].p_wc);
+  for (int i = 0; i < static_cast<int>(cameras.size()); ++i) {
+    centers.push_back(cameras[i].p_wc);
     if (i % stride == 0 && i != 0)
       add_frustum(frusta,
-                  frustum(camera, estimate.cameras[i], depth),
+                  frustum(camera, cameras[i], depth),
                   mixed_rgb(color_of(Role::scene_bottom), rgb, 0.75));
   }
   path.lines(centers, false, mixed_rgb(rgb, color_of(Role::text), 0.35));
   stage.add(frusta, 1.2);
   stage.add(path, 2.6);
-  add_reference(stage, frustum(camera, estimate.cameras[0], depth));
+  add_reference(stage, frustum(camera, cameras[0], depth));
 }
 
 void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
@@ -155,6 +157,17 @@ void add_patches(const Stage& stage) {
   }
 }
 
+/// The plane of a solution that was not believed.
+void add_refused(const Stage& stage) {
+  const auto patch = refused_patch(stage.inspection);
+  if (!patch) return;
+  Shapes border, face;
+  border.lines(patch->corners, true, color_of(Role::bad));
+  face.face(patch->corners, color_of(Role::bad), 0.08);
+  stage.add(face, 1);
+  stage.add(border, 1.8);
+}
+
 void add_cube(const Stage& stage) {
   const Inspection& inspection = stage.inspection;
   const auto corners = cube_corners(*inspection.cube,
@@ -216,7 +229,11 @@ void build(const Stage& stage, bool above) {
   if (inspection.initialization->ok)
     grid = plane_grid(inspection, cube_side(inspection, stage.options.cube_side));
   if (stage.options.truth) add_truth(stage, grid);
-  if (!grid) return;
+  if (!grid) {
+    add_refused(stage);
+    add_cameras(stage);
+    return;
+  }
   add_plane(stage, *grid, above);
   add_points(stage, *grid);
   add_patches(stage);

@@ -6,8 +6,8 @@
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/frontend/corner_scene.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 constexpr int kFrames = 30;
 constexpr int kLast = kFrames - 1;
 
-std::shared_ptr<const Recording> desk() { return open_recording(GPO_SOURCE_DIR "/sequences/desk"); }
+using test::desk;
 
 Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
   TrackerOptions options;

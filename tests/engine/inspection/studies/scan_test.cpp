@@ -3,7 +3,7 @@
 #include "engine/inspection/studies/scan.h"
 
 #include "engine/inspection/inspector.h"
-#include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/desk.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,10 +15,7 @@
 namespace gpo {
 namespace {
 
-std::shared_ptr<const Recording> desk() {
-  static const auto recording = open_recording(GPO_SOURCE_DIR "/sequences/desk");
-  return recording;
-}
+using test::desk;
 
 void settle(const Scan& scan) {
   while (scan.status().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));

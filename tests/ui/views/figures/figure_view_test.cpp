@@ -26,7 +26,7 @@ class FigureView : public DrawingTest {};
 constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442;
 const cv::Size kSmall(500, 480);
 
-std::filesystem::path kept(const std::string& name) {
+std::filesystem::path figure_file(const std::string& name) {
   std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
   return std::filesystem::path(GPO_TEST_OUTPUT_DIR) / name;
 }
@@ -107,7 +107,7 @@ std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
 TEST_F(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
   const Figure figure = paper_figure();
   const cv::Mat picture = draw_figure(figure, {1500, 480});
-  cv::imwrite(kept("figure.png").string(), picture);
+  cv::imwrite(figure_file("figure.png").string(), picture);
   ASSERT_EQ(picture.size(), cv::Size(1500, 480));
   EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
   for (int chart = 0; chart < 3; ++chart)
@@ -128,7 +128,7 @@ TEST_F(FigureView, SameFigureGivesTheSameBytes) {
 
 TEST_F(FigureView, BandLiesBetweenTheQuartiles) {
   const cv::Mat picture = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
-  cv::imwrite(kept("figure_band.png").string(), picture);
+  cv::imwrite(figure_file("figure_band.png").string(), picture);
   const cv::Mat area = plot_area(picture);
   // From 0 to 3.15 up the plot; between two points, beside the grid.
   const int column = area.cols / 2 + 18;
@@ -147,7 +147,7 @@ TEST_F(FigureView, NanLeavesAGap) {
   const double nan = std::nan("");
   const cv::Mat picture =
       draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
-  cv::imwrite(kept("figure_gap.png").string(), picture);
+  cv::imwrite(figure_file("figure_gap.png").string(), picture);
   const std::vector<int> green = green_by_column(picture, 11);
   EXPECT_GT(green[1], 20);
   EXPECT_EQ(green[5], 0);
@@ -160,14 +160,14 @@ TEST_F(FigureView, NanLeavesAGap) {
 TEST_F(FigureView, OnePointBetweenGapsIsDrawn) {
   const double nan = std::nan("");
   const cv::Mat picture = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
-  cv::imwrite(kept("figure_points.png").string(), picture);
+  cv::imwrite(figure_file("figure_points.png").string(), picture);
   EXPECT_GT(green_by_column(picture, 5)[2], 20);
 }
 
 TEST_F(FigureView, BoundIsDotted) {
   const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
   const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
-  cv::imwrite(kept("figure_bound.png").string(), dotted);
+  cv::imwrite(figure_file("figure_bound.png").string(), dotted);
   const int dots = colored(plot_area(dotted), kGreen);
   EXPECT_GT(dots, 30);
   EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
@@ -182,10 +182,10 @@ TEST_F(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
 
 TEST_F(FigureView, EmptyFiguresSaySo) {
   Figure nothing{"none", "a title", {}};
-  cv::imwrite(kept("figure_none.png").string(), draw_figure(nothing, kSmall));
+  cv::imwrite(figure_file("figure_none.png").string(), draw_figure(nothing, kSmall));
   const Figure no_values = small_figure({std::nan(""), std::nan("")});
   const cv::Mat said = draw_figure(no_values, kSmall);
-  cv::imwrite(kept("figure_no_values.png").string(), said);
+  cv::imwrite(figure_file("figure_no_values.png").string(), said);
   const cv::Mat middle = plot_area(said)(cv::Rect(100, 100, 180, 130));
   EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
   figure_svg(nothing, figure_drawing(nothing, kSmall));
@@ -195,7 +195,7 @@ TEST_F(FigureView, EmptyFiguresSaySo) {
 TEST_F(FigureView, SvgParsesAndNamesWhatItShows) {
   const Figure figure = paper_figure();
   const std::string svg = figure_svg(figure, figure_drawing(figure, {1500, 480}));
-  std::ofstream(kept("figure.svg")) << svg;
+  std::ofstream(figure_file("figure.svg")) << svg;
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
   const tinyxml2::XMLElement* root = document.RootElement();
@@ -244,9 +244,10 @@ TEST(FigureDrawing, TypeForPrintHasSevenPoints) {
       EXPECT_LE(begin + width, drawing.width) << text->text;
     }
     EXPECT_GE(texts, 30);
-    cv::imwrite(kept(width_mm < 100 ? "figure_85mm.png" : "figure_175mm.png").string(),
+    cv::imwrite(figure_file(width_mm < 100 ? "figure_85mm.png" : "figure_175mm.png").string(),
                 picture_of(drawing, drawing.unit_mm / 25.4 * 300));
-    std::ofstream(kept(width_mm < 100 ? "figure_85mm.pdf" : "figure_175mm.pdf")) << pdf_of(drawing);
+    std::ofstream(figure_file(width_mm < 100 ? "figure_85mm.pdf" : "figure_175mm.pdf"))
+        << pdf_of(drawing);
   }
 }
 

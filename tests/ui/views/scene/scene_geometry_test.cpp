@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
+#include "engine/inspection/studies/plane_patches.h"
 #include "engine/truth/truth.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/views/scene/plane_grid.h"
@@ -88,8 +89,10 @@ TEST(SceneGeometry, FrustumsCornersAreThePicturesCorners) {
 }
 
 TEST(SceneGeometry, DefaultViewShowsEverythingFromAboveThePlane) {
-  for (const MadeOptions& made :
-       {MadeOptions{}, MadeOptions{.truth = false}, MadeOptions{.ok = false}}) {
+  for (const MadeOptions& made : {MadeOptions{},
+                                  MadeOptions{.truth = false},
+                                  MadeOptions{.ok = false},
+                                  MadeOptions{.refused = true}}) {
     const Inspection inspection = made_inspection(made);
     const OrbitCamera camera = default_scene_camera(inspection, 0.2, 4.0 / 3);
     for (const Vector3d& point : scene_extent(inspection, 0.2)) {
@@ -102,6 +105,21 @@ TEST(SceneGeometry, DefaultViewShowsEverythingFromAboveThePlane) {
   const Plane& plane = inspection.initialization->plane;
   const Vector3d at = eye(default_scene_camera(inspection, 0.2, 1));
   EXPECT_GT(plane.normal.dot(at) + plane.distance, 0);
+}
+
+TEST(SceneGeometry, OfARefusedSolutionShowsWhatWasFound) {
+  const Inspection found = made_inspection(), inspection = made_inspection({.refused = true});
+  EXPECT_FALSE(inspection.initialization->ok);
+  const auto& cameras = found_cameras(*inspection.initialization);
+  ASSERT_EQ(cameras.size(), found.initialization->cameras.size());
+  EXPECT_EQ(cameras.back().p_wc, found.initialization->cameras.back().p_wc);
+  const auto patch = refused_patch(inspection);
+  ASSERT_TRUE(patch);
+  const Plane& plane = found.initialization->plane;
+  for (const Vector3d& corner : patch->corners)
+    EXPECT_NEAR(plane.normal.dot(corner) + plane.distance, 0, 1e-9);
+  EXPECT_TRUE(found_cameras(*made_inspection({.ok = false}).initialization).empty());
+  EXPECT_FALSE(refused_patch(made_inspection({.ok = false})));
 }
 
 TEST(SceneGeometry, ViewpointsLookWhereTheySayAndShowEverything) {

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/decompositions.h"
+
+#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/pose.h"
+
+#include <algorithm>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+Eigen::MatrixXd random_matrix(int rows, int columns, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+TEST(Decompositions, EigenvectorsAreOrthonormalAndGiveTheMatrixBack) {
+  const Eigen::MatrixXd B = random_matrix(9, 7, 1);
+  const Eigen::MatrixXd A = B * B.transpose();
+  const auto [values, vectors] = symmetric_eigen(A);
+  EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+  EXPECT_LT(std::abs(values(0)) + std::abs(values(1)), 1e-12 * values(8));  // of rank 7
+  EXPECT_TRUE((vectors.transpose() * vectors).isIdentity(1e-12));
+  EXPECT_TRUE((vectors * values.asDiagonal() * vectors.transpose()).isApprox(A, 1e-12));
+}
+
+TEST(Decompositions, SolveWhatTheyAreGiven) {
+  const Eigen::MatrixXd B = random_matrix(20, 6, 2);
+  const Eigen::MatrixXd A = B.transpose() * B, X = random_matrix(6, 3, 3);
+  EXPECT_TRUE(solve_symmetric(A, A * X).isApprox(X, 1e-10));
+  EXPECT_TRUE((inverse_of_symmetric(A) * A).isIdentity(1e-10));
+}
+
+TEST(Decompositions, LeastSquaresLeaveWhatIsNormalToAllColumns) {
+  const Eigen::MatrixXd A = random_matrix(20, 4, 4);
+  const Eigen::VectorXd b = random_matrix(20, 1, 5);
+  EXPECT_LT((A.transpose() * (A * least_squares(A, b) - b)).norm(), 1e-12);
+}
+
+TEST(NearestRotation, IsTheRotationThatNoneIsNearerThan) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Eigen::Matrix3d M = random_matrix(3, 3, seed);  // half of them mirror
+    const Eigen::Matrix3d R = nearest_rotation(M);
+    ASSERT_TRUE((R * R.transpose()).isIdentity(1e-12));
+    ASSERT_GT(R.determinant(), 0);
+    for (int k = 0; k < 100; ++k) {
+      const Eigen::Vector3d w = 0.3 * random_matrix(3, 1, 100 * seed + k);
+      EXPECT_GE((R * so3_exp(w) - M).norm(), (R - M).norm() - 1e-12);
+    }
+  }
+}
+
+TEST(NearestRotation, OfAFileIsAsWrittenButForRounding) {
+  const Eigen::Matrix3d R = so3_exp({0.3, -0.2, 0.9});
+  EXPECT_EQ(rotation_meant(R, 1e-3), R);
+  Eigen::Matrix3d digits = (1e4 * R).array().round() / 1e4;
+  const auto meant = rotation_meant(digits, 1e-3);
+  ASSERT_TRUE(meant);
+  EXPECT_TRUE((*meant * meant->transpose()).isIdentity(1e-12));
+  EXPECT_LT((*meant - R).norm(), 2e-4);
+  EXPECT_FALSE(rotation_meant(1.01 * R, 1e-3));
+  EXPECT_FALSE(rotation_meant(-R, 1e-3));
+}
+
+}  // namespace
+}  // namespace gpo
