@@ -154,7 +154,8 @@ Initialization assessed(const Method& method, const Window& window, Initializati
         uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
   say_what_is_lost(result.uncertainty, *result.verdict);
   if (result.verdict->readiness != Readiness::degenerate) return result;
-  return refused(result.verdict->reason, std::move(result));
+  const std::string reason = result.verdict->reason;
+  return refused(reason, std::move(result));
 }
 
 std::vector<std::string> readers_of(const std::string& option) {

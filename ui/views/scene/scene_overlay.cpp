@@ -216,9 +216,14 @@ void draw_scene_view(ImDrawList& list,
   if (options.legend)
     draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);
-  if (!inspection.initialization->ok)
-    draw_badge(
-        list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);
+  if (!inspection.initialization->ok) {
+    const Vector2d legend(0, options.legend ? 20 * overlay_scale() : 0);
+    draw_badge(list,
+               {rect.min, rect.size - legend},
+               color_of(Role::warning),
+               "not initialized",
+               inspection.initialization->reason);
+  }
   list.PopClipRect();
 }
 
