@@ -106,20 +106,15 @@ std::string result_of(const Inspection& inspection) {
 }
 
 TEST(Inspector, WritesWhatWasFoundAndNotBelieved) {
-  Settings settings;
-  settings.frames = 12;
-  const auto believed = Inspector(desk()).inspect(settings);
-  EXPECT_FALSE(to_json(*believed).contains("refused"));
+  const auto believed = Inspector(desk()).inspect({.frames = 12});
   Inspection inspection = *believed;
   inspection.initialization =
       std::make_shared<Initialization>(refused("wrong minimum", *believed->initialization));
-  const auto json = to_json(inspection);
+  const auto before = to_json(*believed), json = to_json(inspection);
+  EXPECT_FALSE(before.contains("refused"));
   EXPECT_EQ(json["reason"], "wrong minimum");
-  EXPECT_TRUE(json["plane"].is_null());
-  EXPECT_TRUE(json["frames"][11]["p_wc"].is_null());
-  const auto before = to_json(*believed);
+  EXPECT_TRUE(json["plane"].is_null() && json["frames"][11]["p_wc"].is_null());
   EXPECT_EQ(json["refused"]["plane"], before["plane"]);
-  EXPECT_EQ(json["refused"]["frames"].size(), 12U);
   for (const char* key : {"index", "p_wc", "q_wc_xyzw"})
     EXPECT_EQ(json["refused"]["frames"][11][key], before["frames"][11][key]);
 }
