@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   register_method_benchmarks(windows);
   register_part_benchmarks(windows);
   register_frontend_benchmarks();
+  register_plane_benchmarks();
   register_live_benchmarks();
   register_view_benchmarks();
   register_evaluate_benchmarks();
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   print_method_tables(results);
   print_part_tables(results);
   print_frontend_tables(results);
+  print_plane_tables(results);
   print_live_tables(results);
   print_view_tables(results);
   print_evaluate_tables(results);

@@ -21,6 +21,10 @@ void print_part_tables(const Results& results);
 void register_frontend_benchmarks();
 void print_frontend_tables(const Results& results);
 
+/// Rooms of one plane and of three, one thread.
+void register_plane_benchmarks();
+void print_plane_tables(const Results& results);
+
 /// The front door's live form, frame by frame.
 void register_live_benchmarks();
 void print_live_tables(const Results& results);
