@@ -47,8 +47,9 @@ Cost cost_of(const Eigen::Matrix3Xd& points, const Eigen::Matrix2Xd& seen) {
     const double v = seen(1, k);
     Matrix3d Q;  // B^T B
     Q << 1, 0, -u, 0, 1, -v, -u, -v, u * u + v * v;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) rr.block<3, 3>(3 * i, 3 * j) += Q(i, j) * X * X.transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j)
+        rr.block<3, 3>(3 * i, 3 * j) += Q(i, j) * X * X.transpose();
       tr.block<3, 3>(0, 3 * i) += Q.col(i) * X.transpose();
     }
     tt += Q;
