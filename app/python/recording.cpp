@@ -17,7 +17,7 @@ namespace {
 
 namespace py = pybind11;
 
-py::array frame_of(const OpenRecording& open, int frame) {
+py::array frame_picture(const OpenRecording& open, int frame) {
   const SharedRecording& recording = open.shared;
   if (!recording->pictures) throw InputError(recording->name + " has no pictures");
   const int count = recording->frame_count();
@@ -27,7 +27,7 @@ py::array frame_of(const OpenRecording& open, int frame) {
   return picture_array(interruptible([&](const auto&) { return recording->pictures->bgr(frame); }));
 }
 
-py::object gyroscope_of(const OpenRecording& open) {
+py::object gyroscope_arrays(const OpenRecording& open) {
   const SharedRecording& recording = open.shared;
   if (!recording->gyroscope) return py::none();
   const Gyroscope& gyro = *recording->gyroscope;
@@ -105,9 +105,9 @@ void bind_recording(py::module_& module) {
           "camera_source",
           [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
           "file, self-calibrated or guess")
-      .def("frame", &frame_of, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
+      .def("frame", &frame_picture, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
       .def_property_readonly("gyroscope",
-                             &gyroscope_of,
+                             &gyroscope_arrays,
                              "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
                              "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s "
                              "(3,), bias_sigma_rad_s, "

@@ -21,12 +21,6 @@ constexpr float kBoardWhite[3] = {232, 237, 239};
 constexpr float kBoardBlack[3] = {38, 36, 36};
 constexpr double kFloorHeight = -0.73;  ///< [m]
 
-/// Directions within an angle of an axis, less than a quarter turn; in camera axes.
-struct Cone {
-  Eigen::Vector3d axis;  ///< unit vector
-  double cosine;         ///< of the angle
-  double sine;
-};
 bool overlap(const Cone& a, const Cone& b) {
   return a.axis.dot(b.axis) >= a.cosine * b.cosine - a.sine * b.sine;
 }
@@ -179,8 +173,6 @@ std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
   return eyes;
 }
 
-constexpr int kSpan = 16;  ///< pixels of a row that share their candidates
-
 Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
   return Eigen::Vector3d(slope.x(), slope.y(), 1).normalized();
 }
@@ -211,9 +203,8 @@ std::vector<std::size_t> within(const Cone& cone, const std::vector<Seen>& thing
 
 /// For each eye.
 std::vector<Candidates> find_candidates(const std::vector<Eye>& eyes,
-                                        std::span<const Eigen::Vector2f> slopes) {
+                                        const std::optional<Cone>& cone) {
   std::vector<Candidates> candidates(eyes.size());
-  const std::optional<Cone> cone = cone_around(slopes);
   for (std::size_t i = 0; cone && i < eyes.size(); ++i) {
     candidates[i] = {within(*cone, eyes[i].boxes), within(*cone, eyes[i].rocks)};
   }
@@ -224,12 +215,10 @@ void render_row(
     const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
   const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
   const auto* ray = map.rays.data() + per_pixel * map.width * row;
+  const auto* cone = map.cones.data() + static_cast<std::size_t>(map.spans()) * row;
   std::vector<Candidates> candidates;
   for (int col = 0; col < map.width; ++col) {
-    if (col % kSpan == 0) {
-      const int pixels = std::min(kSpan, map.width - col);
-      candidates = find_candidates(eyes, {ray, pixels * per_pixel});
-    }
+    if (col % RayMap::kSpan == 0) candidates = find_candidates(eyes, *cone++);
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
       // 23 has no factor in common with any number of samples: each pose gets its sample, and a
@@ -244,11 +233,13 @@ void render_row(
 }  // namespace
 
 RayMap make_ray_map(const Camera& camera, int samples, int threads) {
-  RayMap map{camera.width, camera.height, samples, {}};
+  RayMap map{camera.width, camera.height, samples, {}, {}};
   const std::size_t per_pixel = static_cast<std::size_t>(samples) * samples;
   map.rays.resize(per_pixel * camera.width * camera.height);
+  map.cones.resize(static_cast<std::size_t>(map.spans()) * camera.height);
   in_parallel(camera.height, threads, [&](int row) {
-    auto* ray = map.rays.data() + per_pixel * camera.width * row;
+    auto* const first = map.rays.data() + per_pixel * camera.width * row;
+    auto* ray = first;
     for (int col = 0; col < camera.width; ++col) {
       for (int k = 0; k < samples * samples; ++k) {
         const int line = k / samples;
@@ -258,6 +249,12 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads) {
         *ray++ =
             Eigen::Vector2f((px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy);
       }
+    }
+    for (int span = 0; span < map.spans(); ++span) {
+      const int begin = span * RayMap::kSpan;
+      const int end = std::min(begin + RayMap::kSpan, map.width);
+      map.cones[static_cast<std::size_t>(map.spans()) * row + span] =
+          cone_around({first + per_pixel * begin, first + per_pixel * end});
     }
   });
   return map;

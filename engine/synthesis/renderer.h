@@ -8,12 +8,20 @@
 #include "engine/synthesis/scene.h"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
+
+/// Directions within an angle of an axis, less than a quarter turn; in camera axes.
+struct Cone {
+  Eigen::Vector3d axis;  ///< unit vector
+  double cosine;         ///< of the angle
+  double sine;
+};
 
 /// The rays of a camera's picture: samples x samples a pixel, on a regular grid about the pixel's
 /// center, through the exact lens model. Computed once for all frames.
@@ -23,6 +31,12 @@ struct RayMap {
   int samples = 1;
   /// (x/z, y/z) in camera axes, pixel by pixel, sample by sample; NaN where the lens sees nothing.
   std::vector<Eigen::Vector2f> rays;
+  /// Around the rays of each span of pixels, row by row, which share what they may meet; none where
+  /// the lens sees nothing.
+  static constexpr int kSpan = 16;
+  std::vector<std::optional<Cone>> cones;
+
+  int spans() const { return (width + kSpan - 1) / kSpan; }  ///< a row
 };
 RayMap make_ray_map(const Camera& camera, int samples, int threads);
 
