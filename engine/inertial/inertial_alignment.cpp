@@ -249,39 +249,60 @@ ImuNoise noise_of(const Gyroscope& gyroscope,
   return noise;
 }
 
-}  // namespace
+/// Over the centers that are aligned, then the gyroscope's bias: where all of `refined` follows.
+PosePull pull_of(const AlignmentProblem& problem, const Refinement& refined, double misfit) {
+  const Eigen::Index rows = problem.centers.size();
+  MatrixXd by_poses(rows, rows + 3);
+  by_poses << std::exp(refined.state.log_scale) * MatrixXd::Identity(rows, rows),
+      by_gyro_bias(problem, refined.state);
+  const auto L = refined.noise->covariance.matrixL();
+  const MatrixXd G = L.solve(by_poses);
+  const MatrixXd of_unknowns = refined.white.transpose() * G;
+  PosePull pull{G.transpose() * L.solve(residuals(problem, refined.state)), G.transpose() * G};
+  pull.information.noalias() -=
+      of_unknowns.transpose() * inverse_of_symmetric(refined.information) * of_unknowns;
+  pull.information /= std::max(1.0, misfit);
+  return pull;
+}
 
-InertialAlignment align_inertial(const UncertainPoses& poses,
-                                 const Gyroscope& gyroscope,
-                                 const std::optional<Pose>& T_body_camera,
-                                 const InertialOptions& options) {
+/// An alignment, and what it was found by where it is ok.
+struct Alignment {
+  InertialAlignment inertial;
+  AlignmentProblem problem = {};
+  Refinement refined = {};
+};
+
+Alignment alignment_of(const UncertainPoses& poses,
+                       const Gyroscope& gyroscope,
+                       const std::optional<Pose>& T_body_camera,
+                       const InertialOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   if (static_cast<int>(poses.cameras.size()) < kLeastFrames)
-    return refused(fmt::format(
-        "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames));
+    return {refused(fmt::format(
+        "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames))};
   const std::int64_t offset_ns =
       gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
   const ImuNoise noise = noise_of(gyroscope, poses, offset_ns, options);
   const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
   ImuIntervals measured = imu_intervals(gyroscope, poses.times_ns, offset_ns, bias, noise);
-  if (!measured.reason.empty()) return refused(measured.reason);
+  if (!measured.reason.empty()) return {refused(measured.reason)};
   if (std::string reason = why_no_gravity(gyroscope, measured.between); !reason.empty())
-    return refused(std::move(reason));
+    return {refused(std::move(reason))};
   const TurnFit turns = turn_fit(poses, measured.between, gyroscope.R_gyro_camera, bias);
   for (Preintegration& one : measured.between)
     one = with_biases_moved(one, turns.bias_rad_s - bias, Vector3d::Zero());
 
-  const AlignmentProblem problem =
+  AlignmentProblem problem =
       alignment_problem(poses, measured.between, gyroscope, turns, T_body_camera, options);
-  const Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
-  if (!refined.noise) return refused("the poses' covariance is none");
+  Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
+  if (!refined.noise) return {refused("the poses' covariance is none")};
   InertialAlignment result;
   const double freedom = static_cast<double>(problem.centers.size()) - 6;
   result.misfit = refined.cost / freedom;
   if (!(result.misfit < kMostMisfit))
-    return refused(fmt::format(
+    return {refused(fmt::format(
         "accelerations and poses disagree by {:.0f} times what is expected: other axes or clock?",
-        std::sqrt(result.misfit)));
+        std::sqrt(result.misfit)))};
   result.ok = true;
   result.iterations = refined.iterations;
   result.gravity_m_s2 = refined.state.gravity;
@@ -292,7 +313,26 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   tell_certainty(refined, options, result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return result;
+  return {std::move(result), std::move(problem), std::move(refined)};
+}
+
+}  // namespace
+
+InertialAlignment align_inertial(const UncertainPoses& poses,
+                                 const Gyroscope& gyroscope,
+                                 const std::optional<Pose>& T_body_camera,
+                                 const InertialOptions& options) {
+  return alignment_of(poses, gyroscope, T_body_camera, options).inertial;
+}
+
+PullingAlignment align_and_pull(const UncertainPoses& poses,
+                                const Gyroscope& gyroscope,
+                                const std::optional<Pose>& T_body_camera,
+                                const InertialOptions& options) {
+  Alignment alignment = alignment_of(poses, gyroscope, T_body_camera, options);
+  if (!alignment.inertial.ok) return {std::move(alignment.inertial), {}};
+  PosePull pull = pull_of(alignment.problem, alignment.refined, alignment.inertial.misfit);
+  return {std::move(alignment.inertial), std::move(pull)};
 }
 
 }  // namespace gpo

@@ -16,13 +16,14 @@
 
 namespace gpo {
 
-/// Whether gravity and meters are found: after the initialization, from its poses; or not at all.
-enum class Gravity { after, off };
+/// Whether gravity and meters are found: after the initialization, from its poses; together with
+/// it, so that accelerations move planes, poses and the gyroscope's bias, too; or not at all.
+enum class Gravity { after, joint, off };
 
 template <>
 struct ChoiceKeys<Gravity> {
   static constexpr const char* name = "gravity";
-  static constexpr std::array keys{"after", "off"};
+  static constexpr std::array keys{"after", "joint", "off"};
 };
 
 /// What is known of an accelerometer and its place before anything is measured.
@@ -55,8 +56,22 @@ struct InertialAlignment {
   /// Squared residuals by what their covariances say, per degree of freedom. Above one, all
   /// covariances here are multiplied by it.
   double misfit = 0;
+  bool joint = false;  ///< planes, poses and the gyroscope's bias were moved with it
   int iterations = 0;
   double milliseconds = 0;
+};
+
+/// What accelerations say of the poses that they were aligned with, over the rows of the poses'
+/// covariance (engine/method.md, eq. 25): of anything x that is known together with them, and has
+/// the covariance C with them, x - C gradient, and Cov(x) - C information C^T.
+struct PosePull {
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+};
+
+struct PullingAlignment {
+  InertialAlignment inertial;
+  PosePull pull;  ///< empty where the alignment is not ok
 };
 
 /// Finds gravity, scale and velocities that make poses and accelerations agree (engine/method.md,
@@ -66,5 +81,10 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
                                  const Gyroscope& gyroscope,
                                  const std::optional<Pose>& T_body_camera,
                                  const InertialOptions& options = {});
+/// The same, and what it says of the poses.
+PullingAlignment align_and_pull(const UncertainPoses& poses,
+                                const Gyroscope& gyroscope,
+                                const std::optional<Pose>& T_body_camera,
+                                const InertialOptions& options = {});
 
 }  // namespace gpo

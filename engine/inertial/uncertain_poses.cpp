@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -71,8 +72,9 @@ UncertainPoses uncertain_poses(const Window& window, const Initialization& resul
   const Uncertainty& u = *result.uncertainty;
   const int centers = 3 * (all - 1);
   if (u.joint_covariance.rows() >= centers) {
-    for (int k = centers; k < u.joint_covariance.rows(); ++k) rows.push_back(k);
+    for (int k = 0; k < u.joint_bias_rows; ++k) rows.push_back(centers + k);
     poses.covariance = u.joint_covariance(rows, rows);
+    poses.joint_rows = std::move(rows);
     return poses;
   }
   std::vector<Matrix3d> single = {Matrix3d::Zero()};

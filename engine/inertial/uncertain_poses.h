@@ -23,6 +23,8 @@ struct UncertainPoses {
   Eigen::MatrixXd covariance;
   std::optional<Eigen::Vector3d> bias_rad_s = {};  ///< the gyroscope's, with which they go
   double time_offset_s = 0;                        ///< beyond what the gyroscope says of its clock
+  /// Where the rows of `covariance` stand in the result's joint one; empty: there is none.
+  std::vector<int> joint_rows = {};
 
   Eigen::Index center_rows() const { return 3 * (static_cast<Eigen::Index>(cameras.size()) - 1); }
   bool has_bias_covariance() const { return covariance.rows() > center_rows(); }

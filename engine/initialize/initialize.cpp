@@ -6,6 +6,7 @@
 #include "engine/frontend/make_window.h"
 #include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize/chosen_rotations.h"
+#include "engine/initialize/gravity.h"
 #include "engine/initialize/input_checks.h"
 #include "engine/initialize/steps.h"
 #include "engine/initializers/methods.h"
@@ -84,14 +85,19 @@ Initialization solved(const Window& window,
 
 /// Nothing without accelerations.
 std::optional<InertialAlignment> aligned(const Window& window,
-                                         const Initialization& initialization,
                                          const Gyroscope* gyroscope,
-                                         const InitializeOptions& options) {
+                                         const InitializeOptions& options,
+                                         Initialization& initialization) {
   if (gyroscope == nullptr || gyroscope->accelerations_m_s2.empty()) return std::nullopt;
   std::optional<Pose> T_gyro_camera;
   if (options.p_gyro_camera_m)
     T_gyro_camera = Pose{gyroscope->R_gyro_camera, *options.p_gyro_camera_m};
-  return align_inertial(uncertain_poses(window, initialization), *gyroscope, T_gyro_camera);
+  return find_gravity(window,
+                      uncertain_poses(window, initialization),
+                      *gyroscope,
+                      T_gyro_camera,
+                      options.gravity,
+                      initialization);
 }
 
 }  // namespace
@@ -137,8 +143,8 @@ Initialized initialize(const Camera& camera,
     initialization = solved(result.window, options, {&camera, gyro}, stop);
     if (!initialization.verdict) growth = growing_verdicts(result.window, stop);
   }
-  if (initialization.ok && options.gravity == Gravity::after)
-    result.inertial = aligned(result.window, initialization, gyro, options);
+  if (initialization.ok && options.gravity != Gravity::off)
+    result.inertial = aligned(result.window, gyro, options, initialization);
   complete_verdict(result.window, growth, initialization);
   if (options.camera_is_guess && initialization.verdict) demote(*initialization.verdict);
   return result;

@@ -6,6 +6,7 @@
 #include "engine/frontend/make_window.h"
 #include "engine/inertial/scale_since.h"
 #include "engine/inertial/uncertain_poses.h"
+#include "engine/initialize/gravity.h"
 #include "engine/initialize/steps.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -91,12 +92,16 @@ Initialization initialized(const Recording& recording,
 }
 
 /// Gravity and meters; nothing where the recording has no accelerometer.
-void align(const Window& window, const Initialization& initialization, Inspection& inspection) {
+void align(const Window& window,
+           Gravity when,
+           Initialization& initialization,
+           Inspection& inspection) {
   const auto& gyroscope = inspection.recording->gyroscope;
   const auto& T_body_camera = inspection.recording->T_body_camera;
   if (!gyroscope || gyroscope->accelerations_m_s2.empty()) return;
   const UncertainPoses poses = uncertain_poses(window, initialization);
-  inspection.inertial = align_inertial(poses, *gyroscope, T_body_camera);
+  inspection.inertial =
+      find_gravity(window, poses, *gyroscope, T_body_camera, when, initialization);
   if (!inspection.inertial->ok || !inspection.inertial->scale_known) return;
   const auto count = poses_that_tell_scale(poses, *gyroscope, T_body_camera);
   if (!count) return;
@@ -199,8 +204,8 @@ void Stages::initialize(const Settings& settings,
     inspection.motion = frame_motion(window);
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
   }
-  if (initialization.ok && settings.gravity == Gravity::after)
-    align(window, initialization, inspection);
+  if (initialization.ok && settings.gravity != Gravity::off)
+    align(window, settings.gravity, initialization, inspection);
   complete_verdict(window, inspection.growth, initialization);
   if (recording->camera_source == CameraSource::guess) {
     std::ranges::for_each(inspection.growth, demote);

@@ -11,9 +11,9 @@
 
 namespace gpo {
 
-/// Covariance of all camera centers but the first at once, stacked, and of the gyroscope's bias
-/// where that is among what the frames share: what each move does, and what else is not known of
-/// what is shared (all of it is `shared`).
+/// Covariance of all camera centers but the first at once, stacked, of the gyroscope's bias where
+/// that is among what the frames share, and of the planes: what each move does, and what else is
+/// not known of what is shared (all of it is `shared`).
 Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
                                  const Bread& bread,
                                  std::span<const SolutionMove> moves,

@@ -175,6 +175,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   if (centers == Centers::jointly && frames <= kMostJointFrames) {
     const auto moves = all_moves(window, observations, motion, bread, *inverse, degrees_of_freedom);
     result.joint_covariance = joint_covariance(motion, bread, moves, covariance);
+    result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
   }
   if (model == RotationModel::bias) result.bias_covariance = covariance.bottomRightCorner<3, 3>();
   const auto bound = [&](RotationModel of) { return bound_deg(window, motion, *linearized, of); };

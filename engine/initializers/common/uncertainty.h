@@ -37,9 +37,12 @@ struct Uncertainty {
   std::optional<double> neighbors_sigma_deg;
   std::optional<double> lens_sigma_deg;  ///< the lens' part of it; nothing: taken as exact
   std::vector<Eigen::Matrix3d> center_covariances;  ///< of p_wc, one a frame; zero of the first
-  /// Of all p_wc but the first at once, stacked, and, where it is uncertain what bias a gyroscope
-  /// had, of that (3 more rows): errors of neighboring frames are alike. Empty: not computed.
+  /// Of all p_wc but the first at once, stacked; where it is uncertain what bias a gyroscope had,
+  /// of that (3 more rows); of each plane, the leading one first, its normal along
+  /// `normal_tangents` (2 more rows), of further ones the log of 1 / distance, too: errors of
+  /// neighboring frames are alike, and go with those of the planes. Empty: not computed.
   Eigen::MatrixXd joint_covariance;
+  int joint_bias_rows = 0;                    ///< 3: it has those of the bias
   std::vector<double> distance_ratio_sigmas;  ///< of d_i / d_1, the plane's distance from camera i
   std::vector<PlaneUncertainty> others;       ///< of the further planes, in their order
   std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope's axes

@@ -168,7 +168,8 @@ ordered_json inertial_json(const InertialAlignment& inertial) {
           {"timestamps_ns", inertial.times_ns},
           {"accelerometer_bias", vector_json(inertial.accelerometer_bias_m_s2)},
           {"accelerometer_bias_covariance", matrix_json(inertial.accelerometer_bias_covariance)},
-          {"misfit", inertial.misfit}};
+          {"misfit", inertial.misfit},
+          {"joint", inertial.joint}};
 }
 
 ordered_json metrics_json(const Evaluation& evaluation) {

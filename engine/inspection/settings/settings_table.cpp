@@ -247,8 +247,9 @@ std::span<const Setting> settings_table() {
         row([](auto& s) -> auto& { return s.gravity; },
             {.key = "gravity",
              .title = "Gravity",
-             .help = "Gravity and meters by the accelerometer, where there is one, after "
-                     "the initialization and from its poses; or off",
+             .help = "Gravity and meters by the accelerometer, where there is one: after the "
+                     "initialization, from its poses; joint: with it, so that accelerations move "
+                     "what gpo_joint found, too; or off",
              .stage = SettingStage::initialization,
              .advanced = true}));
     return rows;

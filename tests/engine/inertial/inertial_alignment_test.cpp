@@ -87,6 +87,44 @@ TEST(InertialAlignment, ErrorsAreAsLargeAsItSays) {
   EXPECT_NEAR(all.scale / all.claims, 1, 0.2);
 }
 
+/// Centers and the gyroscope's bias.
+Eigen::VectorXd stacked(const UncertainPoses& poses) {
+  Eigen::VectorXd all(poses.center_rows() + 3);
+  for (std::size_t i = 1; i < poses.cameras.size(); ++i)
+    all.segment<3>(3 * (static_cast<Eigen::Index>(i) - 1)) = poses.cameras[i].p_wc;
+  all.tail<3>() = *poses.bias_rad_s;
+  return all;
+}
+
+// By eq. 25 of engine/method.md: they come nearer to the truth, as near as their covariance says.
+TEST(InertialAlignment, PullsPosesAndBiasToTheTruth) {
+  constexpr int kSeeds = 60;
+  for (const double seconds : {1, 2}) {
+    double squares = 0, bias_before = 0, bias_after = 0, before = 0, after = 0;
+    for (int k = 0; k < kSeeds; ++k) {
+      const auto made = simulated_alignment(Pace::brisk, kPhone, seconds, 7000 + k);
+      const auto [inertial, pull] =
+          align_and_pull(made.poses, made.gyroscope, made.T_body_camera, made.options);
+      ASSERT_TRUE(inertial.ok) << inertial.reason;
+      const Eigen::MatrixXd& C = made.poses.covariance;
+      const Eigen::VectorXd error = stacked(made.poses) - made.centers_and_bias;
+      const Eigen::VectorXd pulled = error - C * pull.gradient;
+      const Eigen::MatrixXd left = C - C * pull.information * C.transpose();
+      squares += pulled.dot(left.ldlt().solve(pulled)) / static_cast<double>(pulled.size());
+      const Eigen::Index rows = made.poses.center_rows();
+      before += error.head(rows).squaredNorm();
+      after += pulled.head(rows).squaredNorm();
+      bias_before += error.tail<3>().squaredNorm();
+      bias_after += pulled.tail<3>().squaredNorm();
+    }
+    EXPECT_NEAR(squares / kSeeds, 1, 0.1) << seconds;
+    EXPECT_LT(after, before) << seconds;
+    EXPECT_LT(bias_after, bias_before) << seconds;
+    RecordProperty("bias_" + std::to_string(seconds), std::to_string(bias_after / bias_before));
+    RecordProperty("centers_" + std::to_string(seconds), std::to_string(after / before));
+  }
+}
+
 TEST(InertialAlignment, AtRestTellsGravityAndNoScale) {
   Statistics of;
   for (const double seconds : {1, 2}) {

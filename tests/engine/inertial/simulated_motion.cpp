@@ -116,6 +116,8 @@ SimulatedAlignment simulated_alignment(
   const Eigen::Index rows = 3 * (frames - 1);
   Eigen::MatrixXd by_shared = Eigen::MatrixXd::Zero(rows + 3, 3);
   made.poses.bias_rad_s = gyro_bias + bias_error;
+  made.centers_and_bias.resize(rows + 3);
+  made.centers_and_bias.tail<3>() = gyro_bias;
   for (int i = 0; i < frames; ++i) {
     const double t = i / kFrameRate_hz;
     made.poses.times_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
@@ -125,6 +127,7 @@ SimulatedAlignment simulated_alignment(
     if (i > 0) {
       const Matrix3d grows = (t / seconds) * Matrix3d::Identity() + skew(pose.p_wc) * (t / seconds);
       by_shared.middleRows<3>(3 * (i - 1)) = grows;
+      made.centers_and_bias.segment<3>(3 * (i - 1)) = pose.p_wc;
       pose.p_wc += grows * shared + noise * own_sigma * dice.gaussian();
     }
     made.poses.cameras.push_back(pose);

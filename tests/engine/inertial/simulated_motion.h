@@ -49,6 +49,7 @@ struct SimulatedAlignment {
   double scale = 0;
   std::vector<Eigen::Vector3d> velocities;  ///< of the sensor, first camera's axes [m/s]
   Eigen::Vector3d accelerometer_bias;
+  Eigen::VectorXd centers_and_bias;  ///< what `poses` and their covariance are about
 };
 
 SimulatedMotion simulated_motion(Pace pace, unsigned seed);

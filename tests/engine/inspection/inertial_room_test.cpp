@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -71,6 +72,38 @@ TEST_F(InertialRoom, OffIsOffAndMovesNothingElse) {
   EXPECT_FALSE(without->inertial);
   EXPECT_FALSE(without->evaluation->gravity_error_deg);
   EXPECT_EQ(with->initialization->plane.normal, without->initialization->plane.normal);
+}
+
+// What accelerations add is less than what the pictures leave open, and never makes it larger.
+TEST_F(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
+  for (const int frames : {20, 40}) {
+    for (const int start : {0, 10, 20}) {
+      const Settings settings{.start = start, .frames = frames};
+      const auto after = inspected(settings);
+      const auto joint = inspected(with_setting(settings, "gravity", "joint"));
+      const Initialization& a = *after->initialization;
+      const Initialization& b = *joint->initialization;
+      if (!after->inertial) continue;  // no initialization
+      SCOPED_TRACE(testing::Message() << frames << " frames from " << start);
+      EXPECT_FALSE(after->inertial->joint);
+      ASSERT_TRUE(b.ok && joint->inertial->joint);
+      const double sigma_deg = a.uncertainty->normal_sigma_deg;
+      EXPECT_LT(b.uncertainty->normal_sigma_deg, sigma_deg);
+      EXPECT_GT(angle_deg(a.plane.normal, b.plane.normal), 0);
+      EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 4 * sigma_deg);
+      EXPECT_LT(b.rms_px, 1.1 * a.rms_px);
+      fmt::print(
+          "{} from {}: normal {:.2f} +- {:.2f} -> {:.2f} +- {:.2f} deg, scale {:.1f} -> {:.1f} %\n",
+          frames,
+          start,
+          after->evaluation->pne_deg.value_or(NAN),
+          sigma_deg,
+          joint->evaluation->pne_deg.value_or(NAN),
+          b.uncertainty->normal_sigma_deg,
+          after->evaluation->scale_error_percent.value_or(NAN),
+          joint->evaluation->scale_error_percent.value_or(NAN));
+    }
+  }
 }
 
 }  // namespace
