@@ -67,6 +67,11 @@ TurnFit turn_fit(const UncertainPoses& poses,
   return {bias_rad_s + step, kAlike * left / freedom * N.inverse()};
 }
 
+/// Residuals less what is unknown without a prior.
+double freedom_of(const AlignmentProblem& problem) {
+  return static_cast<double>(problem.centers.size()) - 6;
+}
+
 /// What of the log scale's information is due to noise: the path's errors that are left once the
 /// measurements have smoothed it, V = S - C Sigma^-1 C^T, count as motion. Expectation. With
 /// Sigma = L L^T, K = L^-1 C^T L^-T and C^T = S + B P^T,
@@ -97,6 +102,24 @@ MatrixXd prior_of(const AlignmentProblem& problem) {
   return prior;
 }
 
+/// Residuals and their derivatives around a state, in units of their noise.
+struct WhiteResiduals {
+  VectorXd r;
+  MatrixXd J;
+};
+
+/// With the path that all measurements make likely (as total least squares has it) for the scale:
+/// with the noisy one it would shrink.
+WhiteResiduals white_residuals(const AlignmentProblem& problem,
+                               const AlignmentState& state,
+                               const ResidualNoise& noise) {
+  const auto L = noise.covariance.matrixL();
+  VectorXd r = L.solve(residuals(problem, state));
+  const VectorXd path =
+      std::exp(state.log_scale) * problem.centers - noise.with_path * L.transpose().solve(r);
+  return {std::move(r), L.solve(jacobian(problem, state, path))};
+}
+
 struct Refinement {
   AlignmentState state;
   MatrixXd information;
@@ -106,9 +129,7 @@ struct Refinement {
   int iterations = 0;
 };
 
-/// Where all is linear but the scale: Gauss-Newton. The path that the scale multiplies is the one
-/// that all measurements make likely (as total least squares has it): with the noisy one the scale
-/// would shrink.
+/// Where all is linear but the scale: Gauss-Newton.
 Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   constexpr int kMostIterations = 12;
   constexpr double kConverged = 1e-2;  // of a standard deviation
@@ -119,12 +140,8 @@ Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
     if (!result.noise || std::abs(state.log_scale - result.noise->log_scale) > kAlike)
       result.noise = residual_noise(problem, state);
     if (!result.noise) return result;
-    const VectorXd r = residuals(problem, state);
-    const auto L = result.noise->covariance.matrixL();
-    const VectorXd white_r = L.solve(r);
-    const VectorXd path = std::exp(state.log_scale) * problem.centers -
-                          result.noise->with_path * L.transpose().solve(white_r);
-    result.white = L.solve(jacobian(problem, state, path));
+    auto [white_r, white] = white_residuals(problem, state, *result.noise);
+    result.white = std::move(white);
     result.information = prior;
     result.information.noalias() += result.white.transpose() * result.white;
     VectorXd off = VectorXd::Zero(kAlignmentUnknowns);
@@ -249,19 +266,24 @@ ImuNoise noise_of(const Gyroscope& gyroscope,
   return noise;
 }
 
-/// Over the centers that are aligned, then the gyroscope's bias: where all of `refined` follows.
+/// Over the centers that are aligned, then the gyroscope's bias. The noise is that of the very
+/// state: with that of a scale a little off, covariances would come out negative.
 PosePull pull_of(const AlignmentProblem& problem, const Refinement& refined, double misfit) {
   const Eigen::Index rows = problem.centers.size();
+  const auto noise = residual_noise(problem, refined.state);
+  if (!noise) return {VectorXd::Zero(rows + 3), MatrixXd::Zero(rows + 3, rows + 3)};
   MatrixXd by_poses(rows, rows + 3);
   by_poses << std::exp(refined.state.log_scale) * MatrixXd::Identity(rows, rows),
       by_gyro_bias(problem, refined.state);
-  const auto L = refined.noise->covariance.matrixL();
-  const MatrixXd G = L.solve(by_poses);
-  const MatrixXd of_unknowns = refined.white.transpose() * G;
-  PosePull pull{G.transpose() * L.solve(residuals(problem, refined.state)), G.transpose() * G};
-  pull.information.noalias() -=
-      of_unknowns.transpose() * inverse_of_symmetric(refined.information) * of_unknowns;
-  pull.information /= std::max(1.0, misfit);
+  const MatrixXd G = noise->covariance.matrixL().solve(by_poses);
+  const auto [r, J] = white_residuals(problem, refined.state, *noise);
+  const MatrixXd of_unknowns = J.transpose() * G;
+  const MatrixXd left = inverse_of_symmetric(prior_of(problem) + J.transpose() * J);
+  PosePull pull{G.transpose() * r, G.transpose() * G};
+  pull.information.noalias() -= of_unknowns.transpose() * left * of_unknowns;
+  // A misfit beyond chance is the accelerations' own, which then tell less.
+  const double chance = 3 * std::sqrt(2 / freedom_of(problem));
+  if (misfit > 1 + chance) pull.information /= misfit;
   return pull;
 }
 
@@ -297,8 +319,7 @@ Alignment alignment_of(const UncertainPoses& poses,
   Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
   if (!refined.noise) return {refused("the poses' covariance is none")};
   InertialAlignment result;
-  const double freedom = static_cast<double>(problem.centers.size()) - 6;
-  result.misfit = refined.cost / freedom;
+  result.misfit = refined.cost / freedom_of(problem);
   if (!(result.misfit < kMostMisfit))
     return {refused(fmt::format(
         "accelerations and poses disagree by {:.0f} times what is expected: other axes or clock?",

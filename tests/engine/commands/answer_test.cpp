@@ -101,7 +101,9 @@ TEST(ReadAnswer, WhatIsWrongIsToldByItsKey) {
           {answer_with(R"(, "milliseconds": "1")"), "milliseconds: expected a number"},
           {std::string(100'000, '['), "nested too deep"},
       }) {
-    EXPECT_THAT(test::error_of([&] { read_answer(line, kAsked); }), HasSubstr(message)) << line;
+    EXPECT_THAT(test::error_of([&, &line = line] { read_answer(line, kAsked); }),
+                HasSubstr(message))
+        << line;
   }
 }
 

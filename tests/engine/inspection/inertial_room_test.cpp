@@ -11,7 +11,6 @@
 #include <memory>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -92,16 +91,6 @@ TEST_F(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
       EXPECT_GT(angle_deg(a.plane.normal, b.plane.normal), 0);
       EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 4 * sigma_deg);
       EXPECT_LT(b.rms_px, 1.1 * a.rms_px);
-      fmt::print(
-          "{} from {}: normal {:.2f} +- {:.2f} -> {:.2f} +- {:.2f} deg, scale {:.1f} -> {:.1f} %\n",
-          frames,
-          start,
-          after->evaluation->pne_deg.value_or(NAN),
-          sigma_deg,
-          joint->evaluation->pne_deg.value_or(NAN),
-          b.uncertainty->normal_sigma_deg,
-          after->evaluation->scale_error_percent.value_or(NAN),
-          joint->evaluation->scale_error_percent.value_or(NAN));
     }
   }
 }

@@ -235,7 +235,7 @@ TEST(ResultMethod, BadSpellingsAreTold) {
            {"it=,,", "names no file"},
            {"it=a,b,c", "expected NAME=FILE"},
            {"it=a,frame=wheel", "unknown"}}) {
-    EXPECT_THAT(error_of([&] { parse_program_result(text); }), HasSubstr(message));
+    EXPECT_THAT(error_of([&, &text = text] { parse_program_result(text); }), HasSubstr(message));
   }
 }
 

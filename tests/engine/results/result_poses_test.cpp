@@ -124,8 +124,9 @@ TEST(ResultPoses, BadTrajectoriesAreToldByLine) {
            {kitti + "1 0 0 0 0 1 0 0 0 0 -1 0\n", "t.txt:4: found no rotation"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 1\n", "t.txt:4: found 11 columns"},
            {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n", "t.txt:4: found no rotation"}}) {
-    EXPECT_THAT(error_of([&] { read_result_poses(folder.write("t.txt", content)); }),
-                HasSubstr(message));
+    EXPECT_THAT(
+        error_of([&, &content = content] { read_result_poses(folder.write("t.txt", content)); }),
+        HasSubstr(message));
   }
   EXPECT_THAT(error_of([&] { read_result_poses(folder.path()); }),
               HasSubstr("found neither images.bin nor images.txt"));
