@@ -49,6 +49,7 @@ std::vector<int> blocks_of(const PlaneObservations& observations, int tracks) {
       for (int o = 0; o < f.count; ++o) places[f.track[o]] = {f.ray_x[o], f.ray_y[o]};
   if (static_cast<int>(places.size()) < kLeastPlaces) return {};
   std::vector<PlacedTrack> placed;
+  placed.reserve(places.size());
   for (const auto& [track, ray] : places) placed.push_back({track, ray});
   std::vector<int> blocks(tracks, 0);
   divide(placed, 0, kBlocks, 0, blocks);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -162,10 +163,10 @@ std::optional<Linearization> linearize(const PlaneObservations& observations,
 }
 
 std::vector<int> Bread::places(int plane) const {
-  std::vector<int> places;
-  for (int k = 0; k < UnknownsLayout::size_of_plane(plane); ++k)
-    places.push_back(UnknownsLayout::of_plane(plane) + k);
-  for (int k = 0; k < layout.gyro; ++k) places.push_back(layout.of_gyro() + k);
+  std::vector<int> places(UnknownsLayout::size_of_plane(plane) + layout.gyro);
+  const auto gyro = places.end() - layout.gyro;
+  std::iota(places.begin(), gyro, UnknownsLayout::of_plane(plane));
+  std::iota(gyro, places.end(), layout.of_gyro());
   return places;
 }
 

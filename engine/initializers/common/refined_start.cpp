@@ -13,7 +13,7 @@ Initialization refined_start(const Window& window,
                              Refinement refine,
                              const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
-  const Initialization started = start.initialize(window, watch);
+  Initialization started = start.initialize(window, watch);
   if (started.stopped) return started;
   Initialization result = started.ok
                               ? refine(window, started, watch)

@@ -4,6 +4,7 @@
 
 #include "engine/initializers/plane/plane_observations.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -87,8 +88,8 @@ std::vector<OtherPlane> other_planes(const Window& window, const PlaneMotion& mo
 }
 
 std::vector<int> numbers_of(const std::vector<OtherPlane>& planes) {
-  std::vector<int> numbers;
-  for (const OtherPlane& plane : planes) numbers.push_back(plane.number);
+  std::vector<int> numbers(planes.size());
+  std::ranges::transform(planes, numbers.begin(), &OtherPlane::number);
   return numbers;
 }
 

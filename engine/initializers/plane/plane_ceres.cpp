@@ -5,6 +5,7 @@
 #include "engine/initializers/residuals/transfer.h"
 #include "engine/window/window.h"
 
+#include <cstddef>
 #include <memory>
 
 #include <Eigen/Geometry>
@@ -118,7 +119,7 @@ class FrameCost : public ceres::CostFunction {
       const Transfer transfer = transfer_on_plane(focal_, rotation.R_wc, ray_1, m, tau);
       if (!transfer.in_front) return false;
       const double weight = observations_.mask[k];
-      Eigen::Map<Eigen::Vector2d> residual(residuals + 2 * k);
+      Eigen::Map<Eigen::Vector2d> residual(residuals + std::ptrdiff_t{2} * k);
       residual =
           weight * (transfer.pixel - Eigen::Vector2d(observations_.u[k], observations_.v[k]));
       const auto write = [&](int block, const auto& J) {

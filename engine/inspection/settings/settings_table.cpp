@@ -250,6 +250,7 @@ std::span<const Setting> settings_table() {
              .help = "Gravity and meters by the accelerometer, where there is one: after the "
                      "initialization, from its poses; joint: with it, so that accelerations move "
                      "what gpo_joint found, too; or off",
+             .reader = SettingReader::gravity,
              .stage = SettingStage::initialization,
              .advanced = true}));
     return rows;

@@ -22,8 +22,9 @@ using SettingValue = std::
 enum class SettingKind { on_off, whole, number, choice, ids };
 
 /// Who heeds a setting: all; the built-in front end; the test whether a track is an inlier; the
-/// methods that name it among their options (`Method::reads`).
-enum class SettingReader { all, tracker, inlier_test, method };
+/// methods that name it among their options (`Method::reads`); all but for gravity in one solution
+/// with the planes (`joins_gravity`).
+enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
 /// The stages of an inspection in their order. A setting acts from its stage on.
 enum class SettingStage { tracks, inliers, rotations, initialization };

@@ -95,5 +95,14 @@ TEST_F(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
   }
 }
 
+// The others' uncertainty is not that of the problem that they solved.
+TEST_F(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
+  const Settings after{.start = 20, .frames = 20, .method = "ba"};
+  const auto joint = inspected(with_setting(after, "gravity", "joint"));
+  ASSERT_TRUE(joint->inertial && joint->inertial->ok);
+  EXPECT_FALSE(joint->inertial->joint);
+  EXPECT_EQ(joint->initialization->plane.normal, inspected(after)->initialization->plane.normal);
+}
+
 }  // namespace
 }  // namespace gpo

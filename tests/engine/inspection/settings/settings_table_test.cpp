@@ -135,6 +135,10 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   settings.method = "ba";  // takes all tracks, and still counts inliers
   EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
   EXPECT_EQ(why(settings, "solver"), "Only gpo and gpo_joint let one choose this");
+  EXPECT_EQ(why(settings, "gravity"), "");
+  settings.gravity = Gravity::joint;
+  EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint takes gravity"));
+  EXPECT_EQ(as_used(settings).gravity, Gravity::after);
   Recording recording;
   EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");
   recording.tracks.emplace_back();
