@@ -283,7 +283,10 @@ PosePull pull_of(const AlignmentProblem& problem, const Refinement& refined, dou
   pull.information.noalias() -= of_unknowns.transpose() * left * of_unknowns;
   // A misfit beyond chance is the accelerations' own, which then tell less.
   const double chance = 3 * std::sqrt(2 / freedom_of(problem));
-  if (misfit > 1 + chance) pull.information /= misfit;
+  if (misfit > 1 + chance) {
+    pull.gradient /= misfit;
+    pull.information /= misfit;
+  }
   return pull;
 }
 

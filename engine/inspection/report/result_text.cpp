@@ -101,11 +101,12 @@ std::string inertial_text(const Inspection& inspection) {
   if (!inertial->ok) return row("gravity", "not found: " + inertial->reason);
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
-             fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera)",
+             fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera{})",
                          down.x(),
                          down.y(),
                          down.z(),
-                         inertial->gravity_sigma_deg)) +
+                         inertial->gravity_sigma_deg,
+                         inertial->joint ? "; together with the planes" : "")) +
          row("scale",
              inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away{}",
                                                  100 * inertial->log_scale_sigma,
