@@ -123,7 +123,7 @@ ChildProcess::~ChildProcess() { end(); }
 
 ProcessReply ChildProcess::ask(std::string_view question,
                                const ReplyLimits& limits,
-                               std::stop_token stop) {
+                               const std::stop_token& stop) {
   ProcessReply reply;
   const auto ended = [&](Reply how) {
     in_step_ = in_step_ && how == Reply::answered && question.empty();

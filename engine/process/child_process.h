@@ -48,7 +48,9 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   /// `question` with its line end. After any reply but `answered` it is of no more use.
-  ProcessReply ask(std::string_view question, const ReplyLimits& limits, std::stop_token stop = {});
+  ProcessReply ask(std::string_view question,
+                   const ReplyLimits& limits,
+                   const std::stop_token& stop = {});
 
   /// Whether it lives and has said nothing that it was not asked for: else the next line that it
   /// writes might be the answer to an earlier question.

@@ -82,7 +82,7 @@ void Survey::want(std::vector<Settings> settings) {
   wake_.notify_one();
 }
 
-void Survey::add(std::shared_ptr<const Inspection> inspection) {
+void Survey::add(const std::shared_ptr<const Inspection>& inspection) {
   const std::lock_guard lock(mutex_);
   if (inspection->recording != recording_) return;
   if (find_surveyed(results_.get(), inspection->settings) != nullptr) return;

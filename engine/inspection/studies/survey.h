@@ -59,7 +59,7 @@ class Survey {
   /// longer wanted.
   void want(std::vector<Settings> settings);
   /// Somebody else's result.
-  void add(std::shared_ptr<const Inspection> inspection);
+  void add(const std::shared_ptr<const Inspection>& inspection);
 
   /// The window whose normals are to be studied, before all that is wanted; null: none. One
   /// that was studied last, or could not be, is not studied again.

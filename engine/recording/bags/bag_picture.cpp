@@ -98,7 +98,7 @@ void check_room(const ImageMessage& image, const PixelFormat& format, const std:
 cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
   const PixelFormat& format = format_of(image, name);
   check_room(image, format, name);
-  const cv::Mat pixels = stored_pixels(image, format);
+  cv::Mat pixels = stored_pixels(image, format);
   if (format.conversion == kAsItIs) return pixels;
   cv::Mat bgr;
   try {

@@ -133,7 +133,7 @@ std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
 }
 
 Eigen::Vector2d refined(const cv::Mat& gray, const ExpectedCorner& expected) {
-  const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   const int half = std::clamp(static_cast<int>(0.9 * expected.reach_px), 2, 7);
   if (!cv::Rect2f(cv::Point2f(), gray.size()).contains(expected.at)) return none;
   std::vector<cv::Point2f> corner = {expected.at};
