@@ -34,31 +34,41 @@ void continue_line_at(float x) {
   ImGui::SetCursorPosX(std::round(x));
 }
 
-void draw_value(const ResultRow& row, float right, float gap) {
-  // Values end at one line, so that their digits can be compared; notes stand to their left.
-  const float value_width = ImGui::CalcTextSize(row.value.c_str()).x;
-  if (!row.note.empty()) {
-    ImGui::PushFont(font(Font::small));
-    const float note_width = ImGui::CalcTextSize(row.note.c_str()).x;
-    continue_line_at(right - value_width - note_width - gap);
+/// Dim and small; false where there is no room right of what was drawn last.
+bool draw_note(const std::string& note, float right, float gap) {
+  ImGui::PushFont(font(Font::small));
+  const float drawn_to = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  const float left = right - ImGui::CalcTextSize(note.c_str()).x - gap;
+  const bool fits = left > drawn_to + gap;
+  if (fits) {
+    continue_line_at(left);
     ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-    ImGui::TextUnformatted(row.note.c_str());
+    ImGui::TextUnformatted(note.c_str());
     ImGui::PopStyleColor();
-    ImGui::PopFont();
   }
-  continue_line_at(right - value_width);
+  ImGui::PopFont();
+  return fits;
+}
+
+/// Values end at one line, so that their digits can be compared; notes stand to their left. False
+/// where there is no room for the note.
+bool draw_value(const ResultRow& row, float right, float gap) {
+  const float left = right - ImGui::CalcTextSize(row.value.c_str()).x;
+  const bool told = row.note.empty() || draw_note(row.note, left, gap);
+  continue_line_at(left);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(row.tone)));
   ImGui::TextUnformatted(row.value.c_str());
   ImGui::PopStyleColor();
+  return told;
 }
 
 void draw_row(const ResultRow& row, float left, float right, float gap) {
   ImGui::SetCursorPosX(left);
   ImGui::BeginGroup();
   ImGui::TextUnformatted(row.label.c_str());
-  draw_value(row, right, gap);
+  const bool told = draw_value(row, right, gap);
   ImGui::EndGroup();
-  tooltip(row.tooltip);
+  tooltip(told ? row.tooltip : row.note + ". " + row.tooltip);
 }
 
 /// Two columns, in the small font: milliseconds are many, and seldom what one looks for.

@@ -70,8 +70,8 @@ void status_line(const PanelInput& input, const Rectangle& place) {
     const float right = place.width - 12 * s;
     const bool error = !input.worker.error.empty();
     const std::string& message = error ? input.worker.error : input.state.message;
-    const std::uint32_t color =
-        error ? gpo::color_of(Role::bad) : color_of(input.state.message_severity);
+    const Severity severity = message.empty() ? Severity::note : input.state.message_severity;
+    const std::uint32_t color = error ? gpo::color_of(Role::bad) : color_of(severity);
     if (const auto work = current_work(input)) {
       const float left = draw_progress(*work, s);
       ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));
