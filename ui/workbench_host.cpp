@@ -28,7 +28,7 @@ std::filesystem::path free_picture_name(const WorkbenchState& state) {
 WorkbenchHost::WorkbenchHost(Gui& gui,
                              Worker::Open open,
                              std::filesystem::path example,
-                             std::function<void()> changed)
+                             const std::function<void()>& changed)
     : gui_(gui),
       example_(std::move(example)),
       fetcher_(changed),

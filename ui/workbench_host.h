@@ -24,7 +24,7 @@ class WorkbenchHost {
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
                 std::filesystem::path example,
-                std::function<void()> changed = {});
+                const std::function<void()>& changed = {});
 
   WorkbenchState state;
   WorkerLink link;

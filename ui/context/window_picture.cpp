@@ -23,11 +23,14 @@ bool same_items(const std::vector<T>& a, const ImVector<T>& b) {
          (a.empty() || std::memcmp(a.data(), b.Data, a.size() * sizeof(T)) == 0);
 }
 
+bool same_rectangle(const ImVec4& a, const ImVec4& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+}
+
 bool same_command(const ImDrawCmd& a, const ImDrawCmd& b) {
-  return std::memcmp(&a.ClipRect, &b.ClipRect, sizeof(a.ClipRect)) == 0 &&
-         a.TextureId == b.TextureId && a.VtxOffset == b.VtxOffset && a.IdxOffset == b.IdxOffset &&
-         a.ElemCount == b.ElemCount && a.UserCallback == b.UserCallback &&
-         a.UserCallbackData == b.UserCallbackData;
+  return same_rectangle(a.ClipRect, b.ClipRect) && a.TextureId == b.TextureId &&
+         a.VtxOffset == b.VtxOffset && a.IdxOffset == b.IdxOffset && a.ElemCount == b.ElemCount &&
+         a.UserCallback == b.UserCallback && a.UserCallbackData == b.UserCallbackData;
 }
 
 /// Whole pixels; empty where the corners are no rectangle.

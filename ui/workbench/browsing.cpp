@@ -42,7 +42,9 @@ std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const st
     if (!hidden && lower_case(entry.name).find(lower_case(name)) != std::string::npos)
       found.push_back(entry);
   }
-  std::ranges::stable_partition(found, [&](const auto& entry) { return begins(entry, name); });
+  // Clang 14 cannot read what the one of std::ranges returns.
+  std::stable_partition(
+      found.begin(), found.end(), [&](const auto& entry) { return begins(entry, name); });
   return found;
 }
 

@@ -121,7 +121,7 @@ double worse_by(double value, double first, Better better) {
 }
 
 std::string difference(double value, double first, std::string (*text)(double)) {
-  const std::string absolute = difference_text(value, first, text);
+  std::string absolute = difference_text(value, first, text);
   if (absolute == "\u00b10" || !(first > 0)) return absolute;
   const double percent = 100 * (value - first) / first;
   if (percent >= 1000) return fmt::format("{} \u00d7{:.0f}", absolute, value / first);

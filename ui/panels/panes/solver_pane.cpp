@@ -103,9 +103,10 @@ void draw_charts(const Rectangle& place,
   for (int i = 0; i < 3; ++i) {
     Chart chart = charts[i];
     if (columns == 3) chart.y_label = chart.y_label.substr(chart.y_label.find('['));
+    const int row = i / columns;
     chart_item(fmt::format("solver {}", i),
                {place.x + width * static_cast<float>(i % columns),
-                place.y + height * static_cast<float>(i / columns),
+                place.y + height * static_cast<float>(row),
                 width,
                 height},
                views,

@@ -80,11 +80,13 @@ FigureLayout lay_out(const Figure& figure,
   if (sheet.height) height = std::max(20 * s, (*sheet.height - top - below) / rows - head - foot);
   const double left = 3.3 * type.tick + 2 * type.axis_title, right = 1.3 * type.tick;
   const double column = sheet.width / columns;
-  for (int i = 0; i < charts; ++i)
+  for (int i = 0; i < charts; ++i) {
+    const int row = i / columns;
     layout.axes.emplace_back(std::round(column * (i % columns) + left),
-                             std::round(top + head + (head + height + foot) * (i / columns)),
+                             std::round(top + head + (head + height + foot) * row),
                              std::max(20 * s, std::round(column - left - right)),
                              std::round(height));
+  }
   const double end = top + rows * (head + height + foot);
   for (LegendKey& key : layout.keys) key.at.y() += end;
   layout.note_y = end + legend_height + 0.6 * kMargin * s + kLineSpacing * type.note / 2;

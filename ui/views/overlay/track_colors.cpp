@@ -23,7 +23,7 @@ std::uint32_t ramp(double share) {
   }();
   constexpr double kDarkest = 0.3;
   const double level = kDarkest + (1 - kDarkest) * std::clamp(share, 0.0, 1.0);
-  const auto bgr = table.at<cv::Vec3b>(static_cast<int>(std::lround(255 * level)));
+  const auto& bgr = table.at<cv::Vec3b>(static_cast<int>(std::lround(255 * level)));
   return (static_cast<std::uint32_t>(bgr[2]) << 16) | (static_cast<std::uint32_t>(bgr[1]) << 8) |
          bgr[0];
 }

@@ -161,7 +161,7 @@ std::vector<std::vector<Vector2d>> contact_shadow(const Inspection& inspection,
       // A square and a disc added up (Minkowski): a square with round corners.
       const double angle = 2 * std::numbers::pi * (i + 0.5) / kPoints;
       const double x = std::cos(angle), y = std::sin(angle);
-      const Vector3d corner = base[(x > 0 ? 1 : 0) | (y > 0 ? 2 : 0)];
+      const Vector3d& corner = base[(x > 0 ? 1 : 0) | (y > 0 ? 2 : 0)];
       const Vector3d point_c =
           to_camera(pose, corner + reach * (x * anchor.axes.col(0) + y * anchor.axes.col(1)));
       if (point_c.z() < kNear * side) return {};

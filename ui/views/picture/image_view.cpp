@@ -168,7 +168,7 @@ void draw_residuals(const Canvas& canvas) {
 
 /// What the estimated cube's difference is told from.
 std::optional<CubePicture> reference_cube(const Canvas& canvas) {
-  if (const auto truth = canvas.true_cube()) return truth;
+  if (auto truth = canvas.true_cube()) return truth;
   if (canvas.options.reference == nullptr) return std::nullopt;
   return gpo::estimated_cube(*canvas.options.reference,
                              canvas.frame,

@@ -94,7 +94,7 @@ Action toggle(std::string name,
               std::string title,
               std::vector<Shortcut> shortcuts,
               std::string tooltip,
-              std::function<bool&(WorkbenchState&)> flag) {
+              const std::function<bool&(WorkbenchState&)>& flag) {
   Action action{
       std::move(name), std::move(title), "View", std::move(shortcuts), std::move(tooltip)};
   action.arguments = "[on|off]";

@@ -56,6 +56,6 @@ Action toggle(std::string name,
               std::string title,
               std::vector<Shortcut> shortcuts,
               std::string tooltip,
-              std::function<bool&(WorkbenchState&)> flag);
+              const std::function<bool&(WorkbenchState&)>& flag);
 
 }  // namespace gpo
