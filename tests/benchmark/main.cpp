@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   register_part_benchmarks(windows);
   register_frontend_benchmarks();
   register_plane_benchmarks();
+  register_inertial_benchmarks();
   register_live_benchmarks();
   register_view_benchmarks();
   register_evaluate_benchmarks();
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
   print_part_tables(results);
   print_frontend_tables(results);
   print_plane_tables(results);
+  print_inertial_tables(results);
   print_live_tables(results);
   print_view_tables(results);
   print_evaluate_tables(results);

@@ -25,6 +25,10 @@ void print_frontend_tables(const Results& results);
 void register_plane_benchmarks();
 void print_plane_tables(const Results& results);
 
+/// Gravity and meters of simulated poses, one thread.
+void register_inertial_benchmarks();
+void print_inertial_tables(const Results& results);
+
 /// The front door's live form, frame by frame.
 void register_live_benchmarks();
 void print_live_tables(const Results& results);
