@@ -44,6 +44,7 @@ std::vector<std::shared_ptr<const Inspection>> inspect_each(
   const std::vector<Configuration> configurations = configurations_of(request);
   const Settings base = base_of(configurations, request.window);
   std::vector<std::shared_ptr<const Inspection>> inspections;
+  inspections.reserve(configurations.size());
   for (const Configuration& configuration : configurations)
     inspections.push_back(inspector.inspect(apply(configuration, base)));
   return inspections;

@@ -246,7 +246,7 @@ void bind_camera(py::module_& module) {
            "(n, 2), where a camera without lens but the same K sees them; NaN beyond the model");
 }
 
-void bind_live(py::module_& module) {
+void bind_status(py::module_& module) {
   py::class_<LiveStatus>(module, "LiveStatus", "What an Initializer knows after a frame.")
       .def_readonly("ready", &LiveStatus::ready)
       .def_readonly("metric", &LiveStatus::metric, "the answer is in known meters, too")
@@ -267,6 +267,9 @@ void bind_live(py::module_& module) {
         return fmt::format(
             "<gpo.LiveStatus {} frames: {}>", s.frames, s.ready ? "ready" : s.reason);
       });
+}
+
+void bind_live(py::module_& module) {
   const LiveOptions usual;
   py::class_<Initializer>(
       module,
@@ -363,6 +366,7 @@ void bind_initialize(py::module_& module) {
       "(timestamp_ns, ids (n,), pixels (n, 2)) or with R_wc (3, 3), each. gyroscope: a dict "
       "as `Recording.gyroscope`. Settings as of `run`: method, rotations, planes, ... "
       "Raises InputError; what cannot be initialized is not ok, with the reason.");
+  bind_status(module);
   bind_live(module);
 }
 

@@ -64,6 +64,7 @@ py::list frames_of(const Result& result) {
     for (int j = 0; j < tracks->track_count(); ++j)
       if (tracks->seen(i, j)) seen.push_back(j);
     std::vector<std::int64_t> ids;
+    ids.reserve(seen.size());
     for (const int j : seen) ids.push_back(tracks->ids[j]);
     const Eigen::MatrixX2d pixels = tracks->raw_px[i](Eigen::all, seen).transpose();
     frames.append(py::make_tuple(result.shared->recording->timestamps_ns[tracks->start + i],
@@ -127,6 +128,7 @@ py::object evaluated(const std::vector<RecordingOrPath>& recordings,
                      std::uint64_t seed,
                      int jobs) {
   std::vector<SharedRecording> all;
+  all.reserve(recordings.size());
   for (const RecordingOrPath& recording : recordings) all.push_back(opened(recording));
   if (all.empty()) throw InputError("evaluate: expected recordings");
   const Experiment experiment = plan_experiment(all,

@@ -29,8 +29,9 @@ constexpr double kMostBlurred = 2;  // times the median width of edges
 using Feature = Eigen::Matrix<double, 6, 1>;
 
 std::vector<int> regular_sample(int count, int most) {
-  std::vector<int> sample;
   const int taken = std::min(count, most);
+  std::vector<int> sample;
+  sample.reserve(static_cast<std::size_t>(taken));
   for (int i = 0; i < taken; ++i) {
     sample.push_back(static_cast<int>(std::int64_t{i} * count / taken));
   }

@@ -329,6 +329,7 @@ GyroscopeFit fit_gyroscope(const std::vector<PictureRotations>& windows,
     fit.drift_sigma = sigmas(7);
   }
   std::vector<PictureRotations> used;
+  used.reserve(observed.size());
   for (const Observed& one : observed) used.push_back(*one.window);
   fit.correlation = correlation_of(pairs_at(integral, intervals_of(used), fit.time_offset_s));
   fit.rms_deg = rms_deg(refined->errors.of_window);

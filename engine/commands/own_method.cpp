@@ -72,9 +72,8 @@ std::string checksum_of(const std::filesystem::path& path) {
   std::array<char, 65'536> buffer{};
   uLong sum = crc32(0, nullptr, 0);
   while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
-    sum = crc32(sum,
-                reinterpret_cast<const Bytef*>(buffer.data()),  // NOLINT(*-reinterpret-cast)
-                static_cast<uInt>(file.gcount()));
+    sum =
+        crc32(sum, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(file.gcount()));
   return fmt::format("{:08x}", sum);
 }
 

@@ -106,10 +106,19 @@ std::vector<Change> changes_of(const std::string& word,
 }
 
 void check_read(const Configuration& configuration, const std::string& text) {
-  for (const Change& change : configuration.changes)
-    if (!is_read(find_setting(change.setting), configuration.method))
+  const Settings used = as_used(apply(configuration, {}));
+  for (const Change& change : configuration.changes) {
+    const Setting& setting = find_setting(change.setting);
+    if (!is_read(setting, configuration.method))
       refuse(
           fmt::format("'{}': {} does not read '{}'", text, configuration.method, change.setting));
+    if (value_text(setting.get(used)) != change.value)
+      refuse(fmt::format("'{}': {} does not take '{}' for '{}'",
+                         text,
+                         configuration.method,
+                         change.value,
+                         change.setting));
+  }
 }
 
 /// The changes in the order of the settings' words.

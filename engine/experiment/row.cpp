@@ -115,6 +115,7 @@ Row refused_row(const std::string& recording, const Settings& settings, const st
   row.settings = settings;
   row.settings.ransac = uses_ransac(settings);
   row.settings.inliers = inliers_used(settings);
+  row.settings.gravity = gravity_used(settings);
   row.status = "failed";
   row.reason = reason;
   return row;

@@ -179,6 +179,7 @@ bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
 double disagreement_rad(const std::vector<RelativeRotation>& relative,
                         const std::vector<Matrix3d>& R_wc) {
   std::vector<double> angles;
+  angles.reserve(relative.size());
   for (const auto& [i, j, R_ij, weight] : relative)
     angles.push_back(so3_log(R_wc[i] * R_ij * R_wc[j].transpose()).norm());
   return median(std::move(angles));

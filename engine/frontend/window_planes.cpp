@@ -209,6 +209,7 @@ class Search {
     for (int round = 0; round < kMostRounds; ++round) {
       found.rms_px = errors_from(tracks);
       std::vector<double> own;
+      own.reserve(tracks.size());
       for (const int j : tracks) own.push_back(found.rms_px[j]);
       if (own.empty()) return {};
       found.gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
@@ -240,6 +241,7 @@ class Search {
   double stability(const std::vector<int>& tracks) const {
     const ArrayXd rms_px = errors_from(tracks);
     std::vector<double> own;
+    own.reserve(tracks.size());
     for (const int j : tracks) own.push_back(rms_px[j]);
     const double gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
                                       options_.least_gate * options_.gate_px,

@@ -268,15 +268,15 @@ ImuNoise noise_of(const Gyroscope& gyroscope,
 
 /// Over the centers that are aligned, then the gyroscope's bias. The noise is that of the very
 /// state: with that of a scale a little off, covariances would come out negative.
-PosePull pull_of(const AlignmentProblem& problem, const Refinement& refined, double misfit) {
+PosePull pull_of(const AlignmentProblem& problem, const AlignmentState& state, double misfit) {
   const Eigen::Index rows = problem.centers.size();
-  const auto noise = residual_noise(problem, refined.state);
+  const auto noise = residual_noise(problem, state);
   if (!noise) return {VectorXd::Zero(rows + 3), MatrixXd::Zero(rows + 3, rows + 3)};
   MatrixXd by_poses(rows, rows + 3);
-  by_poses << std::exp(refined.state.log_scale) * MatrixXd::Identity(rows, rows),
-      by_gyro_bias(problem, refined.state);
+  by_poses << std::exp(state.log_scale) * MatrixXd::Identity(rows, rows),
+      by_gyro_bias(problem, state);
   const MatrixXd G = noise->covariance.matrixL().solve(by_poses);
-  const auto [r, J] = white_residuals(problem, refined.state, *noise);
+  const auto [r, J] = white_residuals(problem, state, *noise);
   const MatrixXd of_unknowns = J.transpose() * G;
   const MatrixXd left = inverse_of_symmetric(prior_of(problem) + J.transpose() * J);
   PosePull pull{G.transpose() * r, G.transpose() * G};
@@ -294,7 +294,7 @@ PosePull pull_of(const AlignmentProblem& problem, const Refinement& refined, dou
 struct Alignment {
   InertialAlignment inertial;
   AlignmentProblem problem = {};
-  Refinement refined = {};
+  AlignmentState state = {};
 };
 
 Alignment alignment_of(const UncertainPoses& poses,
@@ -319,7 +319,7 @@ Alignment alignment_of(const UncertainPoses& poses,
 
   AlignmentProblem problem =
       alignment_problem(poses, measured.between, gyroscope, turns, T_body_camera, options);
-  Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
+  const Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
   if (!refined.noise) return {refused("the poses' covariance is none")};
   InertialAlignment result;
   result.misfit = refined.cost / freedom_of(problem);
@@ -337,7 +337,7 @@ Alignment alignment_of(const UncertainPoses& poses,
   tell_certainty(refined, options, result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return {std::move(result), std::move(problem), std::move(refined)};
+  return {std::move(result), std::move(problem), refined.state};
 }
 
 }  // namespace
@@ -355,7 +355,7 @@ PullingAlignment align_and_pull(const UncertainPoses& poses,
                                 const InertialOptions& options) {
   Alignment alignment = alignment_of(poses, gyroscope, T_body_camera, options);
   if (!alignment.inertial.ok) return {std::move(alignment.inertial), {}};
-  PosePull pull = pull_of(alignment.problem, alignment.refined, alignment.inertial.misfit);
+  PosePull pull = pull_of(alignment.problem, alignment.state, alignment.inertial.misfit);
   return {std::move(alignment.inertial), std::move(pull)};
 }
 

@@ -75,7 +75,7 @@ struct PullingAlignment {
 };
 
 /// Finds gravity, scale and velocities that make poses and accelerations agree (engine/method.md,
-/// eq. 21 to 24). `T_sensor_camera` is the camera in the sensor's axes [m]; where it is not told,
+/// eq. 21 to 24). `T_body_camera` is the camera in the body's axes [m]; where it is not told,
 /// or its translation is zero as loggers leave it, the translation is one more unknown.
 InertialAlignment align_inertial(const UncertainPoses& poses,
                                  const Gyroscope& gyroscope,

@@ -63,17 +63,13 @@ void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& r
   u.normal_covariance =
       lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading));
   u.normal_sigma_deg = degrees(std::sqrt(std::max(0.0, u.normal_covariance.trace())));
-  if (!result.planes.empty()) result.planes.front().normal_covariance = u.normal_covariance;
-  for (std::size_t k = 0; k < u.others.size() && k + 1 < result.planes.size(); ++k) {
+  for (std::size_t k = 0; k < u.others.size(); ++k) {
     const Index at = rows.of_plane(static_cast<int>(k) + 1);
-    PlaneEstimate& plane = result.planes[k + 1];
     PlaneUncertainty& other = u.others[k];
-    other.normal_covariance =
-        lowered(other.normal_covariance, plane.plane.normal, less.block<2, 2>(at, at));
+    other.normal_covariance = lowered(
+        other.normal_covariance, result.planes[k + 1].plane.normal, less.block<2, 2>(at, at));
     const double variance = std::pow(other.log_distance_sigma, 2) - less(at + 2, at + 2);
     other.log_distance_sigma = std::sqrt(std::max(0.0, variance));
-    plane.normal_covariance = other.normal_covariance;
-    plane.distance_sigma = other.log_distance_sigma * plane.plane.distance;
   }
 }
 
@@ -100,7 +96,8 @@ void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& r
 
 void move(const Window& window, const JointRows& rows, const VectorXd& step, Initialization& r) {
   PlaneMotion before;
-  before.bias_rad_s = r.bias_rad_s.value_or(Vector3d::Zero());
+  if (window.gyro) before.bias_rad_s = r.bias_rad_s.value_or(window.gyro->bias_rad_s);
+  before.time_offset_s = r.time_offset_s.value_or(0);
   for (Index i = 1; i < rows.frames; ++i) {
     Pose& camera = r.cameras[i];
     camera.p_wc += step.segment<3>(JointRows::of_center(i));
@@ -116,8 +113,8 @@ void move(const Window& window, const JointRows& rows, const VectorXd& step, Ini
         moved_plane(r.planes[k].plane, step.segment(rows.of_plane(static_cast<int>(k)), 3));
 }
 
-}  // namespace
-
+/// A result after what accelerations say of its poses (engine/method.md, eq. 25); nothing where
+/// that is no solution of the window.
 std::optional<Initialization> pulled(const Window& window,
                                      const Initialization& result,
                                      const UncertainPoses& poses,
@@ -128,6 +125,7 @@ std::optional<Initialization> pulled(const Window& window,
   lower_planes(rows, all.less, moved);
   lower_motion(rows, all.less, moved);
   move(window, rows, all.step, moved);
+  tell_planes_uncertainty(moved);
   const Window seen = moved.row_delay_s
                           ? without_rolling_shutter(
                                 window, motion_of(moved.plane, moved.cameras), *moved.row_delay_s)
@@ -135,6 +133,8 @@ std::optional<Initialization> pulled(const Window& window,
   moved = delivered(seen, std::move(moved));
   return moved.ok ? std::optional(std::move(moved)) : std::nullopt;
 }
+
+}  // namespace
 
 InertialAlignment find_gravity(const Window& window,
                                const UncertainPoses& poses,

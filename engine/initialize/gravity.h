@@ -23,11 +23,4 @@ InertialAlignment find_gravity(const Window& window,
                                Gravity when,
                                Initialization& result);
 
-/// A result after what accelerations say of its poses (engine/method.md, eq. 25); nothing where
-/// that is no solution of the window.
-std::optional<Initialization> pulled(const Window& window,
-                                     const Initialization& result,
-                                     const UncertainPoses& poses,
-                                     const PosePull& pull);
-
 }  // namespace gpo

@@ -96,7 +96,7 @@ std::optional<InertialAlignment> aligned(const Window& window,
                       uncertain_poses(window, initialization),
                       *gyroscope,
                       T_gyro_camera,
-                      joins_gravity(find_method(options.method)) ? options.gravity : Gravity::after,
+                      gravity_used(options),
                       initialization);
 }
 

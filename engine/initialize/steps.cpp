@@ -17,6 +17,11 @@ Inliers inliers_used(const InitializeOptions& options) {
   return options.inliers.value_or(find_method(options.method).inliers);
 }
 
+Gravity gravity_used(const InitializeOptions& options) {
+  const bool joins = !find_method(options.method).rotations;
+  return options.gravity == Gravity::joint && !joins ? Gravity::after : options.gravity;
+}
+
 RansacOptions ransac_options(const InitializeOptions& options) {
   RansacOptions ransac;
   ransac.enabled = uses_ransac(options) || !find_method(options.method).needs_plane;

@@ -25,6 +25,11 @@ bool uses_ransac(const InitializeOptions& options);
 /// What `inliers` comes to. Throws InputError for an unknown method.
 Inliers inliers_used(const InitializeOptions& options);
 
+/// What `gravity` comes to. Only a method whose uncertainty is that of the very problem that it
+/// solved, planes and cameras together, takes it into its solution; of others it is found after.
+/// Throws InputError for an unknown method.
+Gravity gravity_used(const InitializeOptions& options);
+
 /// How a window is made. A method that needs no plane gets its start from the tracks on it even
 /// where it then uses all.
 RansacOptions ransac_options(const InitializeOptions& options);

@@ -292,15 +292,7 @@ void add_uncertainty(const Fit& fit, Initialization& result) {
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
   result.uncertainty =
       uncertainty_of(fit.window, fit.observations, motion, fit.turns.model, Centers::jointly);
-  if (!result.uncertainty || result.planes.empty()) return;
-  result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
-  result.planes[0].distance_sigma = 0;
-  for (std::size_t k = 0; k < result.uncertainty->others.size(); ++k) {
-    PlaneEstimate& plane = result.planes[k + 1];
-    const PlaneUncertainty& u = result.uncertainty->others[k];
-    plane.normal_covariance = u.normal_covariance;
-    plane.distance_sigma = u.log_distance_sigma * plane.plane.distance;
-  }
+  tell_planes_uncertainty(result);
 }
 
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {

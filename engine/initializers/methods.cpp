@@ -133,8 +133,6 @@ void say_what_is_lost(const std::optional<Uncertainty>& result, Verdict& verdict
 
 }  // namespace
 
-bool joins_gravity(const Method& method) { return !method.rotations; }
-
 Initialization assessed(const Method& method, const Window& window, Initialization result) {
   if (!result.ok) return result;
   const auto judged_by =

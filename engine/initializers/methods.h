@@ -54,10 +54,6 @@ std::span<const Method> methods();
 /// key that is taken.
 void add_methods(std::vector<Method> own);
 
-/// Whether accelerations may move what the method found: its uncertainty is that of the very
-/// problem that it solved, planes and cameras together.
-bool joins_gravity(const Method& method);
-
 /// What a method made of the window, with its uncertainty and the verdict on the window. A
 /// degenerate window's result becomes a failure.
 Initialization assessed(const Method& method, const Window& window, Initialization result);

@@ -205,7 +205,7 @@ void Stages::initialize(const Settings& settings,
     initialization = assessed(find_method(settings.method), window, std::move(initialization));
   }
   if (initialization.ok && settings.gravity != Gravity::off)
-    align(window, as_used(settings).gravity, initialization, inspection);
+    align(window, gravity_used(settings), initialization, inspection);
   complete_verdict(window, inspection.growth, initialization);
   if (recording->camera_source == CameraSource::guess) {
     std::ranges::for_each(inspection.growth, demote);

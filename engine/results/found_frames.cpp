@@ -133,6 +133,7 @@ std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                      : result.by == FoundBy::number ? found_by_number(result, window)
                                                     : found_by_name(result, window, sources);
   std::vector<std::optional<Pose>> cameras;
+  cameras.reserve(found.size());
   for (const MaybeIndex& index : found)
     cameras.push_back(index ? std::optional(result.poses[*index] * T_posed_camera) : std::nullopt);
   return cameras;

@@ -88,7 +88,7 @@ std::string pick_word(Random& random) {
 
 std::string pick_words(int count, Random& random) {
   std::string words = pick_word(random);
-  for (int i = 1; i < count; ++i) words = pick_word(random) + " " + words;
+  for (int i = 1; i < count; ++i) words.insert(0, pick_word(random) + " ");
   return words;
 }
 

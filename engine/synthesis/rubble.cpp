@@ -93,9 +93,8 @@ float sample_stone(const cv::Mat& stone, const Eigen::Vector3d& place) {
     at[static_cast<std::size_t>(k)] = static_cast<int>(x);
     part[static_cast<std::size_t>(k)] = static_cast<float>(x - static_cast<int>(x));
   }
-  const uchar* corner = stone.ptr<uchar>(at[0], at[1]) + at[2];
   const auto along = [&](int i, int j) {
-    const uchar* p = corner + (i * kStone + j) * kStone;
+    const uchar* p = stone.ptr<uchar>(at[0] + i, at[1] + j) + at[2];
     return static_cast<float>(p[0]) * (1 - part[2]) + static_cast<float>(p[1]) * part[2];
   };
   const float near = along(0, 0) * (1 - part[1]) + along(0, 1) * part[1];

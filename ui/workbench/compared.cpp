@@ -93,6 +93,7 @@ std::vector<Settings> compared_settings(const WorkbenchState& state, const Setti
   const std::vector<Configuration> list = compared_list(state);
   const Settings base = base_of(list, window);
   std::vector<Settings> all;
+  all.reserve(list.size());
   for (const Configuration& one : list) all.push_back(apply(one, base));
   return all;
 }

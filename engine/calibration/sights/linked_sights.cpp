@@ -181,6 +181,7 @@ SightedPlane linked_sights(const ChainPictures& pictures,
   }
   const std::vector<PlaneReference> references = spread(chain.references, options.most_references);
   std::vector<Looks> looks;
+  looks.reserve(references.size());
   for (const PlaneReference& reference : references)
     looks.push_back(looks_of(
         reference, soften(pictures.gray(reference.frame)), camera, options.anchor.half_patch_px));

@@ -87,17 +87,20 @@ bool has_company(const Step& step, int j) {
   return false;
 }
 
+bool tell_something(const Step& step, const std::vector<Vector2d>& around) {
+  return std::ssize(around) / 2 >= step.options.least_alike;
+}
+
 /// A track whose motion is like that of hardly any neighbor has jumped to another place that looks
 /// alike. Too few neighbors tell nothing.
 std::optional<TrackEnd> jump(const Step& step, int j) {
   if (has_company(step, j)) return std::nullopt;
   const std::vector<Vector2d> around = motions_around(step, j);
-  const int needed = step.options.least_alike;
-  if (std::ssize(around) < 2 * needed) return std::nullopt;
+  if (!tell_something(step, around)) return std::nullopt;
   std::vector<double> off_px;
   off_px.reserve(around.size());
   for (const Vector2d& motion : around) off_px.push_back((motion - step.motion_px(j)).norm());
-  const auto decisive = off_px.begin() + needed - 1;
+  const auto decisive = off_px.begin() + step.options.least_alike - 1;
   std::ranges::nth_element(off_px, decisive);
   const double limit = std::max(step.options.search.farthest_px,
                                 step.options.most_unlike * median_motion(around).norm());
@@ -116,7 +119,7 @@ void follow_neighbors(Step& step) {
       step.take(j, {.end = end});
     }
     const std::vector<Vector2d> around = motions_around(first, j);
-    if (std::ssize(around) < 2 * step.options.least_alike) continue;
+    if (!tell_something(first, around)) continue;
     const std::optional<TrackEnd> end = step.held.ends[j];
     step.take(j, search_from(step, j, median_motion(around)));
     if (!step.is_seen(j) || jump(step, j)) step.take(j, {.end = end});

@@ -35,9 +35,11 @@ cv::Mat halved(const cv::Mat& soft) {
     const auto* lower = soft.ptr<std::uint16_t>(2 * v + 1);
     auto* out = half.ptr<std::uint16_t>(v);
     for (int u = 0; u < half.cols; ++u) {
+      const int left = 2 * u;
+      const int right = left + 1;
       // Four times 255 * 64 are below 2^16.
-      out[u] = static_cast<std::uint16_t>(
-          (upper[2 * u] + upper[2 * u + 1] + lower[2 * u] + lower[2 * u + 1]) / 4);
+      out[u] =
+          static_cast<std::uint16_t>((upper[left] + upper[right] + lower[left] + lower[right]) / 4);
     }
   }
   return half;

@@ -2,11 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/common/initialization.h"
 
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace gpo {
+
+void tell_planes_uncertainty(Initialization& result) {
+  if (!result.uncertainty || result.planes.empty()) return;
+  result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
+  result.planes[0].distance_sigma = 0;
+  for (std::size_t k = 0; k < result.uncertainty->others.size(); ++k) {
+    PlaneEstimate& plane = result.planes[k + 1];
+    const PlaneUncertainty& u = result.uncertainty->others[k];
+    plane.normal_covariance = u.normal_covariance;
+    plane.distance_sigma = u.log_distance_sigma * plane.plane.distance;
+  }
+}
 
 Initialization failed(std::string reason, SolverReport solver) {
   Initialization result;

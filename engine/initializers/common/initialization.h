@@ -127,6 +127,9 @@ struct Initialization {
   std::optional<RefusedSolution> refused = {};
 };
 
+/// Puts what the uncertainty says of the planes beside each of them.
+void tell_planes_uncertainty(Initialization& result);
+
 Initialization failed(std::string reason, SolverReport solver = {});
 /// Of a solution that is not to be believed: what was found is kept in `refused`.
 Initialization refused(std::string reason, Initialization found);

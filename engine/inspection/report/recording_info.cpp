@@ -67,6 +67,7 @@ TruthInfo examine_board(const Recording& recording) {
   const int frames = recording.frame_count();
   const int count = frames <= kMostFramesExamined ? frames : kSample;
   std::vector<int> sample;
+  sample.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     sample.push_back(count == 1 ? 0
                                 : static_cast<int>(std::int64_t{i} * (frames - 1) / (count - 1)));

@@ -282,6 +282,7 @@ Settings settings_used(const Inspection& inspection) {
   used.rotations = inspection.rotations_used;
   used.ransac = uses_ransac(used);
   used.inliers = inspection.window->inliers;
+  used.gravity = gravity_used(used);
   return used;
 }
 

@@ -149,7 +149,7 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
     case SettingReader::method:
       return is_read(setting, settings.method) ? "" : who_reads(setting);
     case SettingReader::gravity:
-      return settings.gravity == Gravity::joint && !joins_gravity(find_method(settings.method))
+      return gravity_used(settings) != settings.gravity
                  ? "Only gpo_joint takes gravity into its solution; here it is found after"
                  : "";
   }
@@ -162,8 +162,7 @@ Settings as_used(Settings settings) {
     if (setting.used != nullptr) setting.set(settings, setting.used(given));
     if (!is_read(setting, given.method)) setting.set(settings, setting.get(Settings{}));
   }
-  if (settings.gravity == Gravity::joint && !joins_gravity(find_method(given.method)))
-    settings.gravity = Gravity::after;
+  settings.gravity = gravity_used(settings);
   return settings;
 }
 

@@ -57,4 +57,6 @@ bool uses_ransac(const Settings& settings) { return uses_ransac(options_of(setti
 
 Inliers inliers_used(const Settings& settings) { return inliers_used(options_of(settings)); }
 
+Gravity gravity_used(const Settings& settings) { return gravity_used(options_of(settings)); }
+
 }  // namespace gpo

@@ -68,4 +68,7 @@ bool uses_ransac(const Settings& settings);
 /// What `inliers` comes to. Throws InputError for an unknown method.
 Inliers inliers_used(const Settings& settings);
 
+/// What `gravity` comes to. Throws InputError for an unknown method.
+Gravity gravity_used(const Settings& settings);
+
 }  // namespace gpo

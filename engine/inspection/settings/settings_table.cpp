@@ -252,7 +252,10 @@ std::span<const Setting> settings_table() {
                      "what gpo_joint found, too; or off",
              .reader = SettingReader::gravity,
              .stage = SettingStage::initialization,
-             .advanced = true}));
+             .advanced = true,
+             .words = {{"gravity-after", "after", "with gravity after it", 0x5B8C9E},
+                       {"joint-gravity", "joint", "with gravity in it", 0xB07AA1},
+                       {"no-gravity", "off", "without gravity", 0x9C755F}}}));
     return rows;
   }();
   return table;

@@ -23,7 +23,7 @@ enum class SettingKind { on_off, whole, number, choice, ids };
 
 /// Who heeds a setting: all; the built-in front end; the test whether a track is an inlier; the
 /// methods that name it among their options (`Method::reads`); all but for gravity in one solution
-/// with the planes (`joins_gravity`).
+/// with the planes (`gravity_used`).
 enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
 /// The stages of an inspection in their order. A setting acts from its stage on.

@@ -28,6 +28,7 @@ std::vector<MapPoint> points_on(const Window& window,
   }
   if (points.empty()) return points;
   std::vector<double> distances;
+  distances.reserve(points.size());
   for (const MapPoint& point : points) distances.push_back(point.position.norm());
   const double most = kFarthest * median(std::move(distances));
   std::erase_if(points, [&](const MapPoint& point) { return point.position.norm() > most; });

@@ -107,6 +107,7 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
     }
   };
   std::vector<std::jthread> threads;
+  threads.reserve(static_cast<std::size_t>(jobs));
   for (int i = 0; i < jobs; ++i) threads.emplace_back(work);
 }
 

@@ -127,14 +127,15 @@ void add_tags(Tags& tags, const cv::Mat& gray, const Board& board, int narrower_
 int april_tag_count() { return marker_dictionary_size(kFamily); }
 
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board) {
-  const auto expected = static_cast<std::size_t>(board.columns * board.rows / 4);
+  const int corner_count = board.columns * board.rows;
+  const auto expected = static_cast<std::size_t>(corner_count / 4);
   Tags tags;
   // Where squares touch a tag's corners it is no quadrilateral until all black is narrower.
   for (const int narrower_px : {0, 1, 2, 3})
     if (tags.size() < expected) add_tags(tags, gray, board, narrower_px);
   if (tags.empty() || tags.size() > expected) return {};
   const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  std::vector<Eigen::Vector2d> corners(board.columns * board.rows, none);
+  std::vector<Eigen::Vector2d> corners(static_cast<std::size_t>(corner_count), none);
   for (const auto& [id, quad] : tags) {
     static const std::array<cv::Point, 4> kOffsets = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     for (int k = 0; k < 4; ++k) {

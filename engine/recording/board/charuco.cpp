@@ -83,7 +83,8 @@ MarkersBySquare place_markers(const Board& board, const OpencvMarkers& seen, boo
   const auto squares = marker_squares(board, light_first);
   const auto side = static_cast<float>(board.markers->side_m / board.square_m);
   const float margin = (1 - side) / 2;
-  MarkersBySquare markers((board.columns + 1) * (board.rows + 1));
+  const int square_count = (board.columns + 1) * (board.rows + 1);
+  MarkersBySquare markers(static_cast<std::size_t>(square_count));
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (ids[i] >= static_cast<int>(squares.size())) continue;
     const cv::Point& square = squares[ids[i]];
@@ -181,6 +182,7 @@ std::optional<std::string> dictionary_name(const std::string& name) {
 
 std::string dictionary_names() {
   std::vector<std::string> names;
+  names.reserve(kDictionaries.size());
   for (const NamedDictionary& one : kDictionaries) names.emplace_back(one.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -50,6 +50,15 @@ TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
               HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
 }
 
+TEST(Configuration, NamesGravityWhereAMethodTakesIt) {
+  const Configuration joint = parse_configuration("gpo_joint+joint-gravity");
+  EXPECT_EQ(apply(joint, {}).gravity, Gravity::joint);
+  EXPECT_EQ(configuration_of(apply(joint, {})), joint);
+  EXPECT_EQ(apply(parse_configuration("ba+no-gravity"), {}).gravity, Gravity::off);
+  EXPECT_THAT(error_of([] { parse_configuration("ba+joint-gravity"); }),
+              HasSubstr("'ba+joint-gravity': ba does not take 'joint' for 'gravity'"));
+}
+
 TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
   const auto shortest = [](const char* text) {
     return key_of(configuration_of(apply(parse_configuration(text), {})));

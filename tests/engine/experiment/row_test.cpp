@@ -74,14 +74,17 @@ TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
 TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
   Settings settings{.method = "gpo"};
   settings.initializer.loss = Loss::squared;
+  settings.gravity = Gravity::joint;
   auto cells = cells_of(refused_row("desk", settings, ""));
   EXPECT_EQ(cells.at("configuration"), "gpo");
   EXPECT_EQ(cells.at("solver"), "schur");
+  EXPECT_EQ(cells.at("gravity"), "after");
   EXPECT_EQ(cells.at("loss"), "");
   EXPECT_EQ(cells.at("shutter"), "");
   settings.method = "gpo_joint";
   cells = cells_of(refused_row("desk", settings, ""));
-  EXPECT_EQ(cells.at("configuration"), "gpo_joint+squared");
+  EXPECT_EQ(cells.at("configuration"), "gpo_joint+squared+joint-gravity");
+  EXPECT_EQ(cells.at("gravity"), "joint");
   EXPECT_EQ(cells.at("loss"), "squared");
   EXPECT_EQ(cells.at("shutter"), "estimated");
   EXPECT_EQ(cells.at("time_offset"), "false");

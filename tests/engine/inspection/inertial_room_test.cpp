@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Gravity and meters of a real flight, beside motion capture.
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/recording/layouts/open_recording.h"
 
@@ -101,6 +102,7 @@ TEST_F(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
   const auto joint = inspected(with_setting(after, "gravity", "joint"));
   ASSERT_TRUE(joint->inertial && joint->inertial->ok);
   EXPECT_FALSE(joint->inertial->joint);
+  EXPECT_EQ(settings_used(*joint).gravity, Gravity::after);
   EXPECT_EQ(joint->initialization->plane.normal, inspected(after)->initialization->plane.normal);
 }
 

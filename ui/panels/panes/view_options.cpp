@@ -85,6 +85,7 @@ CompareOptions compare_options(const WorkbenchState& state) {
 
 std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
   std::vector<CompareColumn> columns;
+  columns.reserve(results.size());
   for (const Compared& one : results)
     columns.push_back({one.configuration,
                        one.inspection,

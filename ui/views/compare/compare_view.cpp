@@ -206,6 +206,7 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
   const double top = scale * (top_line ? kTopLine : 0);
   const Grid grid = best_grid(rect, count, aspect, top, scale);
   std::vector<ColumnPlace> places;
+  places.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) places.push_back(column_at(rect, grid, i, top, scale));
   return places;
 }

@@ -23,6 +23,7 @@ double place_legend(FigureLayout& layout,
                     double y) {
   const double s = layout.scale, size = layout.type.legend, row = 1.7 * size;
   std::vector<LegendKey> keys;
+  keys.reserve(styles.size() + 1);
   for (const CurveStyle& style : styles) keys.push_back({&style, style.name});
   if (few) keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
   const auto width_of_key = [&](const LegendKey& key) {
