@@ -52,6 +52,13 @@ std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
   return std::ranges::any_of(outputs, taken) ? stderr : stdout;
 }
 
+/// Whether another window would do is one option away.
+void tell_of_scan(const Inspection& inspection) {
+  const int frames = inspection.settings.frames;
+  if (!inspection.initialization->ok && inspection.recording->frame_count() > frames)
+    fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
@@ -66,6 +73,7 @@ int run_command(const RunArguments& arguments) {
   if (arguments.trajectory_format && !arguments.trajectory && !arguments.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   fmt::print(table_stream(outputs), "{}", to_text(*inspection));
+  tell_of_scan(*inspection);
   if (arguments.metric && !arguments.trajectory && !arguments.points)
     fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
   if (arguments.json) write_output(*arguments.json, json_text(to_json(*inspection), 2));

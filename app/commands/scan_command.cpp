@@ -9,9 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <limits>
 #include <thread>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -33,19 +31,6 @@ std::vector<ScannedStart> scan(const std::shared_ptr<const Recording>& recording
   return scanned;
 }
 
-/// Fit for more first, then by how sure the normal is.
-const ScannedStart* best_of(std::span<const ScannedStart> starts) {
-  const auto rank = [](const ScannedStart& start) {
-    const int readiness = start.readiness == Readiness::ready  ? 0
-                          : start.readiness == Readiness::weak ? 1
-                                                               : 2;
-    return std::tuple(
-        !start.ok, readiness, start.sigma_deg.value_or(std::numeric_limits<double>::infinity()));
-  };
-  const auto best = std::ranges::min_element(starts, {}, rank);
-  return best != starts.end() && best->ok ? &*best : nullptr;
-}
-
 std::string summary(std::span<const ScannedStart> starts, int frames, int step) {
   const auto count = [&](Readiness readiness) {
     return std::ranges::count_if(
@@ -61,13 +46,10 @@ std::string summary(std::span<const ScannedStart> starts, int frames, int step) 
       count(Readiness::weak),
       count(Readiness::degenerate),
       std::ranges::count(starts, false, &ScannedStart::ok));
-  const ScannedStart* best = best_of(starts);
+  const ScannedStart* best = best_start(starts);
   if (best == nullptr)
     return text + "none succeeds; from the first: " + starts.front().reason + "\n";
-  text += fmt::format("best start: {} ({}", best->start, to_string(best->readiness));
-  if (best->sigma_deg) text += fmt::format(", normal +- {:.2g} deg", *best->sigma_deg);
-  if (best->pne_deg) text += fmt::format(", PNE {:.2g} deg", *best->pne_deg);
-  return text + ")\n";
+  return text + "best start: " + to_text(*best) + "\n";
 }
 
 void tell_what_is_unused(const std::vector<std::string>& given) {
@@ -94,7 +76,7 @@ int scan_command(const InspectArguments& arguments,
   const auto scanned = scan(recording, arguments.settings, starts);
   fmt::print(is_standard_output(file) ? stderr : stdout, "{}", summary(scanned, frames, step));
   write_output(file, to_csv(scanned, *recording));
-  return best_of(scanned) != nullptr ? kDone : kFailed;
+  return best_start(scanned) != nullptr ? kDone : kFailed;
 }
 
 }  // namespace gpo

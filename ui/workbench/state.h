@@ -95,6 +95,7 @@ struct Wishes {
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
   bool calibrate = false;                     ///< the camera, from a plane in the pictures
+  bool find_start = false;                    ///< from which frame to initialize
   std::optional<std::filesystem::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieWish> movie;

@@ -9,6 +9,8 @@
 #include <atomic>
 #include <bit>
 #include <exception>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,8 +56,6 @@ StartScan empty_scan(const Settings& settings, const Recording& recording) {
   return {.settings = settings, .step = step, .of = last < 0 ? 0 : last / step + 1, .starts = {}};
 }
 
-bool finished(const StartScan& scan) { return static_cast<int>(scan.starts.size()) == scan.of; }
-
 std::vector<int> starts_left(const StartScan& scan, const Recording& recording) {
   auto starts = starts_to_scan(recording.frame_count(), scan.settings.frames, scan.step);
   std::erase_if(starts, [&](int start) {
@@ -69,6 +69,26 @@ std::string number_cell(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+std::string to_text(const ScannedStart& start) {
+  if (!start.ok) return fmt::format("{} (failed: {})", start.start, start.reason);
+  std::string text = fmt::format("{} ({}", start.start, to_string(start.readiness));
+  if (start.sigma_deg) text += fmt::format(", normal +- {:.2g} deg", *start.sigma_deg);
+  if (start.pne_deg) text += fmt::format(", PNE {:.2g} deg", *start.pne_deg);
+  return text + ")";
+}
+
+const ScannedStart* best_start(std::span<const ScannedStart> starts) {
+  const auto rank = [](const ScannedStart& start) {
+    const int readiness = start.readiness == Readiness::ready  ? 0
+                          : start.readiness == Readiness::weak ? 1
+                                                               : 2;
+    return std::tuple(
+        !start.ok, readiness, start.sigma_deg.value_or(std::numeric_limits<double>::infinity()));
+  };
+  const auto best = std::ranges::min_element(starts, {}, rank);
+  return best != starts.end() && best->ok ? &*best : nullptr;
+}
 
 int scan_step(int recorded_frames, int window_frames) {
   return std::max(0, recorded_frames - window_frames) / kMostStarts + 1;
@@ -197,7 +217,7 @@ void Scan::run(const std::stop_token& stop) {
     std::stop_token request;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return latest_ && !finished(*latest_); })) return;
+      if (!wake_.wait(lock, stop, [this] { return latest_ && !latest_->finished(); })) return;
       running_ = std::stop_source();
       request = running_.get_token();
       recording = recording_;

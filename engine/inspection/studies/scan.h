@@ -28,6 +28,14 @@ struct ScannedStart {
   std::string reason = {};               ///< the failure's, else the verdict's; one line
 };
 
+/// "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)": the start and what it comes to, without what is
+/// not known.
+std::string to_text(const ScannedStart& start);
+
+/// The one to initialize from: fit for more first, then by how sure the normal is. Null: none of
+/// them has a result.
+const ScannedStart* best_start(std::span<const ScannedStart> starts);
+
 /// The step that scans a recording with about a hundred windows of so many frames.
 int scan_step(int recorded_frames, int window_frames);
 
@@ -54,6 +62,8 @@ struct StartScan {
   int step = 1;                      ///< frames from one start to the next
   int of = 0;                        ///< starts
   std::vector<ScannedStart> starts;  ///< those that are done, by frame
+
+  bool finished() const { return static_cast<int>(starts.size()) == of; }
 };
 
 /// Scans in the background, on all cores but behind everybody else; keeps what it has found for

@@ -73,8 +73,8 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
   centered("Drop a recording here", place);
   ImGui::PopFont();
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  centered("an EuRoC folder, a video or a folder of images with camera.yaml,", place);
-  centered("or tracks.csv with a calibration; a saved session; a results.csv", place);
+  centered("a video, a folder of images, a ROS bag, an EuRoC folder,", place);
+  centered("tracks.csv with a calibration; a saved session; a results.csv", place);
   ImGui::PopStyleColor();
   ImGui::Dummy({1, 8 * s});
   if (button("Open ...", place, s, true)) push(commands, RunAction{"browse"});

@@ -106,16 +106,31 @@ void draw_facts(const Recording& recording, float scale) {
   tooltip(all);
 }
 
-/// Where the camera is a guess, to the left of the facts: what to do about it.
-void calibrate_button(const PanelInput& input, Commands& commands) {
-  const Recording& recording = *input.state.recording;
-  const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
-  if (recording.camera_source != CameraSource::guess || !recording.pictures || calibrating) return;
-  const Action& action = action_named("calibrate");
+/// To the left of the facts: what to do about something that is not as it should be.
+void offer(const std::string& name, const std::string& why, Commands& commands) {
+  const Action& action = action_named(name);
   ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
   if (ImGui::SmallButton(action.title.c_str())) push(commands, RunAction{action.name});
   ImGui::PopStyleColor();
-  tooltip("The camera is a guess. " + action.tooltip);
+  tooltip(why + ". " + action.tooltip);
+}
+
+bool calibration_may_help(const PanelInput& input) {
+  const Recording& recording = *input.state.recording;
+  const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
+  return recording.camera_source == CameraSource::guess && recording.pictures && !calibrating;
+}
+
+bool another_start_may_help(const WorkbenchState& state) {
+  const Inspection* inspection = state.inspection.get();
+  return inspection != nullptr && inspection->initialization && !inspection->initialization->ok &&
+         state.frame_count() > state.settings.frames && !state.scan;
+}
+
+void offers(const PanelInput& input, Commands& commands) {
+  if (calibration_may_help(input)) offer("calibrate", "The camera is a guess", commands);
+  if (another_start_may_help(input.state))
+    offer("find-start", "The window cannot be initialized", commands);
 }
 
 }  // namespace
@@ -131,7 +146,7 @@ void menu_bar(const PanelInput& input, Commands& commands) {
     draw_menu(menu, input, commands);
     ImGui::EndMenu();
   }
-  if (input.state.recording) calibrate_button(input, commands);
+  if (input.state.recording) offers(input, commands);
   if (input.state.recording) draw_facts(*input.state.recording, input.scale);
   ImGui::EndMainMenuBar();
 }

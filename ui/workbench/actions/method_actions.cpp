@@ -115,6 +115,12 @@ void wish_calibration(State& s) {
   s.wishes.calibrate = true;
 }
 
+/// The scan is shown, so that one sees what it finds.
+void wish_start(State& s) {
+  s.view.scan = true;
+  s.wishes.find_start = true;
+}
+
 }  // namespace
 
 void add_method_actions(std::vector<Action>& table) {
@@ -133,6 +139,13 @@ void add_method_actions(std::vector<Action>& table) {
                         "Finds the camera in the pictures of a recording that has no calibration "
                         "(some 30 s) and keeps it for the next time",
                         wish_calibration));
+  table.push_back(plain("find-start",
+                        "Find a start",
+                        "Method",
+                        {},
+                        "Initializes from everywhere in the recording and goes to the first start "
+                        "that is ready, else to the surest",
+                        wish_start));
 }
 
 }  // namespace gpo

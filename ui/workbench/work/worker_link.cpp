@@ -6,8 +6,10 @@
 #include "engine/experiment/results_file.h"
 #include "engine/inspection/moved_cube.h"
 #include "ui/workbench/compared.h"
+#include "ui/workbench/playing.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
+#include "ui/workbench/undo.h"
 #include "ui/workbench/work/adopt.h"
 
 #include <utility>
@@ -70,13 +72,40 @@ std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
   return needs_of(state.panes).study ? state.inspection : nullptr;
 }
 
-void scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
+/// Starts where the scan found the first window that is ready, once all is scanned where the best
+/// one is. Whether it did.
+bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
+  if (!link.finding_start || !state.scan) return false;
+  const ScannedStart* best = best_start(state.scan->starts);
+  const bool ready = best != nullptr && best->readiness == Readiness::ready;
+  if (!ready && !state.scan->finished()) return false;
+  link.finding_start = false;
+  if (best == nullptr) {
+    say(state,
+        "no start can be initialized; the strip above the time line says why",
+        Severity::warning);
+    return false;
+  }
+  Settings settings = state.settings;
+  settings.start = best->start;
+  change_settings(state, settings);
+  go_to_frame(state, settings.start + settings.frames - 1);
+  say(state, "starts at " + to_text(*best));
+  return true;
+}
+
+/// Whether there is a start that was asked for.
+bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   const bool wanted = state.view.scan && !link.survey_canceled;
-  if (!state.view.scan || !state.recording) state.scan.reset();
+  if (!state.view.scan || !state.recording) {
+    state.scan.reset();
+    link.finding_start = false;
+  }
   // One that is canceled stays as far as it came.
   scan.want(wanted ? state.recording : nullptr, state.settings);
   link.scan = scan.status();
   if (wanted) state.scan = scan.latest();
+  return go_to_found_start(state, link);
 }
 
 /// Shows the figures of a results.csv.
@@ -133,10 +162,12 @@ void synchronize(WorkbenchState& state,
   const bool open_example = std::exchange(state.wishes.open_example, false);
   const auto open = std::exchange(state.wishes.open, {});
   const bool calibrate = wants_calibration(state, link, opened);
+  const bool find_start = std::exchange(state.wishes.find_start, false);
   const bool again = std::exchange(state.wishes.compute, false);
   if (std::exchange(state.wishes.cancel, false) && link.busy()) {
     worker.cancel();
     link.survey_canceled = true;
+    link.finding_start = false;
     say(state,
         std::exchange(link.calibrating, false) ? "the calibration was canceled; nothing was kept"
                                                : "canceled; F5 computes again");
@@ -151,13 +182,15 @@ void synchronize(WorkbenchState& state,
     worker.request(state.settings);
     link.requested = state.settings;
   }
-  if (compute) link.survey_canceled = false;
+  if (opened) link.finding_start = false;
+  if (find_start) link.finding_start = true;
+  if (compute || find_start) link.survey_canceled = false;
   survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
   survey.study(link.survey_canceled ? nullptr : to_study(state));
   link.survey = survey.status();
-  scan_for_starts(state, link, scan);
+  const bool found = scan_for_starts(state, link, scan);
   // Busy until the next call has seen what became of it.
-  if (open_example || opening || calibrate || compute) link.worker = {true, "", 0, 0, ""};
+  if (open_example || opening || calibrate || compute || found) link.worker = {true, "", 0, 0, ""};
 }
 
 }  // namespace gpo

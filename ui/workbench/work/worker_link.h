@@ -25,14 +25,15 @@ struct WorkerLink {
   bool remembers_files = false;   ///< in the user's list of recent files
   bool calibrating = false;       ///< until there is a camera, a reason why not, or another wish
   bool calibrates = false;        ///< whatever is opened with a guessed camera
+  bool finding_start = false;     ///< until the scan has found one, or another wish
   bool survey_canceled = false;   ///< and the scan; until something else is computed
 
   bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };
 
-/// Hands the state's new settings and wishes (open, open_example, compute, cancel) to the worker,
-/// what the open views ask for to survey and scan, and takes over what they have published. Returns
-/// at once. `example`: the recording that comes with the program.
+/// Hands the state's new settings and wishes (open, open_example, compute, calibrate, find_start,
+/// cancel) to the worker, what the open views ask for to survey and scan, and takes over what they
+/// have published. Returns at once. `example`: the recording that comes with the program.
 void synchronize(WorkbenchState& state,
                  WorkerLink& link,
                  Worker& worker,

@@ -78,6 +78,26 @@ TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
   EXPECT_EQ(std::ranges::count(csv, ','), 12) << csv;
 }
 
+TEST(BestStart, IsFitForMoreFirstAndThenTheSurest) {
+  const ScannedStart failed{.start = 0, .reason = "no parallax"};
+  const ScannedStart surest{.start = 1, .ok = true, .readiness = Readiness::weak, .sigma_deg = 0.1};
+  const ScannedStart ready{.start = 2, .ok = true, .readiness = Readiness::ready, .sigma_deg = 0.3};
+  const ScannedStart best{
+      .start = 3, .ok = true, .readiness = Readiness::ready, .sigma_deg = 0.2, .pne_deg = 0.05};
+  const ScannedStart unknown{.start = 4, .ok = true, .readiness = Readiness::ready};
+  const auto start_of = [](const std::vector<ScannedStart>& starts) {
+    const ScannedStart* found = best_start(starts);
+    return found == nullptr ? -1 : found->start;
+  };
+  EXPECT_EQ(start_of({failed, surest, ready, best, unknown}), 3);
+  EXPECT_EQ(start_of({failed, unknown, surest}), 4);
+  EXPECT_EQ(start_of({failed, surest}), 1);
+  EXPECT_EQ(start_of({failed}), -1);
+  EXPECT_EQ(start_of({}), -1);
+  EXPECT_EQ(to_text(best), "3 (ready, normal +- 0.2 deg, PNE 0.05 deg)");
+  EXPECT_EQ(to_text(failed), "0 (failed: no parallax)");
+}
+
 TEST(ScanInTheBackground, FindsAllAndKeepsWhatItFound) {
   Scan scan;
   EXPECT_EQ(scan.latest(), nullptr);

@@ -3,6 +3,7 @@
 #include "ui/workbench/work/worker_link.h"
 
 #include "engine/base/error.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/session/recent_files.h"
@@ -30,12 +31,17 @@ class WorkerLinkTest : public testing::Test {
   Worker::Opened open(const std::filesystem::path& path) {
     if (path.filename() == "bad") throw InputError("bad: no such folder");
     auto recording = std::make_shared<Recording>();
+    if (path == "pictures") *recording = *test::desk();
     recording->name = path.string();
+    if (path == "pictures") return opened(recording);
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
     if (path == "bare.mp4") {
       recording->camera_source = CameraSource::guess;
       recording->pictures = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
     }
+    return opened(recording);
+  }
+  Worker::Opened opened(const std::shared_ptr<Recording>& recording) {
     return {recording,
             [this, recording](const Settings& settings, std::stop_token stop, const Progress&) {
               {
@@ -95,6 +101,54 @@ TEST_F(WorkerLinkTest, ScansTheRecordingWhereSomebodyWantsThat) {
   apply(state_, RunAction{"scan off"});
   synchronize();
   EXPECT_EQ(state_.scan, nullptr);
+}
+
+TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
+  apply(state_, OpenPath{"pictures"});
+  settle();
+  apply(state_, RunAction{"set start 30"});
+  settle();
+  apply(state_, RunAction{"find-start"});
+  while (synchronize(), link_.finding_start) std::this_thread::yield();
+  settle();
+  ASSERT_NE(state_.scan, nullptr);
+  const ScannedStart* best = best_start(state_.scan->starts);
+  ASSERT_NE(best, nullptr);
+  EXPECT_EQ(best->readiness, Readiness::ready);
+  EXPECT_TRUE(state_.message.starts_with("starts at ")) << state_.message;
+  EXPECT_EQ(starts().back(), state_.settings.start);
+  EXPECT_EQ(state_.frame, state_.settings.start + state_.settings.frames - 1);
+  EXPECT_NE(state_.settings.start, 30);
+  apply(state_, RunAction{"undo"});
+  EXPECT_EQ(state_.settings.start, 30);
+}
+
+TEST_F(WorkerLinkTest, SaysWhereThereIsNoStart) {
+  apply(state_, OpenPath{"desk"});
+  settle();
+  apply(state_, RunAction{"find-start"});
+  EXPECT_TRUE(state_.view.scan);
+  while (synchronize(), link_.busy()) std::this_thread::yield();
+  EXPECT_EQ(state_.settings.start, 0);
+  EXPECT_EQ(state_.message_severity, Severity::warning);
+  EXPECT_EQ(state_.message, "no start can be initialized; the strip above the time line says why");
+}
+
+TEST_F(WorkerLinkTest, EscapeAndAHiddenStripEndTheSearchForAStart) {
+  apply(state_, OpenPath{"pictures"});
+  settle();
+  const auto ends_with = [&](const char* frames, const char* action) {
+    apply(state_, RunAction{frames});
+    apply(state_, RunAction{"find-start"});
+    synchronize();
+    EXPECT_TRUE(link_.finding_start);
+    apply(state_, RunAction{action});
+    synchronize();
+    EXPECT_FALSE(link_.finding_start) << action;
+    settle();
+  };
+  ends_with("set frames 58", "escape");
+  ends_with("set frames 57", "scan off");
 }
 
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
