@@ -8,5 +8,6 @@
   .section .rodata
 EMBED(gpo_font_regular, GPO_FONT_REGULAR)
 EMBED(gpo_font_bold, GPO_FONT_BOLD)
+EMBED(gpo_robot, GPO_ROBOT)
 
   .section .note.GNU-stack, "", %progbits

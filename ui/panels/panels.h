@@ -82,6 +82,13 @@ struct KeptTrackColors {
   std::shared_ptr<const TrackColors> colors;  ///< null: by plane
 };
 
+/// A model, and which one it is.
+struct KeptModel {
+  std::string name;                         ///< empty: none
+  std::shared_ptr<const SolidModel> model;  ///< null: it could not be read
+  std::string error;
+};
+
 /// Rows of tracks, and whose they are.
 struct KeptTrackRows {
   std::shared_ptr<const Inspection> of;  ///< null: none yet
@@ -105,6 +112,7 @@ struct Views {
   Residuals residuals;
   TrackLives lives;
   KeptTrackColors colors;
+  KeptModel model;
   KeptTrackRows tracks;  ///< of the drawer, as it has sorted them
   NormalsMap normals;
   WindowPicture window;  ///< of which only the parts that change are drawn anew

@@ -137,6 +137,7 @@ struct WorkbenchState {
   std::string experiment_name;               ///< of that file, for people
   bool metric = false;                       ///< poses and points are exported in meters
   double cube_side = 0;                      ///< in plane distances; 0: automatic
+  std::string model;                         ///< in the cube's place: "robot", a file; empty: none
   std::optional<Eigen::Vector3d> cube_ray;   ///< of the reference camera: where the cube stands on
                                              ///< the plane; nothing: where the inspection puts it
   PictureZoom picture_zoom;                  ///< of the picture

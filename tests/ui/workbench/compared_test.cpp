@@ -18,8 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-void run(WorkbenchState& state, const std::string& line) { run_line(state, line); }
-
 std::string refusal(WorkbenchState& state, const std::string& line) {
   try {
     run_line(state, line);
@@ -49,22 +47,22 @@ std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
 TEST(Compared, ListsAreChosenAddedToAndTakenFrom) {
   WorkbenchState state;
   EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
-  run(state, "compare gpo,ba");
-  run(state, "compare add gpo+no-ransac");
-  run(state, "compare add ba");          // is there already
-  run(state, "compare add gpo+ransac");  // only says what is so by default
+  run_line(state, "compare gpo,ba");
+  run_line(state, "compare add gpo+no-ransac");
+  run_line(state, "compare add ba");          // is there already
+  run_line(state, "compare add gpo+ransac");  // only says what is so by default
   EXPECT_THAT(state.compared, ElementsAre("gpo", "ba", "gpo+no-ransac"));
-  run(state, "compare remove ba");
+  run_line(state, "compare remove ba");
   EXPECT_THAT(state.compared, ElementsAre("gpo", "gpo+no-ransac"));
-  run(state, "compare paper");
+  run_line(state, "compare paper");
   EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
-  run(state, "compare all");
+  run_line(state, "compare all");
   EXPECT_GT(state.compared.size(), methods().size());
 }
 
 TEST(Compared, RefusesWhatItDoesNotKnowAndKeepsTheLast) {
   WorkbenchState state;
-  run(state, "compare gpo");
+  run_line(state, "compare gpo");
   EXPECT_THAT(refusal(state, "compare add nonsense"), HasSubstr("unknown method 'nonsense'"));
   EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not among"));
   EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("the last one stays"));
@@ -83,7 +81,7 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
 TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   WorkbenchState state;
   state.settings.tracking = Tracking::frame_to_frame;
-  run(state, "compare gpo,ba");
+  run_line(state, "compare gpo,ba");
   const auto keys = [&] {
     std::vector<std::string> all;
     for (const Compared& one : compared_results(state)) all.push_back(key_of(one.configuration));
@@ -93,12 +91,12 @@ TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   EXPECT_THAT(keys(), ElementsAre("gpo", "ba"));
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
-  run(state, "compare gpo,gpo+no-ransac");
+  run_line(state, "compare gpo,gpo+no-ransac");
   state.settings.ransac = false;  // as a click on the second makes it
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
-  run(state, "compare gpo,gpo+anchored");  // the same by default, and not here
+  run_line(state, "compare gpo,gpo+anchored");  // the same by default, and not here
   EXPECT_THAT(state.compared, ElementsAre("gpo"));
-  run(state, "compare gpo+anchored");
+  run_line(state, "compare gpo+anchored");
   state.settings.ransac.reset();
   EXPECT_THAT(keys(), ElementsAre("gpo"));
 }
@@ -107,15 +105,15 @@ TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   WorkbenchState state;
   state.settings.method = "gpo";
   EXPECT_EQ(flipped(state), std::nullopt);
-  run(state, "flip on");
+  run_line(state, "flip on");
   EXPECT_EQ(flipped(state), "pnp_ba");
   state.settings.method = "ba";
   EXPECT_EQ(flipped(state), "gpo");
-  run(state, "compare ba");
+  run_line(state, "compare ba");
   EXPECT_EQ(flipped(state), std::nullopt);
-  run(state, "compare ba,ba+ransac");
+  run_line(state, "compare ba,ba+ransac");
   EXPECT_EQ(flipped(state), "ba+ransac");
-  run(state, "flip off");
+  run_line(state, "flip off");
   EXPECT_EQ(flipped(state), std::nullopt);
 }
 
@@ -124,7 +122,7 @@ TEST(Compared, FlipAsksForWhatItShows) {
   surveyed(state, "gpo");
   state.settings.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
-  run(state, "flip on");
+  run_line(state, "flip on");
   const auto wanted = wanted_inspections(state);
   ASSERT_EQ(wanted.size(), 1U);
   EXPECT_EQ(wanted[0].method, "pnp_ba");
@@ -141,7 +139,7 @@ TEST(Compared, FlipIsHeldByItsKey) {
 TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  run(state, "compare gpo,ba,pba");
+  run_line(state, "compare gpo,ba,pba");
   SurveyResults results = *state.surveyed;
   results.push_back({apply(parse_configuration("pba"), state.settings), nullptr, "no gyroscope"});
   state.surveyed = std::make_shared<const SurveyResults>(results);
@@ -156,7 +154,7 @@ TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
 TEST(Compared, FlipSwapsTheFirstTwoColumns) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  run(state, "flip on");
+  run_line(state, "flip on");
   const auto all = compared_results(state);
   EXPECT_EQ(key_of(all[0].configuration), "pnp_ba");
   EXPECT_EQ(key_of(all[1].configuration), "gpo");
@@ -167,7 +165,7 @@ TEST(Compared, AllCubesStandOnOneRay) {
   WorkbenchState state;
   surveyed(state, "gpo");
   surveyed(state, "ba", {.estimate_error = 5});
-  run(state, "compare gpo,ba");
+  run_line(state, "compare gpo,ba");
   const auto angle_deg = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) * 180 / EIGEN_PI;
   };
@@ -184,7 +182,7 @@ TEST(Compared, AllCubesStandOnOneRay) {
 TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   WorkbenchState state;
   state.inspection = surveyed(state, "gpo");
-  run(state, "compare ba");
+  run_line(state, "compare ba");
   state.settings = state.inspection->settings;
   auto all = compared_with_current(state);
   ASSERT_EQ(all.size(), 2U);
@@ -192,7 +190,7 @@ TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   EXPECT_NE(all[0].inspection, nullptr);
   state.settings.ransac_threshold_px += 1;  // its result is of earlier settings now
   EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
-  run(state, "compare ba,gpo");
+  run_line(state, "compare ba,gpo");
   all = compared_with_current(state);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(key_of(all[0].configuration), "ba");
@@ -201,28 +199,28 @@ TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
 TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  run(state, "compare zoom 4 0 0");
+  run_line(state, "compare zoom 4 0 0");
   ASSERT_TRUE(state.compare_zoom);
   EXPECT_EQ(state.compare_zoom->factor, 4);
   EXPECT_EQ(state.compare_zoom->center, Eigen::Vector2d(0, 0));
   EXPECT_EQ(state.picture_zoom.factor, 1);
-  run(state, "compare zoom");
+  run_line(state, "compare zoom");
   EXPECT_FALSE(state.compare_zoom);
-  run(state, "compare zoom 2");
-  run(state, "fit");
+  run_line(state, "compare zoom 2");
+  run_line(state, "fit");
   EXPECT_FALSE(state.compare_zoom);
   EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
 }
 
 TEST(Compared, CurvesAreSwitchedByName) {
   WorkbenchState state;
-  run(state, "curve ba");
+  run_line(state, "curve ba");
   EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
-  run(state, "curve ba off");
+  run_line(state, "curve ba off");
   EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
-  run(state, "curve ba");
+  run_line(state, "curve ba");
   EXPECT_THAT(state.hidden_curves, IsEmpty());
-  run(state, "curve gpo+ransac off");  // the same as gpo
+  run_line(state, "curve gpo+ransac off");  // the same as gpo
   EXPECT_THAT(state.hidden_curves, ElementsAre("gpo"));
   EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
 }

@@ -114,7 +114,7 @@ void draw_columns(const PanelInput& input,
   const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves as one scrolls
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
-  const CompareOptions options = compare_options(state);
+  const CompareOptions options = compare_options(state, views);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_compare_view(list, rect, columns, *state.recording, frame, shown_picture(views), options);
   const auto places =

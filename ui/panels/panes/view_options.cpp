@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/panes/view_options.h"
 
+#include "engine/base/error.h"
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
+#include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/track_colors.h"
 #include "ui/workbench/tracks_in_view.h"
@@ -26,54 +28,73 @@ std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state, KeptTr
   return kept.colors;
 }
 
-}  // namespace
-
-namespace {
+/// The state's model; read anew where it is another.
+const KeptModel& model_of(const WorkbenchState& state, KeptModel& kept) {
+  if (kept.name == state.model) return kept;
+  kept = {state.model, nullptr, {}};
+  if (state.model.empty()) return kept;
+  try {
+    kept.model = std::make_shared<const SolidModel>(read_solid_model(state.model));
+  } catch (const InputError& error) {
+    kept.error = error.what();
+  }
+  return kept;
+}
 
 constexpr double kTowerSides = 5;
 
-double height_sides(const WorkbenchState& state) { return state.view.tower ? kTowerSides : 1; }
+double height_sides(const WorkbenchState& state, const KeptModel& kept) {
+  if (kept.model) return kept.model->height_sides;
+  return state.view.tower ? kTowerSides : 1;
+}
 
 }  // namespace
 
-ImageViewOptions image_options(const WorkbenchState& state, KeptTrackColors& kept) {
+ImageViewOptions image_options(const WorkbenchState& state, Views& views) {
+  const KeptModel& model = model_of(state, views.model);
   ImageViewOptions options;
   options.tracks = state.view.tracks;
   if (!state.view.tails) options.tail_frames = 0;
   options.residuals = state.view.residuals;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state);
+  options.cube_height_sides = height_sides(state, model);
+  options.model = model.model;
+  options.model_error = model.error;
   options.wireframe = state.view.wireframe;
   options.exaggeration = state.view.exaggeration;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.undistorted = state.view.undistorted;
-  options.colors = colors_of(state, kept);
+  options.colors = colors_of(state, views.colors);
   options.legend = state.view.legend && state.inspection != nullptr;
   return options;
 }
 
-SceneViewOptions scene_options(const WorkbenchState& state, KeptTrackColors& kept) {
+SceneViewOptions scene_options(const WorkbenchState& state, Views& views) {
+  const KeptModel& model = model_of(state, views.model);
   SceneViewOptions options;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state);
+  options.cube_height_sides = height_sides(state, model);
+  options.model = model.model;
   options.truth = state.view.truth;
   options.gravity = state.view.gravity;
   options.uncertainty = state.view.uncertainty;
   options.point_size_px = state.view.point_size_px;
   options.legend = state.view.legend;
-  options.colors = colors_of(state, kept);
+  options.colors = colors_of(state, views.colors);
   return options;
 }
 
-CompareOptions compare_options(const WorkbenchState& state) {
+CompareOptions compare_options(const WorkbenchState& state, Views& views) {
+  const KeptModel& model = model_of(state, views.model);
   CompareOptions options;
   options.zoom = state.compare_zoom;
   options.cube = state.view.cube;
   options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state);
+  options.cube_height_sides = height_sides(state, model);
+  options.model = model.model;
   options.wireframe = state.view.wireframe;
   options.undistorted = state.view.undistorted;
   options.exaggeration = state.view.exaggeration;

@@ -237,6 +237,7 @@ void draw_compare_view(ImDrawList& list,
   image.cube = options.cube;
   image.cube_height_sides = options.cube_height_sides;
   image.wireframe = options.wireframe;
+  image.model = options.model;
   image.undistorted = options.undistorted;
   image.exaggeration = options.exaggeration;
   image.reference = first;

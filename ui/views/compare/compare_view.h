@@ -18,6 +18,7 @@ struct ImDrawList;
 namespace gpo {
 
 class PictureTexture;
+struct SolidModel;
 
 /// Finished inspections of one window of one recording, a method or setting each.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
@@ -28,6 +29,7 @@ struct CompareOptions {
   double cube_side = 0;          ///< of the first one [unit of its estimate]; 0: the default
   double cube_height_sides = 1;  ///< more: a tower
   bool wireframe = false;
+  std::shared_ptr<const SolidModel> model = {};  ///< in the cube's place; null: none
   bool undistorted = false;
   int exaggeration = 1;  ///< see `ImageViewOptions`; the reference is the first column
   bool truth = true;

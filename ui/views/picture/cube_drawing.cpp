@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <functional>
 
-#include <imgui.h>
+#include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
@@ -90,6 +90,20 @@ void draw_lit_face(ImDrawList& list, const PictureMapping& mapping, const CubeFa
   });
 }
 
+void draw_shadow(ImDrawList& list,
+                 const PictureMapping& mapping,
+                 const std::vector<Outline>& rings) {
+  constexpr double kDarkness = 0.046;  // of a ring; they lie one on the other
+  for (const Outline& ring : rings)
+    fill(list, on_screen(mapping, ring), imgui_color(std::uint32_t{0}, kDarkness));
+}
+
+void draw_solid_edge(ImDrawList& list, const PictureMapping& mapping, const CubeEdge& edge) {
+  const auto points = on_screen(mapping, edge.raw_px);
+  polyline(list, points, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
+  polyline(list, points, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
+}
+
 }  // namespace
 
 void draw_wireframe(ImDrawList& list, const PictureMapping& mapping, const CubePicture& cube) {
@@ -111,18 +125,27 @@ void draw_body(ImDrawList& list,
                const PictureMapping& mapping,
                const CubePicture& cube,
                const std::vector<Outline>& shadow) {
-  for (const Outline& ring : shadow) {
-    constexpr double kDarkness = 0.046;  // of a ring; they lie one on the other
-    fill(list, on_screen(mapping, ring), imgui_color(std::uint32_t{0}, kDarkness));
-  }
+  draw_shadow(list, mapping, shadow);
   for (const CubeFace& face : cube.faces)
     if (face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(list, mapping, face);
-  for (const CubeEdge& edge : cube.edges) {
-    if (edge.hidden) continue;
-    const auto points = on_screen(mapping, edge.raw_px);
-    polyline(list, points, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
-    polyline(list, points, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
-  }
+  for (const CubeEdge& edge : cube.edges)
+    if (!edge.hidden) draw_solid_edge(list, mapping, edge);
+}
+
+void draw_foot(ImDrawList& list,
+               const PictureMapping& mapping,
+               const CubePicture& cube,
+               const std::vector<Outline>& shadow) {
+  draw_shadow(list, mapping, shadow);
+  for (const CubeEdge& edge : cube.edges)
+    if (edge.base) draw_solid_edge(list, mapping, edge);
+}
+
+std::pair<ImVec2, ImVec2> bounds(const PictureMapping& mapping, const CubePicture& cube) {
+  Eigen::AlignedBox2d box;
+  for (const CubeEdge& edge : cube.edges)
+    for (const Vector2d& pixel : edge.raw_px) box.extend(to_screen(mapping, pixel));
+  return {to_imgui(box.min()), to_imgui(box.max())};
 }
 
 void draw_true_cube(ImDrawList& list, const PictureMapping& mapping, const CubePicture& cube) {

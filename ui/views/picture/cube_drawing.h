@@ -5,9 +5,10 @@
 #include "ui/look/picture_zoom.h"
 #include "ui/views/picture/image_geometry.h"
 
+#include <utility>
 #include <vector>
 
-struct ImDrawList;
+#include <imgui.h>
 
 namespace gpo {
 
@@ -20,6 +21,15 @@ void draw_body(ImDrawList& list,
                const PictureMapping& mapping,
                const CubePicture& cube,
                const std::vector<std::vector<Eigen::Vector2d>>& shadow);
+
+/// What is on the plane alone, for a model that stands there: shadow and base.
+void draw_foot(ImDrawList& list,
+               const PictureMapping& mapping,
+               const CubePicture& cube,
+               const std::vector<std::vector<Eigen::Vector2d>>& shadow);
+
+/// The corners on the screen of a box around all of its edges.
+std::pair<ImVec2, ImVec2> bounds(const PictureMapping& mapping, const CubePicture& cube);
 
 /// The true one: gray and dashed.
 void draw_true_cube(ImDrawList& list, const PictureMapping& mapping, const CubePicture& cube);

@@ -6,13 +6,14 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
-#include "ui/context/window_picture.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/cube_drawing.h"
 #include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/picture/model_drawing.h"
+#include "ui/views/picture/occlusion.h"
+#include "ui/views/picture/picture_drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,7 @@ struct Canvas {
   PictureMapping mapping;
   const ImageViewOptions& options;
   float scale;
+  const PictureTexture* picture;  ///< null: none
 
   ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
   std::vector<ImVec2> at(const std::vector<Vector2d>& raw_px) const {
@@ -49,6 +51,8 @@ struct Canvas {
     if (options.colors) look.rgb = options.colors->rgb(track);
     return look;
   }
+  const Camera& camera() const { return inspection.recording->camera; }
+  const Pose& pose() const { return inspection.initialization->cameras[frame]; }
   std::optional<CubePicture> estimated_cube() const {
     return gpo::estimated_cube(
         inspection, frame, cube_side(inspection, options.cube_side), options.cube_height_sides);
@@ -61,75 +65,6 @@ struct Canvas {
     list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, width * scale);
   }
 };
-
-/// Only what the picture leaves free: without a graphics card each layer costs milliseconds.
-void draw_surroundings(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const ImVec2& picture_low,
-                       const ImVec2& picture_high) {
-  const ImU32 color = imgui_color(Role::background);
-  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
-  // The picture's last pixels are whole ones only where its scale is.
-  const float right = std::clamp(std::floor(picture_high.x), low.x, high.x);
-  const float bottom = std::clamp(std::floor(picture_high.y), low.y, high.y);
-  const float left = std::clamp(picture_low.x, low.x, right);
-  const float top = std::clamp(picture_low.y, low.y, bottom);
-  const std::array<std::pair<ImVec2, ImVec2>, 4> sides = {{{low, {high.x, top}},
-                                                           {{low.x, bottom}, high},
-                                                           {{low.x, top}, {left, bottom}},
-                                                           {{right, top}, {high.x, bottom}}}};
-  for (const auto& [from, to] : sides)
-    if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, color);
-}
-
-constexpr int kCells = 64;  ///< a side, so small that the lens is straight within each
-
-/// The picture cell by cell.
-void draw_undistorted(ImDrawList& list,
-                      const Camera& camera,
-                      void* texture,
-                      const PictureMapping& mapping) {
-  const auto share = [](int i, int j) -> Vector2d { return Vector2d(i, j) / kCells; };
-  std::array<std::array<Vector2d, kCells + 1>, kCells + 1> corners;
-  for (int i = 0; i <= kCells; ++i)
-    for (int j = 0; j <= kCells; ++j)
-      corners[i][j] = to_screen(mapping,
-                                share(i, j).cwiseProduct(Vector2d(camera.width, camera.height)) -
-                                    Vector2d::Constant(0.5));
-  for (int i = 0; i < kCells; ++i)
-    for (int j = 0; j < kCells; ++j) {
-      const Vector2d &a = corners[i][j], &b = corners[i + 1][j];
-      const Vector2d &c = corners[i + 1][j + 1], &d = corners[i][j + 1];
-      if (!(a + b + c + d).allFinite()) continue;
-      list.AddImageQuad(texture,
-                        to_imgui(a),
-                        to_imgui(b),
-                        to_imgui(c),
-                        to_imgui(d),
-                        to_imgui(share(i, j)),
-                        to_imgui(share(i + 1, j)),
-                        to_imgui(share(i + 1, j + 1)),
-                        to_imgui(share(i, j + 1)));
-    }
-}
-
-void draw_picture(ImDrawList& list,
-                  const ScreenRect& rect,
-                  const Camera& camera,
-                  PictureTexture* picture,
-                  const PictureMapping& mapping) {
-  const ImVec2 low = to_imgui(mapping.origin);
-  const ImVec2 high =
-      to_imgui(mapping.origin + mapping.scale * Vector2d(camera.width, camera.height));
-  draw_surroundings(list, rect, low, high);
-  if (picture == nullptr || picture->id() == nullptr)
-    return list.AddRectFilled(low, high, imgui_color(Role::raised));
-  picture->set_screen_scale(mapping.scale);
-  mark_content(list, picture->revision());
-  if (mapping.undistorted == nullptr) return list.AddImage(picture->id(), low, high);
-  list.AddRectFilled(low, high, imgui_color(Role::background));
-  draw_undistorted(list, camera, picture->id(), mapping);
-}
 
 void draw_tails(const Canvas& canvas) {
   const Tracks& tracks = *canvas.inspection.tracks;
@@ -147,13 +82,16 @@ void draw_tails(const Canvas& canvas) {
   }
 }
 
+void draw_track(const Canvas& canvas, int track) {
+  const auto [sign, rgb] = canvas.look(canvas.frame, track);
+  const auto& raw_px = canvas.inspection.tracks->raw_px[canvas.frame];
+  draw_sign(canvas.list, sign, canvas.at(raw_px.col(track)), rgb);
+}
+
 void draw_tracks(const Canvas& canvas) {
   const Tracks& tracks = *canvas.inspection.tracks;
-  for (int track = 0; track < tracks.track_count(); ++track) {
-    if (!tracks.seen(canvas.frame, track)) continue;
-    const auto [sign, rgb] = canvas.look(canvas.frame, track);
-    draw_sign(canvas.list, sign, canvas.at(tracks.raw_px[canvas.frame].col(track)), rgb);
-  }
+  for (int track = 0; track < tracks.track_count(); ++track)
+    if (tracks.seen(canvas.frame, track)) draw_track(canvas, track);
 }
 
 void draw_residuals(const Canvas& canvas) {
@@ -180,6 +118,46 @@ bool exaggerates(const Canvas& canvas) {
   return canvas.options.exaggeration > 1 && reference_cube(canvas).has_value();
 }
 
+/// What is nearer than the cube comes back over it: the picture, and the tracks that say so.
+void draw_occluders(const Canvas& canvas,
+                    const std::array<Eigen::Vector3d, 8>& corners_w,
+                    const CubePicture& cube) {
+  if (canvas.picture == nullptr || canvas.picture->id() == nullptr) return;
+  const Tracks& tracks = *canvas.inspection.tracks;
+  const auto [low, high] = bounds(canvas.mapping, cube);
+  for (const Occluder& occluder : occluders(canvas.inspection, canvas.frame, corners_w)) {
+    canvas.list.PushClipRect(low, high, true);
+    for (const auto& triangle : occluder.triangles_raw_px)
+      draw_part(canvas.list, canvas.camera(), *canvas.picture, canvas.mapping, triangle);
+    canvas.list.PopClipRect();
+    if (!canvas.options.tracks) continue;
+    for (int track = 0; track < tracks.track_count(); ++track)
+      if (tracks.seen(canvas.frame, track) &&
+          plane_of_track(*canvas.inspection.window, canvas.frame, track) == occluder.plane)
+        draw_track(canvas, track);
+  }
+}
+
+/// As a body, or as the model that takes its place.
+void draw_standing(const Canvas& canvas, const CubePicture& cube) {
+  const double side = cube_side(canvas.inspection, canvas.options.cube_side);
+  const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
+  const SolidModel* model = canvas.options.model.get();
+  if (model == nullptr) {
+    draw_body(canvas.list, canvas.mapping, cube, shadow);
+  } else {
+    draw_foot(canvas.list, canvas.mapping, cube, shadow);
+    draw_model(canvas.list,
+               canvas.mapping,
+               canvas.camera(),
+               canvas.pose(),
+               *model,
+               placed_on(*model, cube_corners(*canvas.inspection.cube, side)));
+  }
+  draw_occluders(
+      canvas, cube_corners(*canvas.inspection.cube, side, canvas.options.cube_height_sides), cube);
+}
+
 void draw_cubes(const Canvas& canvas) {
   const ImageViewOptions& options = canvas.options;
   auto cube = canvas.estimated_cube();
@@ -189,13 +167,7 @@ void draw_cubes(const Canvas& canvas) {
   if (far_off) cube = exaggerated(*cube, *reference, options.exaggeration);
   // A body would hide what it is held against.
   const bool body = !options.wireframe && !far_off;
-  if (cube && body)
-    draw_body(
-        canvas.list,
-        canvas.mapping,
-        *cube,
-        contact_shadow(
-            canvas.inspection, canvas.frame, cube_side(canvas.inspection, options.cube_side)));
+  if (cube && body) draw_standing(canvas, *cube);
   if (const auto truth = canvas.true_cube(); truth && options.truth)
     draw_true_cube(canvas.list, canvas.mapping, *truth);
   if (cube && !body) draw_wireframe(canvas.list, canvas.mapping, *cube);
@@ -205,9 +177,7 @@ void draw_cubes(const Canvas& canvas) {
 std::vector<std::vector<Vector2d>> horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.gravity) return {};
-  return horizon_in_picture(inspection.recording->camera,
-                            inspection.initialization->cameras[canvas.frame],
-                            -inspection.inertial->gravity_m_s2);
+  return horizon_in_picture(canvas.camera(), canvas.pose(), -inspection.inertial->gravity_m_s2);
 }
 
 void draw_horizon(const Canvas& canvas) {
@@ -260,7 +230,11 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
         fmt::format("residuals × {:g}", options.residual_magnification));
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon");
   if (options.cube && inspection.cube)
-    add(Sign::square, Role::cube_base, std::string("cube on the estimated plane"));
+    add(Sign::square,
+        Role::cube_base,
+        options.model ? "model on the estimated plane" : "cube on the estimated plane");
+  if (options.cube && !options.model_error.empty())
+    add(Sign::none, Role::warning, options.model_error);
   if (options.cube && options.truth && canvas.true_cube())
     add(Sign::square, Role::truth, std::string("true cube, dashed"));
   if (options.cube && inspection.cube && exaggerates(canvas))
@@ -309,7 +283,8 @@ void draw_image_view(ImDrawList& list,
   const Camera& camera = inspection.recording->camera;
   const int first = inspection.window->start, count = inspection.window->frame_count();
   const PictureMapping mapping = map_picture(camera, rect, zoom, options.undistorted);
-  const Canvas canvas{list, rect, inspection, frame - first, mapping, options, overlay_scale()};
+  const Canvas canvas{
+      list, rect, inspection, frame - first, mapping, options, overlay_scale(), picture};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   draw_picture(list, rect, camera, picture, mapping);
   const bool inside = frame >= first && frame < first + count;

@@ -7,12 +7,14 @@
 #include "ui/look/rect.h"
 
 #include <memory>
+#include <string>
 
 struct ImDrawList;
 
 namespace gpo {
 
 class PictureTexture;
+struct SolidModel;
 struct TrackColors;
 
 /// What is shown over the picture.
@@ -25,6 +27,8 @@ struct ImageViewOptions {
   double cube_side = 0;                ///< 0: `default_cube_side` [unit of the estimate]
   double cube_height_sides = 1;        ///< more: a tower
   bool wireframe = false;              ///< the cube's edges alone
+  std::shared_ptr<const SolidModel> model = {};  ///< in the cube's place; null: none
+  std::string model_error = {};                  ///< why it could not be read; empty: it was
   /// The cube's distance in the picture from the true one, or where there is none from that of
   /// `reference`, so many times as large as it is.
   int exaggeration = 1;

@@ -6,6 +6,7 @@
 #include "engine/inspection/studies/plane_patches.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
+#include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/track_colors.h"
@@ -195,6 +196,24 @@ void add_cube(const Stage& stage) {
   stage.add(base, 3);
 }
 
+/// In the cube's place; its light is its own.
+void add_model(const Stage& stage, const SolidModel& model) {
+  const Inspection& inspection = stage.inspection;
+  const auto corners =
+      cube_corners(*inspection.cube, cube_side(inspection, stage.options.cube_side));
+  const std::vector<Vector3d> points = placed_on(model, corners);
+  Shapes base, faces;
+  const std::array<Vector3d, 4> foot = {corners[0], corners[1], corners[3], corners[2]};
+  base.lines(foot, true, color_of(Role::cube_base));
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
+    const auto& [a, b, c] = model.triangles[i];
+    const std::array<Vector3d, 3> face = {points[a], points[b], points[c]};
+    faces.face(face, lit_rgb(model, i, color_of(Role::cube_face)), 1);
+  }
+  stage.add(faces, 1);
+  stage.add(base, 3);
+}
+
 /// Of the cameras that are drawn, and of the normal.
 void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   const Initialization& estimate = *stage.inspection.initialization;
@@ -238,7 +257,12 @@ void build(const Stage& stage, bool above) {
   add_points(stage, *grid);
   add_patches(stage);
   add_cameras(stage);
-  if (stage.options.cube && inspection.cube) add_cube(stage);
+  if (stage.options.cube && inspection.cube) {
+    if (stage.options.model)
+      add_model(stage, *stage.options.model);
+    else
+      add_cube(stage);
+  }
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 

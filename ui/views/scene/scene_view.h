@@ -12,14 +12,16 @@ struct ImDrawList;
 
 namespace gpo {
 
+struct SolidModel;
 struct TrackColors;
 
 /// What is shown in the scene.
 struct SceneViewOptions {
   bool cube = true;
-  double cube_side = 0;          ///< 0: `default_cube_side` [unit of the estimate]
-  double cube_height_sides = 1;  ///< more: a tower
-  bool truth = true;             ///< true cameras and plane, where they are known
+  double cube_side = 0;                          ///< 0: `default_cube_side` [unit of the estimate]
+  double cube_height_sides = 1;                  ///< more: a tower
+  std::shared_ptr<const SolidModel> model = {};  ///< in the cube's place; null: none
+  bool truth = true;                             ///< true cameras and plane, where they are known
   /// 95 % of the camera centers and of the normal, enlarged so many times; 0: not shown.
   int uncertainty = 1;
   int point_size_px = 5;  ///< at scale 1

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <tuple>
 #include <utility>
 
@@ -58,6 +59,35 @@ Action exaggeration() {
   return action;
 }
 
+/// robot, a file of the user's, or off.
+Action model() {
+  Action action{"model",
+                "A model in the cube's place",
+                "View",
+                {},
+                "An own model, or the robot that the program carries with it, stands on the plane; "
+                "off: the cube again"};
+  action.arguments = "FILE (.obj, .ply, .gltf, .glb)|robot|off";
+  action.value = [](const State& s) {
+    return s.model.empty() ? "off" : std::filesystem::path(s.model).filename().string();
+  };
+  action.checked = [](const State& s) { return !s.model.empty(); };
+  action.needs_recording = false;
+  action.run = [](State& s, const Arguments& arguments) {
+    expect_count("model", arguments, 1, 1);
+    const std::string& wanted = arguments[0];
+    std::error_code none;
+    if (wanted == "off") {
+      s.model.clear();
+    } else if (wanted == "robot" || std::filesystem::is_regular_file(wanted, none)) {
+      s.model = wanted;
+    } else {
+      throw InputError(fmt::format("model: '{}', expected a file, robot or off", wanted));
+    }
+  };
+  return action;
+}
+
 Action point_size() {
   Action action{"point-size", "Size of points", "View", {}, "Of the scene's points [px]"};
   action.arguments = "1..20";
@@ -97,6 +127,7 @@ void add_toggles(std::vector<Action>& table) {
   table.push_back(uncertainty);
   table.push_back(exaggeration());
   table.push_back(point_size());
+  table.push_back(model());
 }
 
 Action open_pane(const Pane& pane,

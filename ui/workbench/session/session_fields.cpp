@@ -255,6 +255,7 @@ std::span<const SessionField> session_fields() {
       field("metric", &State::metric),
       field("cube_side", &State::cube_side, 0.0, 2.0),
       field("cube_ray", &State::cube_ray),
+      field("model", &State::model),
       field("picture_zoom", &State::picture_zoom),
       field("normals_zoom", &State::normals_zoom),
       field("viewpoint", &State::viewpoint),

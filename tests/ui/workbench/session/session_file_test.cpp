@@ -110,6 +110,7 @@ constexpr const char* kOldSession = R"({
   "metric": true,
   "cube_side": 0.5,
   "cube_ray": [0.125, 0.25, 1.0],
+  "model": "robot",
   "picture_zoom": {"factor": 4.0, "center": [0.5, 0.25]},
   "normals_zoom": {"factor": 2.0, "center": [0.25, -0.125]},
   "viewpoint": "side",
