@@ -5,6 +5,7 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "engine/files/json_text.h"
+#include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/camera_path.h"
@@ -52,10 +53,12 @@ std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
   return std::ranges::any_of(outputs, taken) ? stderr : stdout;
 }
 
-/// Whether another window would do is one option away.
+/// Whether another window would do is one option away. A user's own method may have failed by
+/// itself.
 void tell_of_scan(const Inspection& inspection) {
-  const int frames = inspection.settings.frames;
-  if (!inspection.initialization->ok && inspection.recording->frame_count() > frames)
+  const Settings& settings = inspection.settings;
+  if (inspection.initialization->ok || !find_method(settings.method).identity.empty()) return;
+  if (inspection.recording->frame_count() > settings.frames)
     fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
 }
 

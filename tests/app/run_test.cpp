@@ -219,6 +219,7 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
               " --trajectory " + (folder / "t.txt").string());
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
   EXPECT_THAT(outcome.out, HasSubstr("failed: no parallax"));
+  EXPECT_THAT(outcome.err, HasSubstr("--scan - lists the frames from which a window can be"));
   EXPECT_FALSE(fs::exists(folder / "t.txt"));
   const json j = json::parse(read_file(folder / "r.json"));
   EXPECT_EQ(j["status"], "failed");
