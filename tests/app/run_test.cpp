@@ -240,8 +240,6 @@ TEST(Run, LeavesOutTracksByTheirIds) {
     EXPECT_TRUE(point["track"] != 17 && point["track"] != 23);
 }
 
-class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
-
 TEST(Run, SaysWhatIsNotUsed) {
   const fs::path file = fresh_folder() / "result.json";
   const Outcome outcome =
@@ -257,6 +255,8 @@ TEST(Run, SaysWhatIsNotUsed) {
             json::parse(R"(["solver", "error", "loss", "shutter", "planes", "time_offset"])"));
   EXPECT_EQ(run_json(desk().string() + " --method gpo_joint")["unused_settings"], json::array());
 }
+
+class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
 
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
@@ -369,14 +369,15 @@ TEST(Run, DoesNotWriteOverWhatItReads) {
 /// The contract's real recordings; they are not part of the repository.
 class SharedRecordings : public ::testing::Test {
  protected:
+  void SetUp() override {
+    if (!fs::exists(shared(""))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  }
   static fs::path shared(const std::string& name) {
     return fs::path(GPO_SHARED_DIR) / "data" / name;
   }
 };
 
 TEST_F(SharedRecordings, ChessboardFloorInitializesByAveraging) {
-  if (!fs::exists(shared("chessboard-floor")))
-    GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const json j = run_json(shared("chessboard-floor").string() + " --start 180");
   EXPECT_EQ(j["settings"]["rotations"], "averaging");
   EXPECT_EQ(j["metrics"]["alignment"], "ok");
@@ -385,7 +386,6 @@ TEST_F(SharedRecordings, ChessboardFloorInitializesByAveraging) {
 }
 
 TEST_F(SharedRecordings, CardsTracksInitializeByGyroscope) {
-  if (!fs::exists(shared("cards-tracks"))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   for (const int start : {1, 139, 259}) {
     const json j = run_json(shared("cards-tracks").string() + " --tracks " +
                             shared("cards-tracks/tracks.csv").string() + " --frames 16 --start " +

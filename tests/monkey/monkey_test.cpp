@@ -69,7 +69,8 @@ class Monkey {
         "ba",     "pnp_ba",    "x",       "\"a b\"",    "frames",
         "method", "seed",      "exclude", "none",       "default",
         "gyro",   "averaging", "ransac",  "consistent", "gpo+no-ransac",
-        "all",    "20",        "40",      "0.5",        "\xff"};
+        "all",    "20",        "40",      "0.5",        "\xff",
+        "robot",  "off"};
     return below(3) == 0 ? fmt::format("{:.2f}", between(-100, 800)) : one_of(words);
   }
 
