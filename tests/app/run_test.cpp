@@ -296,53 +296,6 @@ TEST(Run, MissingRecordingIsBadInput) {
   EXPECT_THAT(outcome.err, HasSubstr("no/such/folder"));
 }
 
-TEST(Run, UnwritableOutputIsToldBeforeTheWork) {
-  const Outcome outcome = program("run " + desk().string() + " --json README.md/such/r.json");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("README.md/such/r.json: cannot be written, no folder can be made in "));
-  EXPECT_EQ(outcome.out, "");
-}
-
-TEST(Run, MakesTheFoldersOfWhatItWrites) {
-  const fs::path file = fresh_folder() / "a/b/r.json";
-  const Outcome outcome = program("run " + desk().string() + " --frames 8 --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(json::accept(read_file(file)));
-}
-
-TEST(Run, WritesToStandardOutputWhatIsAskedForAndNothingElse) {
-  const std::string run = "run " + desk().string() + " --frames 8 ";
-  const Outcome result = program(run + "--json -");
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(json::accept(result.out)) << result.out.substr(0, 200);
-  EXPECT_THAT(result.err, HasSubstr("status      ok"));
-  const Outcome points = program(run + "--points -");
-  EXPECT_TRUE(points.out.starts_with("ply\n")) << points.out.substr(0, 200);
-  const Outcome both = program(run + "--json - --points -");
-  EXPECT_EQ(both.exit_code, 2);
-  EXPECT_EQ(both.out, "");
-}
-
-TEST(Run, RefusesOneFileForTwoOutputs) {
-  const fs::path folder = fresh_folder();
-  const std::string run = "run " + desk().string() + " --frames 8 ";
-  const std::string file = (folder / "a.txt").string();
-  fs::create_symlink("a.txt", folder / "link.txt");
-  for (const std::string& other : {file,
-                                   (folder / "." / "a.txt").string(),
-                                   (folder / "x/../a.txt").string(),
-                                   (folder / "link.txt").string()}) {
-    for (const char* option : {"--trajectory ", "--true-trajectory ", "--points "}) {
-      const Outcome outcome = program(run + "--json " + file + " " + option + other);
-      EXPECT_EQ(outcome.exit_code, 2) << option << other;
-      EXPECT_THAT(outcome.err, HasSubstr("expected a file for each"));
-    }
-  }
-  EXPECT_FALSE(fs::exists(file));
-  EXPECT_EQ(program(run + "--json /dev/null --points /dev/null").exit_code, 0);
-}
-
 TEST(Run, TracksThatItWritesAreReadBackToTheSameResult) {
   // Beside the test's own folder, which every run empties.
   const std::string file = fresh_folder().string() + "-tracks.csv";
@@ -353,17 +306,6 @@ TEST(Run, TracksThatItWritesAreReadBackToTheSameResult) {
   EXPECT_EQ(read["window"]["inliers"], written["window"]["inliers"]);
   for (int k = 0; k < 3; ++k)
     EXPECT_NEAR(read["plane"]["normal"][k], written["plane"]["normal"][k], 1e-6);
-}
-
-TEST(Run, DoesNotWriteOverWhatItReads) {
-  const fs::path file = fresh_folder() / "tracks.csv";
-  test::write_file(file, "frame,track,x,y\n0,1,2,3\n");
-  const std::string path = file.string();
-  const Outcome outcome =
-      program("run " + desk().string() + " --tracks " + path + " --json " + path);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--json and --tracks: found " + path + " for both"));
-  EXPECT_THAT(read_file(file), HasSubstr("frame,track"));
 }
 
 /// The contract's real recordings; they are not part of the repository.
