@@ -25,6 +25,7 @@ namespace {
 
 /// Rounds of reweighting, each a solve from the last one.
 constexpr int kWeightRounds = 10;
+constexpr int kStartRounds = 2;  // of a start, which is to be compared and is solved for again
 /// More unknowns must lower the cost so much: chi-square of what noise alone does, 4 sigma.
 constexpr double kSignificantSigmas = 4;
 /// Rotations of their own for every frame must lower the noise so much, too: what is wrong with a
@@ -76,14 +77,14 @@ PlaneSolution solve_once(const Task& task,
              : solve_plane(window, observations, start, unknowns, task.watch);
 }
 
-Fit solve(const Task& task, const PlaneMotion& start, Turns turns) {
+Fit solve(const Task& task, const PlaneMotion& start, Turns turns, int rounds = kWeightRounds) {
   const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
   const auto solve_from = [&](const PlaneMotion& from) {
     return solve_once(task, window, observations, from, turns);
   };
   PlaneSolution solution = solve_from(start);
-  for (int round = 0; is_weighted(task.options) && round < kWeightRounds; ++round) {
+  for (int round = 0; is_weighted(task.options) && round < rounds; ++round) {
     reweigh(solution.motion, task.options, task.sigma_px, observations);
     PlaneSolution next = solve_from(solution.motion);
     next.solver.iterations += solution.solver.iterations;
@@ -238,14 +239,14 @@ std::optional<Window> uncalibrated(const Window& window) {
 /// The start optimized, then with the other planes beside the leading one, where they are asked
 /// for.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
-  Fit fit = solve(task, start, {task.window.rotations});
+  Fit fit = solve(task, start, {task.window.rotations}, kStartRounds);
   add_effort(fit.solution.solver, effort);
   if (task.options.planes == Planes::one || task.window.planes.size() < 2 || !converged(fit))
     return fit;
   PlaneMotion with_others = fit.solution.motion;
   with_others.others = other_planes(task.window, with_others);
   if (with_others.others.empty()) return fit;
-  Fit all = solve(task, with_others, {task.window.rotations});
+  Fit all = solve(task, with_others, {task.window.rotations}, kStartRounds);
   add_effort(all.solution.solver, effort);
   return converged(all) ? all : fit;
 }
