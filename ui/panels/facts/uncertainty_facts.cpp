@@ -136,14 +136,18 @@ std::string bar_text(const Inspection& inspection, int frame) {
   if (in_window == 0) return text + ". The window starts here: its reference frame";
   const auto& growth = inspection.growth;
   if (in_window > static_cast<int>(growth.size())) return text;
-  const Verdict& verdict = growth[in_window - 1];
-  return fmt::format("{}\nwindow of {} frames, {} to {}: {}\n{}",
-                     text,
-                     in_window + 1,
-                     window.start,
-                     frame,
-                     verdict_text(verdict),
-                     verdict.reason);
+  const auto& result = inspection.initialization;
+  const bool whole = in_window + 1 == window.frame_count() && result && result->verdict;
+  const Verdict& verdict = whole ? *result->verdict : growth[in_window - 1];
+  text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",
+                      in_window + 1,
+                      window.start,
+                      frame,
+                      verdict_text(verdict),
+                      verdict.reason);
+  if (!whole)
+    text += "\n(by GPO with the rotations as given; a method that corrects them is surer)";
+  return text;
 }
 
 }  // namespace gpo

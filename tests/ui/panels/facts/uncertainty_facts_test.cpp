@@ -58,6 +58,11 @@ TEST(TimeLine, BarTellsTheVerdictOfTheWindowThatEndsThere) {
   EXPECT_THAT(bar_text(inspection, 6), HasSubstr("window of 2 frames, 5 to 6: degenerate, normal"));
   EXPECT_THAT(bar_text(inspection, 14), HasSubstr("window of 10 frames, 5 to 14: weak, normal"));
   EXPECT_THAT(bar_text(inspection, 34), HasSubstr("window of 30 frames, 5 to 34: ready, normal"));
+  EXPECT_THAT(bar_text(inspection, 34),
+              HasSubstr("normal \u00b1" +
+                        angle_text(*inspection.initialization->verdict->normal_sigma_deg)))
+      << "the whole window's number is the result's";
+  EXPECT_THAT(bar_text(inspection, 34), Not(HasSubstr("rotations as given")));
   EXPECT_EQ(bar_text(inspection, 35), "frame 35");
 }
 
