@@ -20,7 +20,7 @@ unreported=$PWD/tests/sanitizers
 elsewhere='^(Fuzz\.|EngineAlone\.|(Readme|RunScript|Install|Library)$)'
 # What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
 # the front door's live form.
-threads='^View$|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
+threads='^View$|RealWindow|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 # A quarantine below what the monkey may grow, and memory of threads that is not asked for where it lies: the leak

@@ -10,31 +10,11 @@ program=$1
 recording=$2
 name=$(basename "$recording")
 
-fail() { echo "expected: $1" >&2; kill "$pid" 2> /dev/null; exit 1; }
-# Runs a command until it succeeds, for at most five minutes: a machine may have other work.
-until_true() {
-  local what=$1
-  shift
-  for _ in $(seq 3000); do
-    "$@" && return
-    kill -0 "$pid" 2> /dev/null || fail "$what (the program has ended)"
-    sleep 0.1
-  done
-  fail "$what"
-}
-title_is() { [ "$(xdotool getwindowname "$window" 2> /dev/null)" = "$1" ]; }
-window_is_there() { window=$(xdotool search --name 'GPO Inspector' 2> /dev/null | head -1); [ -n "$window" ]; }
-key() { xdotool key --window "$window" "$@"; }
+source "$(dirname "$0")/window_driver.sh"
 saved() { [ -s "$name-$1.png" ] && identify "$name-$1.png" > /dev/null 2>&1; }
-other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
-at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
-same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
 later_frame_is_saved() { key s; sleep 0.1; ls "$name"-*.png 2> /dev/null | grep -qv -- -0000; }
 
-"$program" view "$recording" &
-pid=$!
-until_true "a window" window_is_there
-xdotool windowfocus "$window" 2> /dev/null
+start_program "$program" view "$recording"
 until_true "the recording to be opened and inspected" title_is "$name – GPO Inspector"
 
 key s
@@ -58,8 +38,7 @@ key s
 until_true "a second picture of the frame" saved 0020-2
 cmp -s "$name-0020.png" "$name-0020-2.png" && fail "the picture without RANSAC to differ"
 
-# Commands typed as fast as hands and pasting programs do: none is lost, none is a shortcut.
-type_command() { xdotool key --delay 10 ctrl+p; xdotool type --delay 10 "$1"; xdotool key --delay 10 Return; }
+# Commands typed fast: none is lost, none is a shortcut.
 commands=30
 for i in $(seq 0 $((commands - 1))); do
   type_command "frame $i"

@@ -10,17 +10,36 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(View, ReactsToKeysInARealWindowAndClosesWithZero) {
-  for (const char* tool : {"xvfb-run", "xdotool", "import"}) {
-    if (shell(std::string("command -v ") + tool).exit_code != 0) {
-      GTEST_SKIP() << tool << " is not installed";
-    }
+/// A script beside this file, in a display and a folder of its own.
+Outcome driven(const std::string& script, const std::string& arguments) {
+  return shell("cd '" + fresh_folder().string() +
+               "' && xvfb-run -a -s '-screen 0 1920x1080x24' '" GPO_SOURCE_DIR "/tests/app/" +
+               script + "' '" GPO_PROGRAM "' '" + desk().string() + "' " + arguments);
+}
+
+class RealWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* tool : {"xvfb-run", "xdotool", "import"})
+      if (shell(std::string("command -v ") + tool).exit_code != 0)
+        GTEST_SKIP() << tool << " is not installed";
+    if (!std::filesystem::exists(desk())) GTEST_SKIP() << "no bundled recording";
   }
-  if (!std::filesystem::exists(desk())) GTEST_SKIP() << "no bundled recording";
-  const Outcome outcome = shell("cd '" + fresh_folder().string() +
-                                "' && xvfb-run -a -s '-screen 0 1280x1024x24' '" GPO_SOURCE_DIR
-                                "/tests/app/drive_window.sh' '" GPO_PROGRAM "' '" +
-                                desk().string() + "'");
+};
+
+TEST_F(RealWindow, ReactsToKeysAndClosesWithZero) {
+  const Outcome outcome = driven("drive_window.sh", "");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
+}
+
+TEST_F(RealWindow, IsToured) {
+  if (shell("/usr/bin/python3 -c 'import Xlib'").exit_code != 0)
+    GTEST_SKIP() << "python3-xlib is not installed";
+  const std::filesystem::path other = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "dropped";
+  const auto replace =
+      std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::copy(desk(), other, replace);
+  const Outcome outcome = driven("tour_window.sh", "'" + other.string() + "'");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
 }
 

@@ -1,0 +1,119 @@
+#!/bin/bash
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# A newcomer's tour of the real window by mouse and keyboard, in a display of its own:
+#   xvfb-run -s '-screen 0 1920x1080x24' tour_window.sh PROGRAM RECORDING OTHER_RECORDING [WIDTHxHEIGHT [COMMANDS]]
+# in an empty folder, where it leaves a picture of each stop to be looked at. OTHER_RECORDING is dropped on
+# the window; COMMANDS are typed at 10 ms a key. Says what it expected where it was disappointed, and ends with 1.
+set -u
+program=$1 recording=$2 other=$3 size=${4:-1366x768} commands=${5:-20}
+width=${size%x*} height=${size#*x}
+name=$(basename "$recording")
+here=$(dirname "$0")
+source "$here/window_driver.sh"
+
+stop() { until_true "a window that comes to rest ($1)" at_rest; cp before.png "$1.png"; }
+has_size() { import -window "$window" now.png; [ "$(identify -format %wx%h now.png)" = "$size" ]; }
+opened() { title_is "$1 – GPO Inspector"; }
+# state FILE KEYS...: a value of a session
+state() { python3 -c 'import json, sys; v = json.load(open(sys.argv[1]))
+for k in sys.argv[2:]: v = v[k]
+print(v)' "$@"; }
+sessions=0
+# The session as it is now, in now.json.
+save() {
+  sessions=$((sessions + 1))
+  type_command "save-session s$sessions.json"
+  until_true "a session" test -s "s$sessions.json"
+  mv "s$sessions.json" now.json
+}
+# expect WHAT LOW HIGH KEYS...: a number of the session is within
+expect() {
+  local what=$1 low=$2 high=$3
+  shift 3
+  save
+  local value
+  value=$(state now.json "$@")
+  python3 -c 'import sys; v, a, b = map(float, sys.argv[1:]); sys.exit(not a <= v <= b)' "$value" "$low" "$high" ||
+    fail "$what: $* from $low to $high, not $value"
+}
+
+start_program "$program" view
+until_true "a window that comes to rest" at_rest
+xdotool windowsize --sync "$window" "$width" "$height"
+until_true "a window of $size" has_size
+stop empty
+
+# By the browser: a path as one types it, the rest completed and chosen.
+xdotool key ctrl+o
+until_true "Ctrl+O to open the browser" other_than empty.png
+xdotool type --delay 10 "$(dirname "$recording")/"
+sleep 0.5
+xdotool type --delay 10 "$name"
+stop browser
+xdotool key Return
+until_true "the recording chosen in the browser to be opened" opened "$name"
+stop opened
+
+# Each menu opens by a click, Esc shuts it and nothing else; a letter is no shortcut meanwhile.
+mouse_to $((width * 3 / 4)) $((height - 8))
+stop shut
+for menu in 30 80 130 180; do
+  mouse_to "$menu" 13
+  xdotool click 1
+  until_true "a click at $menu to open a menu" other_than shut.png
+  stop "menu-$menu"
+  key c r
+  key Escape
+  mouse_to $((width * 3 / 4)) $((height - 8))
+  until_true "Esc to shut the menu at $menu, and letters to do nothing meanwhile" same_as shut.png
+done
+
+# Lines between the parts.
+drag 292 300 392 300
+expect "the column dragged by 100" 386 398 division column_px
+stop column
+mouse_to 392 300
+xdotool click --repeat 2 --delay 60 1
+expect "a double click to give the column its own width" 0 0 division column_px
+
+# The window's end on the time line, from frame 30 to some 20; then back.
+frames=$(state now.json settings frames)
+count=60
+left=192 right=$((width - 160)) y=$((height - 26 - 76 + 26))
+x=$((left + (right - left) * frames / count))
+drag "$x" "$y" $((left + (right - left) * 20 / count)) "$y"
+until_true "the shorter window to be inspected" opened "$name"
+expect "the window's end dragged" 18 22 settings frames
+stop time-line
+key --window "$window" ctrl+z
+until_true "the window to be inspected again" opened "$name"
+expect "Ctrl+Z to give the window its frames back" "$frames" "$frames" settings frames
+
+# Frames by the time line.
+mouse_to $((left + (right - left) * 81 / 120)) "$y"
+xdotool click 1
+expect "a click on the time line to go to frame 40" 39 41 frame
+
+# Commands typed fast, at most fifty bookmarks before they are counted.
+for batch in $(seq 1 $(((commands + 99) / 100))); do
+  for i in $(seq 0 49); do
+    [ $((100 * (batch - 1) + 2 * i)) -lt "$commands" ] || break
+    type_command "frame $i"
+    type_command "bookmark /c$batch n$i.mp4"
+    marks=$((i + 1))
+  done
+  save
+  typed=$(grep -c "\"note\": \"/c$batch n" now.json)
+  [ "$typed" = "$marks" ] || fail "$marks bookmarks of as many commands typed, not $typed"
+done
+stop typed
+
+# A file dropped from another program.
+/usr/bin/python3 "$here/drop_file.py" "$window" "$other" || fail "the window to take what is dropped on it"
+until_true "what was dropped to be opened" opened "$(basename "$other")"
+stop dropped
+
+key ctrl+q
+wait "$pid"
