@@ -28,6 +28,12 @@ std::string seen(const SelfCalibration& calibration) {
       lens.moved);
 }
 
+std::string readout(const PlaneLens& lens) {
+  return fmt::format("{:10.3f} +- {:.3f} of the time from frame to frame, first row to last",
+                     lens.lens[kReadout],
+                     lens.sigma[kReadout]);
+}
+
 std::vector<std::string> warnings(const SelfCalibration& calibration) {
   const PlaneLens& lens = calibration.lens;
   std::vector<std::string> all = lens.warnings;
@@ -46,6 +52,7 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
                                  source,
                                  calibration.lens.rms_px,
                                  seen(calibration));
+  text += fmt::format("# {}: {}\n", kLensNames[kReadout], readout(calibration.lens));
   for (const std::string& warning : warnings(calibration))
     text += fmt::format("# warning: {}\n", warning);
   const auto list = [](const std::vector<double>& values, std::size_t from, int digits) {
@@ -81,6 +88,7 @@ std::string to_text(const SelfCalibration& calibration) {
   for (std::size_t k = 0; k < camera.coefficients.size(); ++k)
     text += row(kLensNames[4 + k],
                 fmt::format("{:10.5f} +- {:.5f}", camera.coefficients[k], camera.sigmas[4 + k]));
+  text += row(kLensNames[kReadout], readout(lens));
   for (const std::string& warning : warnings(calibration)) text += row("warning", warning);
   return text;
 }

@@ -31,7 +31,7 @@ LensVector lens_of(const Camera& camera) {
   lens << 0.5 * std::log(camera.fx * camera.fy / camera.width / camera.width),
       std::log(camera.fy / camera.fx), (camera.cx - 0.5 * (camera.width - 1)) / camera.width,
       (camera.cy - 0.5 * (camera.height - 1)) / camera.width, coefficient(0), coefficient(1),
-      coefficient(2), coefficient(3);
+      coefficient(2), coefficient(3), 0;
   return lens;
 }
 
@@ -58,7 +58,7 @@ SightErrors sight_errors(const std::vector<SightedPlane>& planes,
       const PlaneSight& sight = planes[p].sights[i];
       Eigen::VectorXd lengths(sight.raw_px.cols());
       for (Eigen::Index k = 0; k < lengths.size(); ++k) {
-        const SightError error(sight.raw_px.col(k), width, height);
+        const SightError error(sight, k, width, height);
         Eigen::Vector2d e;
         const bool in_front = error(adjustment.lens.data(),
                                     adjustment.planes[p].poses[i].data(),

@@ -11,7 +11,6 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// (value - mean) * weight, of each unknown of a block.
@@ -99,7 +98,7 @@ PlaneProblem::PlaneProblem(const std::vector<SightedPlane>& planes,
   free_blocks_.push_back(unknowns_.lens.data());
   if (options.holds_distortion)
     problem_.SetManifold(unknowns_.lens.data(),
-                         new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7}));
+                         new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7, kReadout}));
   const LensVector weights = options.prior_px * prior.sigma.cwiseInverse();
   problem_.AddResidualBlock(
       new ceres::AutoDiffCostFunction<PriorError<kLensUnknowns>, kLensUnknowns, kLensUnknowns>(
@@ -120,10 +119,9 @@ void PlaneProblem::add_sights(const std::vector<SightedPlane>& planes, int width
       const PlaneSight& sight = planes[p].sights[i];
       double* const pose = unknowns_.planes[p].poses[i].data();
       for (std::size_t k = 0; k < sight.points.size(); ++k) {
-        const Vector2d raw_px = sight.raw_px.col(static_cast<Eigen::Index>(k));
         problem_.AddResidualBlock(
             new ceres::AutoDiffCostFunction<SightError, 2, kLensUnknowns, 6, 3>(
-                new SightError(raw_px, width, height)),
+                new SightError(sight, static_cast<Eigen::Index>(k), width, height)),
             loss,
             unknowns_.lens.data(),
             pose,

@@ -16,8 +16,11 @@ namespace gpo {
 /// Where the lens puts a plane's point, less where it was seen [px] (engine/method.md, 19).
 class SightError {
  public:
-  SightError(const Eigen::Vector2d& raw_px, int width, int height)
-      : raw_px_(raw_px), width_(width), height_(height) {}
+  SightError(const PlaneSight& sight, Eigen::Index column, int width, int height)
+      : raw_px_(sight.raw_px.col(column)),
+        read_px_(((raw_px_.y() + 0.5) / height - 0.5) * sight.flow_px.col(column)),
+        width_(width),
+        height_(height) {}
 
   template <typename T>
   bool operator()(const T* lens, const T* pose, const T* point, T* error) const {
@@ -35,13 +38,16 @@ class SightError {
     const T across = 2.0 * x * y;
     const T x_bent = bend * x + lens[6] * across + lens[7] * (r2 + 2.0 * x * x);
     const T y_bent = bend * y + lens[6] * (r2 + 2.0 * y * y) + lens[7] * across;
-    error[0] = fx * x_bent + 0.5 * (width_ - 1) + width_ * lens[2] - raw_px_.x();
-    error[1] = fy * y_bent + 0.5 * (height_ - 1) + width_ * lens[3] - raw_px_.y();
+    error[0] = fx * x_bent + 0.5 * (width_ - 1) + width_ * lens[2] + lens[kReadout] * read_px_.x() -
+               raw_px_.x();
+    error[1] = fy * y_bent + 0.5 * (height_ - 1) + width_ * lens[3] +
+               lens[kReadout] * read_px_.y() - raw_px_.y();
     return true;
   }
 
  private:
   Eigen::Vector2d raw_px_;
+  Eigen::Vector2d read_px_;  ///< how far it goes until its row is read, by a readout of 1
   double width_;
   double height_;
 };

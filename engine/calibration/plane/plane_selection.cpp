@@ -27,7 +27,10 @@ PlaneSight part_of(const PlaneSight& sight, const Predicate& is_kept) {
     columns.push_back(k);
     points.push_back(sight.points[k]);
   }
-  return {sight.frame, std::move(points), sight.raw_px(Eigen::all, columns).eval()};
+  return {sight.frame,
+          std::move(points),
+          sight.raw_px(Eigen::all, columns),
+          sight.flow_px(Eigen::all, columns)};
 }
 
 PlaneSight emptied(const PlaneSight& sight) { return {sight.frame, {}, Eigen::Matrix2Xd(2, 0)}; }

@@ -14,6 +14,8 @@ struct PlaneSight {
   int frame = 0;            ///< counts in the recording
   std::vector<int> points;  ///< numbers of the plane's points, ascending
   Eigen::Matrix2Xd raw_px;  ///< one column each
+  /// How far each one goes from frame to frame [px], one column each; 0 where nobody knows.
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Zero(2, raw_px.cols());
 };
 
 /// A plane whose points are at unknown places on it, and all pictures that show some of them.

@@ -11,6 +11,7 @@
 #include "engine/geometry/homography.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <thread>
 
@@ -165,6 +166,24 @@ void append(const std::vector<Matrix2Xd>& found,
   plane.points += static_cast<int>(found.front().cols());
 }
 
+/// How far a sight's points go from frame to frame, by the chain's homographies to the frames
+/// before and after it.
+Matrix2Xd flow_of(const PlaneSight& sight, const PlaneChain& chain, const Camera& camera) {
+  Matrix2Xd flow_px = Matrix2Xd::Zero(2, sight.raw_px.cols());
+  const auto here = chain.H_i_first.find(sight.frame);
+  const auto before = here == chain.H_i_first.begin() ? here : std::prev(here);
+  const auto after = std::next(here) == chain.H_i_first.end() ? here : std::next(here);
+  const Matrix3d H_before = before->second * here->second.inverse();
+  const Matrix3d H_after = after->second * here->second.inverse();
+  for (Eigen::Index k = 0; k < flow_px.cols(); ++k) {
+    const Eigen::Vector3d p = undistort(camera, sight.raw_px.col(k)).homogeneous();
+    const Vector2d way_px = distort(camera, (H_after * p).hnormalized()) -
+                            distort(camera, (H_before * p).hnormalized());
+    if (way_px.allFinite()) flow_px.col(k) = way_px / std::max(1, after->first - before->first);
+  }
+  return flow_px;
+}
+
 }  // namespace
 
 SightedPlane linked_sights(const ChainPictures& pictures,
@@ -198,6 +217,7 @@ SightedPlane linked_sights(const ChainPictures& pictures,
                                           pictures.stop);
               });
   for (const auto& of_reference : found) append(of_reference, samples, plane);
+  for (PlaneSight& sight : plane.sights) sight.flow_px = flow_of(sight, chain, camera);
   return plane;
 }
 

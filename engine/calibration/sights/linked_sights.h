@@ -21,7 +21,7 @@ struct LinkOptions {
 
 /// The points of a chain's references, looked for in pictures all over the chain: by their own
 /// looks, where the homography from their reference puts them, so that one plane with one set of
-/// points is seen from everywhere.
+/// points is seen from everywhere. How far they go from frame to frame, the chain tells.
 SightedPlane linked_sights(const ChainPictures& pictures,
                            const PlaneChain& chain,
                            const Camera& camera,

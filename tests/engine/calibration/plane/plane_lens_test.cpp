@@ -123,6 +123,29 @@ TEST(PlaneLens, FindsUnlikeLensesWithinStandardDeviationsThatTellTheErrors) {
   }
 }
 
+TEST(PlaneLens, ARollingShutterIsNoBendOfTheLens) {
+  double squares = 0;
+  double unknown_squares = 0;
+  constexpr int kSeeds = 6;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const SimulatedSights options{.points = 120, .pictures = 24, .half_m = 0.9, .readout = 0.7};
+    auto scene = simulate_sights(options, seed);
+    LensVector truth = lens_of(options.camera);
+    truth[kReadout] = options.readout;
+    const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
+    ASSERT_TRUE(found.ok) << found.reason;
+    const LensVector errors = found.lens - truth;
+    EXPECT_LT(errors.cwiseQuotient(found.sigma).cwiseAbs().maxCoeff(), 4) << seed;
+    EXPECT_NEAR(found.lens[kReadout], options.readout, 0.02) << seed;
+    squares += errors[0] * errors[0];
+    for (PlaneSight& sight : scene.plane.sights) sight.flow_px.setZero();
+    const auto unknown = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
+    unknown_squares += std::pow(unknown.lens[0] - truth[0], 2);
+    EXPECT_TRUE(unknown.prior_only[kReadout]);
+  }
+  EXPECT_LT(squares, 0.05 * unknown_squares);
+}
+
 TEST(PlaneLens, AnUnevenPlaneIsNoNoiseOfItsPoints) {
   // Waves of 4 mm, seen from 1 m, move points by a pixel as the camera goes around them.
   const SimulatedSights options{

@@ -9,6 +9,8 @@
 namespace gpo {
 namespace {
 
+constexpr int kFramesASight = 4;
+
 /// A smooth way of a hand: harmonics of seeded amplitudes and phases, within -1 to 1.
 class Wander {
  public:
@@ -67,31 +69,48 @@ SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t see
   const Wander slant_x(random), slant_y(random), roll(random), x(random), y(random), z(random);
   SimulatedScene scene;
   scene.plane.points = options.points;
-  for (int i = 0; i < options.pictures; ++i) {
-    const double t = static_cast<double>(i) / options.pictures;
+  const double frame_step = 1.0 / (kFramesASight * options.pictures);
+  const auto pose_at = [&](double t) -> Pose {
     const double slant = radians(options.slant_deg);
     // Looks along +z from z < 0; the shared tilt leans the camera, its own slants come on top.
     const Eigen::Matrix3d R_wc =
         so3_exp({radians(options.kept_tilt_deg) + slant * slant_x(t), slant * slant_y(t), 0}) *
         so3_exp({0, 0, 0.4 * roll(t)});
     const Eigen::Vector3d looked_at(options.moves_m * x(t), options.moves_m * y(t), 0);
-    const Pose pose{R_wc, looked_at - (1 + 0.3 * options.moves_m * z(t)) * R_wc.col(2)};
-    PlaneSight sight{4 * i, {}, {}};
-    std::vector<Eigen::Vector2d> seen;
+    return {R_wc, looked_at - (1 + 0.3 * options.moves_m * z(t)) * R_wc.col(2)};
+  };
+  for (int i = 0; i < options.pictures; ++i) {
+    const double t = static_cast<double>(i) / options.pictures;
+    const Pose pose = pose_at(t);
+    const Pose before = pose_at(t - frame_step), after = pose_at(t + frame_step);
+    PlaneSight sight{kFramesASight * i, {}, {}};
+    std::vector<Eigen::Vector2d> seen, flows;
     for (int j = 0; j < options.points; ++j) {
       const Eigen::Vector3d p = to_camera(pose, points.col(j));
       if (p.z() < 0.05) continue;
       Eigen::Vector2d px = project(camera, p);
       if (!px.allFinite()) continue;
+      const Eigen::Vector2d flow = 0.5 * (project(camera, to_camera(after, points.col(j))) -
+                                          project(camera, to_camera(before, points.col(j))));
+      // The camera reads a row later, where the point has gone on to another row.
+      for (int pass = 0; options.readout != 0 && pass < 3; ++pass) {
+        const double later = options.readout * ((px.y() + 0.5) / camera.height - 0.5);
+        px = project(camera, to_camera(pose_at(t + later * frame_step), points.col(j)));
+      }
       px += offsets.col(j) + options.noise_px * Eigen::Vector2d(normal(random), normal(random));
       if (uniform(random) > 1 - 2 * options.outliers)
         px += 20 * Eigen::Vector2d(uniform(random), uniform(random));
       if (px.minCoeff() < 0 || px.x() > camera.width - 1 || px.y() > camera.height - 1) continue;
       sight.points.push_back(j);
       seen.push_back(px);
+      flows.push_back(flow);
     }
     sight.raw_px.resize(2, std::ssize(seen));
-    for (std::size_t k = 0; k < seen.size(); ++k) sight.raw_px.col(k) = seen[k];
+    sight.flow_px.resize(2, std::ssize(seen));
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      sight.raw_px.col(k) = seen[k];
+      sight.flow_px.col(k) = flows[k];
+    }
     scene.plane.sights.push_back(std::move(sight));
     scene.poses.push_back(pose);
   }

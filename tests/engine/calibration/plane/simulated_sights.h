@@ -23,6 +23,7 @@ struct SimulatedSights {
   double noise_px = 0.3;
   double track_noise_px = 0;  ///< the same in all pictures of a point
   double unevenness_m = 0;    ///< heights of the plane's waves, at most
+  double readout = 0;         ///< of the time from frame to frame, see LensPrior
   double outliers = 0;        ///< share of the observations, up to 20 px off
 };
 
