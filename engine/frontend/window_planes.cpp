@@ -104,16 +104,20 @@ class Judge {
 /// For each pair the others, the nearest quarter of them in the reference picture.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
-  const int size = std::max(3, n / 4);
+  const int size = std::min(std::max(3, n / 4), n - 1);
+  // Distances lie beside the numbers that are sorted by them, thousands of times.
+  struct Other {
+    double square_px2;
+    int number;
+  };
+  std::vector<Other> others(n - 1);
   std::vector<std::vector<int>> near(n);
   for (int k = 0; k < n; ++k) {
-    const ArrayXd distance =
-        (pairs.from.colwise() - pairs.from.col(k)).colwise().squaredNorm().transpose();
-    near[k] = numbers_below(n);
-    std::erase(near[k], k);
-    const auto closer = [&](int a, int b) { return distance[a] < distance[b]; };
-    std::ranges::nth_element(near[k], near[k].begin() + std::min(size, n - 2), closer);
-    near[k].resize(std::min(size, n - 1));
+    for (int j = 0, at = 0; j < n; ++j)
+      if (j != k) others[at++] = {(pairs.from.col(j) - pairs.from.col(k)).squaredNorm(), j};
+    const auto nearest = others.begin() + std::min(size, n - 2);
+    std::ranges::nth_element(others, nearest, {}, &Other::square_px2);
+    for (int j = 0; j < size; ++j) near[k].push_back(others[j].number);
   }
   return near;
 }

@@ -26,6 +26,11 @@ Matrix3d normalization(const Matrix2Xd& x) {
   return T;
 }
 
+/// A point moved so: no more than a product and a sum.
+Vector2d normalized(const Matrix3d& T, const Vector2d& x) {
+  return T(0, 0) * x + T.topRightCorner<2, 1>();
+}
+
 /// sum w Q (x) x x^T over points, Q = [1 0 -u; 0 1 -v; -u -v u^2 + v^2]: the squares of
 /// p - pi(H x) weighted, over the rows of H, to first order; with w = 1 those of the direct linear
 /// transform's two rows, (x, 0, -u x) and (0, x, -v x).
@@ -60,7 +65,7 @@ std::optional<Matrix3d> fit_homography(const Matrix2Xd& from, const Matrix2Xd& t
   const Matrix3d T_to = normalization(to);
   LinearForm form;
   for (Eigen::Index j = 0; j < from.cols(); ++j)
-    form.add(T_from * from.col(j).homogeneous(), transfer(T_to, to.col(j)), 1);
+    form.add(normalized(T_from, from.col(j)).homogeneous(), normalized(T_to, to.col(j)), 1);
   const SymmetricEigen eigen = symmetric_eigen(form.matrix());
   if (!(eigen.values(1) > 1e-12 * eigen.values(8))) return std::nullopt;
   const Eigen::VectorXd h = eigen.vectors.col(0);
@@ -92,10 +97,10 @@ Matrix3d refine_homography(const Matrix3d& H_start, const Matrix2Xd& from, const
     LinearForm form;
     Matrix3d gradient = Matrix3d::Zero();
     for (Eigen::Index j = 0; j < from.cols(); ++j) {
-      const Vector3d x = T_from * from.col(j).homogeneous();
+      const Vector3d x = normalized(T_from, from.col(j)).homogeneous();
       const Vector3d y = H * x;
       const Vector2d p = y.hnormalized();
-      const Vector2d r = p - transfer(T_to, to.col(j));
+      const Vector2d r = p - normalized(T_to, to.col(j));
       form.add(x, p, 1 / (y.z() * y.z()));
       gradient += Vector3d(r.x(), r.y(), -p.dot(r)) * x.transpose() / y.z();
     }

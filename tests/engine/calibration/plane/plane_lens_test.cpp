@@ -126,7 +126,7 @@ TEST(PlaneLens, FindsUnlikeLensesWithinStandardDeviationsThatTellTheErrors) {
 TEST(PlaneLens, ARollingShutterIsNoBendOfTheLens) {
   double squares = 0;
   double unknown_squares = 0;
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 3;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const SimulatedSights options{.points = 120, .pictures = 24, .half_m = 0.9, .readout = 0.7};
     auto scene = simulate_sights(options, seed);
