@@ -269,30 +269,35 @@ void bind_status(py::module_& module) {
       });
 }
 
-void bind_live(py::module_& module) {
+py::class_<Initializer> live_class(py::module_& module) {
   const LiveOptions usual;
-  py::class_<Initializer>(
+  py::class_<Initializer> live(
       module,
       "Initializer",
       "A window that grows with each frame until it is fit to initialize from. With background "
-      "(the default) windows are solved on a thread of its own and add_frame returns at once.")
-      .def(
-          py::init([](const CameraOrK& camera,
-                      const std::optional<py::dict>& gyroscope,
-                      bool background,
-                      int most_frames,
-                      int least_tracks,
-                      double least_share,
-                      const py::kwargs& given) {
-            return initializer_of(
-                camera, gyroscope, {{}, background, most_frames, least_tracks, least_share}, given);
-          }),
-          py::arg("camera"),
-          py::arg("gyroscope") = py::none(),
-          py::arg("background") = usual.background,
-          py::arg("most_frames") = usual.most_frames,
-          py::arg("least_tracks") = usual.least_tracks,
-          py::arg("least_share") = usual.least_share)
+      "(the default) windows are solved on a thread of its own and add_frame returns at once.");
+  live.def(
+      py::init([](const CameraOrK& camera,
+                  const std::optional<py::dict>& gyroscope,
+                  bool background,
+                  int most_frames,
+                  int least_tracks,
+                  double least_share,
+                  const py::kwargs& given) {
+        return initializer_of(
+            camera, gyroscope, {{}, background, most_frames, least_tracks, least_share}, given);
+      }),
+      py::arg("camera"),
+      py::arg("gyroscope") = py::none(),
+      py::arg("background") = usual.background,
+      py::arg("most_frames") = usual.most_frames,
+      py::arg("least_tracks") = usual.least_tracks,
+      py::arg("least_share") = usual.least_share);
+  return live;
+}
+
+void bind_live(py::module_& module) {
+  live_class(module)
       .def(
           "add_gyroscope",
           [](Initializer& live, std::int64_t timestamp_ns, const Numbers& rate_rad_s) {

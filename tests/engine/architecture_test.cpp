@@ -123,7 +123,8 @@ const Names kLibrariesOfPicturesAndFiles = {"opencv2/",
 /// The engine needs no screen and no command line.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 
-constexpr int kMostLines = 400;  // of a file that fits in a head
+constexpr int kMostLines = 400;           // of a file that fits in a head
+constexpr int kMostLinesOfFunction = 60;  // that fits on a screen
 
 struct Include {
   std::string from;  ///< a file, from the top of the tree
@@ -242,20 +243,48 @@ TEST(Architecture, TheEngineNeedsNoScreen) {
   EXPECT_THAT(using_libraries(tree(), {"engine/"}, kLibrariesOfWindows), IsEmpty());
 }
 
-TEST(Architecture, NoFileIsTooLongToRead) {
-  std::map<std::string, int> long_ones;
+/// The lines of each source.
+std::map<std::string, Names> lines_of_tree() {
+  std::map<std::string, Names> all;
+  const std::filesystem::path root(GPO_SOURCE_DIR);
   for (const char* top : {"app", "engine", "ui", "tests"}) {
-    for (const auto& entry :
-         std::filesystem::recursive_directory_iterator(std::string(GPO_SOURCE_DIR) + "/" + top)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
       const auto extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp") continue;
       std::ifstream file(entry.path());
-      const auto lines = static_cast<int>(
-          std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
-      if (lines > kMostLines) long_ones[entry.path().filename().string()] = lines;
+      Names& lines = all[entry.path().lexically_relative(root)];
+      for (std::string line; std::getline(file, line);) lines.push_back(line);
     }
   }
+  return all;
+}
+
+/// The longest function: from the last line that is not indented to a brace that is not, either.
+int longest_function(const Names& lines) {
+  int longest = 0, head = 0;
+  for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
+    if (lines[i] == "}") longest = std::max(longest, i - head + 1);
+    if (!lines[i].empty() && std::string(" }/#)").find(lines[i][0]) == std::string::npos) head = i;
+  }
+  return longest;
+}
+
+TEST(Architecture, NoFileIsTooLongToRead) {
+  std::map<std::string, std::size_t> long_ones;
+  for (const auto& [file, lines] : lines_of_tree())
+    if (lines.size() > kMostLines) long_ones[file] = lines.size();
   EXPECT_THAT(long_ones, IsEmpty());
+}
+
+TEST(Architecture, NoFunctionIsTooLongForAScreen) {
+  std::set<std::string> long_ones;
+  for (const auto& [file, lines] : lines_of_tree())
+    if (longest_function(lines) > kMostLinesOfFunction) long_ones.insert(file);
+  // Two loops that the compiler is to see as a whole, and a table.
+  EXPECT_THAT(long_ones,
+              testing::ElementsAre("engine/frontend/tracking/look_kernel.cpp",
+                                   "engine/initializers/plane/plane_kernel.cpp",
+                                   "tests/app/layouts_test.cpp"));
 }
 
 // What the tests above would say of a tree that is not in order.

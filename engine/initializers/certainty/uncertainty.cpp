@@ -109,6 +109,48 @@ std::vector<SolutionMove> all_moves(const Window& window,
   return moves;
 }
 
+using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
+
+/// What neighboring tracks have wrong together, of each plane's normal, beyond its share of `flat`.
+OfPlanes beyond(OfPlanes neighbors, const SharedMatrix& flat) {
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const int at = UnknownsLayout::of_plane(static_cast<int>(k));
+    if (neighbors[k]) *neighbors[k] -= flat.block<2, 2>(at, at);
+  }
+  return neighbors;
+}
+
+/// Covariances of all planes' normals and distances: what noise leaves, what neighbors share, and
+/// how the planes bend. A bias that is held is wrong and bends what is flat; it has its own share
+/// already.
+void add_planes(const PlaneObservations& observations,
+                const PlaneMotion& motion,
+                const SharedMatrix& covariance,
+                const OfPlanes& neighbors,
+                bool holds_bias,
+                Uncertainty& result) {
+  const auto bent = [&](const Eigen::Matrix2d& flat, int plane) -> Eigen::Matrix2d {
+    if (holds_bias) return flat;
+    if (neighbors[plane] && plane == 0)
+      result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[plane]->trace()));
+    const Eigen::Matrix2d all = flat + neighbors[plane].value_or(Eigen::Matrix2d::Zero());
+    const auto bend = bend_of(observations, motion, plane, result.sigma_px);
+    if (bend && plane == 0) result.bend_sigma_deg = degrees(std::sqrt(bend->trace()));
+    return bend ? Eigen::Matrix2d(all + *bend) : all;
+  };
+  const auto tangents = normal_tangents(motion.normal);
+  result.normal_covariance =
+      tangents * bent(covariance.topLeftCorner<2, 2>(), 0) * tangents.transpose();
+  result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
+  for (std::size_t k = 0; k < motion.others.size(); ++k) {
+    const int at = UnknownsLayout::of_plane(static_cast<int>(k) + 1);
+    const auto N = normal_tangents(motion.others[k].m.normalized());
+    const Eigen::Matrix2d of_normal = bent(covariance.block<2, 2>(at, at), static_cast<int>(k) + 1);
+    result.others.push_back(
+        {N * of_normal * N.transpose(), std::sqrt(std::max(0.0, covariance(at + 2, at + 2)))});
+  }
+}
+
 }  // namespace
 
 std::optional<Uncertainty> uncertainty_of(const Window& window,
@@ -128,14 +170,11 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   const double unknowns = inverse->rows() + own_size(model, motion) * (frames - 1.0);
   const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
   Spread spread = spread_of(window, observations, motion, bread, *inverse, degrees_of_freedom);
-  std::vector<std::optional<Eigen::Matrix2d>> neighbors(observations.others.size() + 1);
+  OfPlanes neighbors(observations.others.size() + 1);
   if (!holds_bias)
-    neighbors =
-        neighbors_spread(window, observations, motion, model, linearized->sigma_px, spread.shared);
-  for (std::size_t k = 0; k < neighbors.size(); ++k) {
-    const int at = UnknownsLayout::of_plane(static_cast<int>(k));
-    if (neighbors[k]) *neighbors[k] -= spread.shared.block<2, 2>(at, at);
-  }
+    neighbors = beyond(
+        neighbors_spread(window, observations, motion, model, linearized->sigma_px, spread.shared),
+        spread.shared);
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   add_lens(window, observations, motion, bread, *inverse, spread);
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
@@ -148,27 +187,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   result.tracks = tracks_of(observations);
   if (!window.lens_moves_px.empty())
     result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
-  // A bias that is held is wrong and bends what is flat; it has its own share already.
-  const auto bent = [&](const Eigen::Matrix2d& flat, int plane) -> Eigen::Matrix2d {
-    if (holds_bias) return flat;
-    if (neighbors[plane] && plane == 0)
-      result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[plane]->trace()));
-    const Eigen::Matrix2d all = flat + neighbors[plane].value_or(Eigen::Matrix2d::Zero());
-    const auto bend = bend_of(observations, motion, plane, linearized->sigma_px);
-    if (bend && plane == 0) result.bend_sigma_deg = degrees(std::sqrt(bend->trace()));
-    return bend ? Eigen::Matrix2d(all + *bend) : all;
-  };
-  const auto tangents = normal_tangents(motion.normal);
-  result.normal_covariance =
-      tangents * bent(covariance.topLeftCorner<2, 2>(), 0) * tangents.transpose();
-  result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
-  for (std::size_t k = 0; k < motion.others.size(); ++k) {
-    const int at = UnknownsLayout::of_plane(static_cast<int>(k) + 1);
-    const auto N = normal_tangents(motion.others[k].m.normalized());
-    const Eigen::Matrix2d of_normal = bent(covariance.block<2, 2>(at, at), static_cast<int>(k) + 1);
-    result.others.push_back(
-        {N * of_normal * N.transpose(), std::sqrt(std::max(0.0, covariance(at + 2, at + 2)))});
-  }
+  add_planes(observations, motion, covariance, neighbors, holds_bias, result);
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < frames; ++i) add_frame(motion, i, bread.frames[i], spread, result);

@@ -119,6 +119,24 @@ ordered_json optional_matrix_json(const std::optional<Eigen::Matrix3d>& matrix) 
   return matrix ? matrix_json(*matrix) : ordered_json(nullptr);
 }
 
+ordered_json solver_json(const SolverReport& solver) {
+  return {{"iterations", solver.iterations},
+          {"initial_cost", solver.initial_cost},
+          {"final_cost", solver.final_cost},
+          {"unknowns", solver.unknowns},
+          {"residuals", solver.residuals},
+          {"termination", to_string(solver.termination)}};
+}
+
+ordered_json timing_json(const Timing& timing) {
+  return {{"track", timing.track},
+          {"ransac", timing.ransac},
+          {"rotations", timing.rotations},
+          {"initialize", timing.initialize},
+          {"optimize", timing.optimize},
+          {"total", timing.total}};
+}
+
 /// The window's planes, the leading one first; without normal and distance where the method failed,
 /// or the cameras do not tell them.
 ordered_json planes_json(const Inspection& inspection) {
@@ -301,8 +319,6 @@ ordered_json value_json(const SettingValue& value) {
 ordered_json to_json(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
-  const SolverReport& solver = result.solver;
-  const Timing& t = inspection.timing;
   ordered_json json;
   json["recording"] = inspection.recording->path.string();
   const Camera& camera = inspection.recording->camera;
@@ -346,18 +362,8 @@ ordered_json to_json(const Inspection& inspection) {
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
   if (result.refused) json["refused"] = refused_json(inspection);
   if (!result.dropped.empty()) json["dropped"] = dropped_json(inspection);
-  json["solver"] = {{"iterations", solver.iterations},
-                    {"initial_cost", solver.initial_cost},
-                    {"final_cost", solver.final_cost},
-                    {"unknowns", solver.unknowns},
-                    {"residuals", solver.residuals},
-                    {"termination", to_string(solver.termination)}};
-  json["timing_ms"] = {{"track", t.track},
-                       {"ransac", t.ransac},
-                       {"rotations", t.rotations},
-                       {"initialize", t.initialize},
-                       {"optimize", t.optimize},
-                       {"total", t.total}};
+  json["solver"] = solver_json(result.solver);
+  json["timing_ms"] = timing_json(inspection.timing);
   if (inspection.truth) json["truth"] = truth_json(*inspection.truth);
   if (inspection.evaluation) json["metrics"] = metrics_json(*inspection.evaluation);
   return json;

@@ -70,17 +70,16 @@ SimulatedMotion simulated_motion(Pace pace, unsigned seed) {
   return motion;
 }
 
-SimulatedAlignment simulated_alignment(
-    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
-  const SimulatedMotion motion = simulated_motion(pace, seed);
-  Dice dice{std::mt19937(seed + 77777), {}};
-  SimulatedAlignment made;
-  made.T_body_camera = {so3_exp(dice.uniform(-1, 1)), Vector3d(0.02, -0.06, 0.01)};
-  made.accelerometer_bias = noise * sensor.accelerometer_bias_sigma * dice.gaussian();
-  const Vector3d gyro_bias = 0.02 * dice.gaussian();
-  made.options.bias_sigma_m_s2 = sensor.accelerometer_bias_sigma;
-  made.options.noise_density = sensor.accelerometer_density;
+namespace {
 
+/// What gyroscope and accelerometer measure, from a little before to a little after.
+void add_samples(const SimulatedMotion& motion,
+                 const SimulatedSensor& sensor,
+                 double seconds,
+                 double noise,
+                 const Vector3d& gyro_bias,
+                 Dice& dice,
+                 SimulatedAlignment& made) {
   Gyroscope& gyro = made.gyroscope;
   gyro.file = "simulated.csv";
   gyro.R_gyro_camera = made.T_body_camera.R_wc;
@@ -97,6 +96,21 @@ SimulatedAlignment simulated_alignment(
             (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
         made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
   }
+}
+
+}  // namespace
+
+SimulatedAlignment simulated_alignment(
+    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
+  const SimulatedMotion motion = simulated_motion(pace, seed);
+  Dice dice{std::mt19937(seed + 77777), {}};
+  SimulatedAlignment made;
+  made.T_body_camera = {so3_exp(dice.uniform(-1, 1)), Vector3d(0.02, -0.06, 0.01)};
+  made.accelerometer_bias = noise * sensor.accelerometer_bias_sigma * dice.gaussian();
+  const Vector3d gyro_bias = 0.02 * dice.gaussian();
+  made.options.bias_sigma_m_s2 = sensor.accelerometer_bias_sigma;
+  made.options.noise_density = sensor.accelerometer_density;
+  add_samples(motion, sensor, seconds, noise, gyro_bias, dice, made);
 
   const int frames = static_cast<int>(seconds * kFrameRate_hz) + 1;
   const Vector3d lever =
@@ -133,9 +147,9 @@ SimulatedAlignment simulated_alignment(
     made.poses.cameras.push_back(pose);
   }
   // The rotations are the gyroscope's with the bias that was found.
-  const Matrix3d& R_gc = gyro.R_gyro_camera;
+  const Matrix3d& R_gc = made.gyroscope.R_gyro_camera;
   const auto turned =
-      imu_intervals(gyro, made.poses.times_ns, 0, *made.poses.bias_rad_s, {}).between;
+      imu_intervals(made.gyroscope, made.poses.times_ns, 0, *made.poses.bias_rad_s, {}).between;
   const std::vector<InertialFrame> path = inertial_path(turned, R_gc.transpose());
   for (int i = 0; i < frames; ++i) made.poses.cameras[i].R_wc = path[i].R * R_gc;
   made.poses.covariance = shared_sigma * shared_sigma * by_shared * by_shared.transpose();

@@ -51,6 +51,50 @@ void raise(Eigen::Matrix3Xd& points, double most_m, std::mt19937_64& random) {
   }
 }
 
+/// A hand-held camera's way past the plane; time from 0 to 1.
+class Way {
+ public:
+  Way(const SimulatedSights& options, std::mt19937_64& random)
+      : options_(options),
+        slant_x_(random),
+        slant_y_(random),
+        roll_(random),
+        x_(random),
+        y_(random),
+        z_(random) {}
+
+  /// Looks along +z from z < 0; the shared tilt leans the camera, its own slants come on top.
+  Pose pose_at(double t) const {
+    const double slant = radians(options_.slant_deg);
+    const Eigen::Matrix3d R_wc =
+        so3_exp({radians(options_.kept_tilt_deg) + slant * slant_x_(t), slant * slant_y_(t), 0}) *
+        so3_exp({0, 0, 0.4 * roll_(t)});
+    const Eigen::Vector3d looked_at(options_.moves_m * x_(t), options_.moves_m * y_(t), 0);
+    return {R_wc, looked_at - (1 + 0.3 * options_.moves_m * z_(t)) * R_wc.col(2)};
+  }
+  Eigen::Vector2d pixel_at(double t, const Eigen::Vector3d& point) const {
+    return project(options_.camera, to_camera(pose_at(t), point));
+  }
+  /// The camera reads a row later, where the point has gone on to another row.
+  Eigen::Vector2d read_at(double t, const Eigen::Vector3d& point) const {
+    Eigen::Vector2d px = pixel_at(t, point);
+    for (int pass = 0; options_.readout != 0 && pass < 3; ++pass) {
+      const double later = options_.readout * ((px.y() + 0.5) / options_.camera.height - 0.5);
+      px = pixel_at(t + later * frame_step(), point);
+    }
+    return px;
+  }
+  Eigen::Vector2d flow_at(double t, const Eigen::Vector3d& point) const {
+    return 0.5 * (pixel_at(t + frame_step(), point) - pixel_at(t - frame_step(), point));
+  }
+
+ private:
+  double frame_step() const { return 1.0 / (kFramesASight * options_.pictures); }
+
+  const SimulatedSights& options_;
+  Wander slant_x_, slant_y_, roll_, x_, y_, z_;
+};
+
 }  // namespace
 
 SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t seed) {
@@ -66,44 +110,25 @@ SimulatedScene simulate_sights(const SimulatedSights& options, std::uint64_t see
         options.track_noise_px * normal(random);
   }
   if (options.unevenness_m > 0) raise(points, options.unevenness_m, random);
-  const Wander slant_x(random), slant_y(random), roll(random), x(random), y(random), z(random);
+  const Way way(options, random);
   SimulatedScene scene;
   scene.plane.points = options.points;
-  const double frame_step = 1.0 / (kFramesASight * options.pictures);
-  const auto pose_at = [&](double t) -> Pose {
-    const double slant = radians(options.slant_deg);
-    // Looks along +z from z < 0; the shared tilt leans the camera, its own slants come on top.
-    const Eigen::Matrix3d R_wc =
-        so3_exp({radians(options.kept_tilt_deg) + slant * slant_x(t), slant * slant_y(t), 0}) *
-        so3_exp({0, 0, 0.4 * roll(t)});
-    const Eigen::Vector3d looked_at(options.moves_m * x(t), options.moves_m * y(t), 0);
-    return {R_wc, looked_at - (1 + 0.3 * options.moves_m * z(t)) * R_wc.col(2)};
-  };
   for (int i = 0; i < options.pictures; ++i) {
     const double t = static_cast<double>(i) / options.pictures;
-    const Pose pose = pose_at(t);
-    const Pose before = pose_at(t - frame_step), after = pose_at(t + frame_step);
+    const Pose pose = way.pose_at(t);
     PlaneSight sight{kFramesASight * i, {}, {}};
     std::vector<Eigen::Vector2d> seen, flows;
     for (int j = 0; j < options.points; ++j) {
-      const Eigen::Vector3d p = to_camera(pose, points.col(j));
-      if (p.z() < 0.05) continue;
-      Eigen::Vector2d px = project(camera, p);
+      if (to_camera(pose, points.col(j)).z() < 0.05) continue;
+      Eigen::Vector2d px = way.read_at(t, points.col(j));
       if (!px.allFinite()) continue;
-      const Eigen::Vector2d flow = 0.5 * (project(camera, to_camera(after, points.col(j))) -
-                                          project(camera, to_camera(before, points.col(j))));
-      // The camera reads a row later, where the point has gone on to another row.
-      for (int pass = 0; options.readout != 0 && pass < 3; ++pass) {
-        const double later = options.readout * ((px.y() + 0.5) / camera.height - 0.5);
-        px = project(camera, to_camera(pose_at(t + later * frame_step), points.col(j)));
-      }
       px += offsets.col(j) + options.noise_px * Eigen::Vector2d(normal(random), normal(random));
       if (uniform(random) > 1 - 2 * options.outliers)
         px += 20 * Eigen::Vector2d(uniform(random), uniform(random));
       if (px.minCoeff() < 0 || px.x() > camera.width - 1 || px.y() > camera.height - 1) continue;
       sight.points.push_back(j);
       seen.push_back(px);
-      flows.push_back(flow);
+      flows.push_back(way.flow_at(t, points.col(j)));
     }
     sight.raw_px.resize(2, std::ssize(seen));
     sight.flow_px.resize(2, std::ssize(seen));
