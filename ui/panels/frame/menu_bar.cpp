@@ -8,7 +8,8 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
-#include <array>
+#include <string>
+#include <vector>
 
 namespace gpo {
 namespace {
@@ -42,24 +43,34 @@ void menu_item(const Action& action, const PanelInput& input, Commands& commands
   tooltip(action.tooltip);
 }
 
-/// Actions whose names begin alike are alternatives: one entry of the menu opens them.
+/// Actions that belong together: one entry of the menu opens them.
 struct Submenu {
-  const char* prefix;
   const char* title;
+  std::vector<std::string> names;  ///< of actions; with a blank at the end, of all that begin so
 };
-constexpr std::array kSubmenus = {Submenu{"view ", "Open"},
-                                  Submenu{"viewpoint ", "Look at the scene"},
-                                  Submenu{"color-by ", "Color tracks and points"},
-                                  Submenu{"theme ", "Theme"},
-                                  Submenu{"compare ", "Compare"},
-                                  Submenu{"zoom", "Zoom"},
-                                  Submenu{"export ", "Export"}};
+
+const std::vector<Submenu>& submenus() {
+  static const std::vector<Submenu> all = {
+      {"Looks of the cube", {"wireframe", "tower", "exaggerate", "model"}},
+      {"Colors and sizes", {"color-by ", "point-size"}},
+      {"Open", {"view "}},
+      {"Compare", {"compare", "compare ", "flip", "curve", "close-results"}},
+      {"Zoom", {"fit", "zoom", "zoom-normals"}},
+      {"Look at the scene", {"viewpoint "}},
+      {"Theme and text", {"theme ", "larger", "smaller", "text-size"}},
+      {"Parts of the window", {"maximize", "column", "timeline", "fullscreen", "reset-layout"}},
+      {"Export", {"export "}}};
+  return all;
+}
 
 /// Null where the action stands in the menu itself.
 const Submenu* submenu_of(const Action& action) {
+  const auto holds = [&](const std::string& name) {
+    return name.ends_with(' ') ? action.name.starts_with(name) : action.name == name;
+  };
   const auto found = std::ranges::find_if(
-      kSubmenus, [&](const Submenu& one) { return action.name.starts_with(one.prefix); });
-  return found == kSubmenus.end() ? nullptr : &*found;
+      submenus(), [&](const Submenu& one) { return std::ranges::any_of(one.names, holds); });
+  return found == submenus().end() ? nullptr : &*found;
 }
 
 /// Where the first of its actions would stand.
