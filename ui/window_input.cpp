@@ -36,7 +36,13 @@ void on_button(GLFWwindow* window, int button, int action, int modifiers) {
 void on_scroll(GLFWwindow* window, double x, double y) {
   queue_of(window).push({.kind = Kind::scroll, .x = x, .y = y});
 }
+/// Pixels are what is drawn in; on Wayland the pointer is told in larger units.
 void on_pointer(GLFWwindow* window, double x, double y) {
+  int width = 0, height = 0, width_px = 0, height_px = 0;
+  glfwGetWindowSize(window, &width, &height);
+  glfwGetFramebufferSize(window, &width_px, &height_px);
+  if (width > 0) x *= static_cast<double>(width_px) / width;
+  if (height > 0) y *= static_cast<double>(height_px) / height;
   queue_of(window).push({.kind = Kind::pointer, .x = x, .y = y});
 }
 void on_enter(GLFWwindow* window, int entered) {

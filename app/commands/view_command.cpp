@@ -94,6 +94,7 @@ struct Session {
   void draw() {
     host.size = window.size();
     if (host.size.width < 1 || host.size.height < 1) return;  // minimized
+    gui.set_screen_scale(window.content_scale());  // Wayland tells it once the window is shown
     window.bind();
     const Commands commands = host.draw(seconds);
     window.swap();

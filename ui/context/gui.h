@@ -43,7 +43,9 @@ class Gui {
   void end_frame(WindowPicture& picture, std::uint32_t background_rgb);
   /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
   float scale() const { return scale_; }
-  /// Everything so many times as large as the screen's own scale has it. Between two frames.
+  /// Everything so many times as large as the screen's own scale has it, which a window that moves
+  /// to another screen changes. Between two frames.
+  void set_screen_scale(float content_scale) { screen_scale_ = content_scale; }
   void set_zoom(double zoom);
 
   Theme theme() const { return theme_; }

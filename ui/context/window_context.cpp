@@ -20,6 +20,25 @@ std::string last_glfw_error() {
   return description != nullptr ? description : "no reason given";
 }
 
+/// That most of a window is on; the first one where none is.
+GLFWmonitor* monitor_below(const cv::Rect& window) {
+  int count = 0;
+  GLFWmonitor** const all = glfwGetMonitors(&count);
+  GLFWmonitor* best = glfwGetPrimaryMonitor();
+  int most = 0;
+  for (int k = 0; k < count; ++k) {
+    const GLFWvidmode* mode = glfwGetVideoMode(all[k]);
+    if (mode == nullptr) continue;
+    cv::Rect place(0, 0, mode->width, mode->height);
+    glfwGetMonitorPos(all[k], &place.x, &place.y);
+    const int shared = (place & window).area();
+    if (shared <= most) continue;
+    most = shared;
+    best = all[k];
+  }
+  return best;
+}
+
 }  // namespace
 
 WindowContext::WindowContext(const std::string& title, int width, int height, bool visible) {
@@ -85,7 +104,7 @@ void WindowContext::set_fullscreen(bool fullscreen) {
   if (fullscreen == !before_.empty()) return;
   if (fullscreen) {
     const cv::Rect now = place();
-    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    GLFWmonitor* monitor = monitor_below(now);
     const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
     if (mode == nullptr) return;
     before_ = now;
@@ -98,7 +117,7 @@ void WindowContext::set_fullscreen(bool fullscreen) {
 
 void WindowContext::resize(cv::Size wanted) {
   int x = 0, y = 0, width = 0, height = 0;
-  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
+  if (GLFWmonitor* monitor = monitor_below(place()))
     glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
   if (width > 0 && height > 0) {
     wanted.width = std::min(wanted.width, width);
