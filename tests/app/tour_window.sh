@@ -7,7 +7,7 @@
 # in an empty folder, where it leaves a picture of each stop to be looked at. OTHER_RECORDING is dropped on
 # the window; COMMANDS are typed at 10 ms a key. Says what it expected where it was disappointed, and ends with 1.
 set -u
-program=$1 recording=$2 other=$3 size=${4:-1366x768} commands=${5:-20}
+program=$1 recording=$(realpath "$2") other=$3 size=${4:-1366x768} commands=${5:-20}
 width=${size%x*} height=${size#*x}
 name=$(basename "$recording")
 here=$(dirname "$0")
