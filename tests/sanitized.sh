@@ -16,8 +16,8 @@ jobs=${JOBS:-$(nproc)}
 unreported=$PWD/tests/sanitizers
 
 # What builds or starts something else than what is sanitized here: ./run.sh its own program, tests/fuzz
-# with sanitizers of its own, the engine alone, the installed library.
-elsewhere='^(Fuzz\.|EngineAlone\.|(Readme|RunScript|Install|Library)$)'
+# with sanitizers of its own, the engine alone, the installed library, the module for an interpreter that is not sanitized.
+elsewhere='^(Fuzz\.|EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
 # What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
 # the front door's live form.
 threads='^View$|RealWindow|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
