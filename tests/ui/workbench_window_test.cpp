@@ -38,10 +38,9 @@ class WorkbenchWindow : public DrawingTest {
  protected:
   static constexpr int kWidth = 1280, kHeight = 720;
 
-  Commands draw() {
+  Commands draw(cv::Size size = {kWidth, kHeight}) {
     context_.bind();
-    return draw_workbench(
-        {state_, idle_, no_survey_, true, gui_.scale()}, {kWidth, kHeight}, gui_, *views_);
+    return draw_workbench({state_, idle_, no_survey_, true, gui_.scale()}, size, gui_, *views_);
   }
 
   void open(std::shared_ptr<const Inspection> inspection = made()) {
@@ -183,6 +182,32 @@ TEST_F(WorkbenchWindow, ClickBesideTheKeysClosesThem) {
   const Commands commands = click(20, 400);
   ASSERT_NE(find<RunAction>(commands), nullptr);
   EXPECT_EQ(find<RunAction>(commands)->line, "escape");
+}
+
+/// Dear ImGui ends the program at a button of no width. Among these widths is the one at which
+/// nothing is left of the time axis, with its buttons and numbers as they are.
+TEST_F(WorkbenchWindow, DrawsInAnyWidth) {
+  open();
+  glGetError();  // VTK's first frame asks OpenGL for what the core profile has not
+  for (int width = 1; width < kWidth; width += width < 450 ? 1 : 100) draw({width, 720});
+  for (int height = 1; height < 200; height += 3) draw({320, height});
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(WorkbenchWindow, NarrowTimeLineLeavesOutItsNumbersForTheAxis) {
+  open();
+  const auto goes_to_a_frame = [&](float x) {
+    ImGui::GetIO().MousePos = {x, 660};
+    draw({380, 720});
+    draw({380, 720});
+    ImGui::GetIO().MouseDown[0] = true;
+    const Commands pressed = draw({380, 720});
+    ImGui::GetIO().MouseDown[0] = false;
+    draw({380, 720});
+    return find<GoToFrame>(pressed) != nullptr;
+  };
+  EXPECT_TRUE(goes_to_a_frame(220));
+  EXPECT_TRUE(goes_to_a_frame(310));  // where the numbers would be
 }
 
 TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {

@@ -21,7 +21,7 @@ TabEvent tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
   const float padding = 10 * scale;
   const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, place.height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const bool clicked = ImGui::InvisibleButton(action_of(pane).c_str(), size);
+  const bool clicked = hit_area(action_of(pane).c_str(), size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();
   if (hovered) list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(Role::hovered));

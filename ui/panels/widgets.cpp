@@ -5,6 +5,7 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gpo {
@@ -27,6 +28,10 @@ PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding,
 }
 
 PanelScope::~PanelScope() { ImGui::End(); }
+
+bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons) {
+  return ImGui::InvisibleButton(name, {std::max(1.0F, size.x), std::max(1.0F, size.y)}, buttons);
+}
 
 void draw_empty(const Rectangle& place, const std::string& text) {
   const float wrap = place.width * 0.8F;

@@ -23,6 +23,12 @@ class PanelScope {
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
+/// A part of the window that can be hovered and pressed, drawn by whoever calls; whether it was
+/// clicked. At least a pixel each way: Dear ImGui ends the program where a width or height is 0.
+bool hit_area(const char* name,
+              ImVec2 size,
+              ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
+
 /// What a part of the window says while it has nothing to show, in its middle: why, and what to do.
 void draw_empty(const Rectangle& place, const std::string& text);
 

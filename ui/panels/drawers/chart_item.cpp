@@ -32,7 +32,7 @@ ChartItem chart_item(const std::string& name,
   item.to = draw_chart_view(
       list, {{place.x, place.y}, {place.width, place.height}}, views.charts[name], chart, legend);
   ImGui::SetCursorScreenPos({place.x, place.y});
-  ImGui::InvisibleButton(name.c_str(), {place.width, place.height});
+  hit_area(name.c_str(), {place.width, place.height});
   item.held = ImGui::IsItemActive();
   copy_menu(chart);
   const ImVec2 mouse = ImGui::GetIO().MousePos;

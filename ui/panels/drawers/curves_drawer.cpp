@@ -18,7 +18,7 @@ namespace {
 void draw_name(const Configuration& one, bool shown, const ImVec2& size, Commands& commands) {
   const std::string key = key_of(one);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  if (ImGui::InvisibleButton(("curve " + key).c_str(), size))
+  if (hit_area(("curve " + key).c_str(), size))
     push(commands, RunAction{fmt::format("curve {} {}", key, shown ? "off" : "on")});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();

@@ -81,7 +81,7 @@ void draw_bar(const ShownResult& result, double longest_ms) {
     if (to <= from) continue;
     list.AddRectFilled({from, at.y}, {to, at.y + height}, imgui_color(kStages[i].color));
     ImGui::SetCursorScreenPos({from, at.y});
-    ImGui::InvisibleButton(kStages[i].title, {to - from, height});
+    hit_area(kStages[i].title, {to - from, height});
     tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",
                         result.name,
                         kStages[i].title,

@@ -107,7 +107,7 @@ int draw_rows(std::span<const FolderEntry> found, int chosen, bool opens, float 
     const bool dim = opens && !entry.folder && entry.what.empty();
     draw_row(entry, i == chosen, dim, width, scale);
     ImGui::PushID(i);
-    if (ImGui::InvisibleButton("row", {width, height})) clicked = i;
+    if (hit_area("row", {width, height})) clicked = i;
     ImGui::PopID();
   }
   if (count > first + kRows) ImGui::TextDisabled("%d more", count - first - kRows);

@@ -119,10 +119,10 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   const PanelScope panel("picture", place, {0, 0});
   const WorkbenchState& state = input.state;
   const int frame = update_picture(input, views);
-  ImGui::InvisibleButton("view",
-                         {place.width, place.height},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                             ImGuiButtonFlags_MouseButtonRight);
+  hit_area("view",
+           {place.width, place.height},
+           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+               ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
   const Camera& camera = state.recording->camera;
   const Pointer pointer{state,

@@ -48,8 +48,7 @@ const Action* draw_rows(const std::vector<const Action*>& found, int chosen, flo
   for (int i = first; i < last; ++i) {
     draw_row(*found[i], i == chosen, width, scale);
     ImGui::PushID(i);
-    if (ImGui::InvisibleButton("row", {width, ImGui::GetTextLineHeight() + 8 * scale}))
-      clicked = found[i];
+    if (hit_area("row", {width, ImGui::GetTextLineHeight() + 8 * scale})) clicked = found[i];
     tooltip(found[i]->tooltip);
     ImGui::PopID();
   }

@@ -41,7 +41,7 @@ void splitter(Splitter which,
                              : Rectangle{line.x, line.y - out, line.width, line.height + 2 * out};
   constexpr std::array kNames = {"column line", "settings line", "picture line", "drawer line"};
   begin(kNames[static_cast<std::size_t>(which)], grip);
-  ImGui::InvisibleButton("grip", {grip.width, grip.height});
+  hit_area("grip", {grip.width, grip.height});
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
     ImGui::GetWindowDrawList()->AddRectFilled(

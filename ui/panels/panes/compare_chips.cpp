@@ -31,7 +31,7 @@ void place_next(float& x, float& y, float width, const Rectangle& place, float s
 /// Whether its x was clicked.
 bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) {
   ImGui::SetCursorScreenPos(at);
-  const bool clicked = ImGui::InvisibleButton(("remove " + key).c_str(), {side, side});
+  const bool clicked = hit_area(("remove " + key).c_str(), {side, side});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered() && !dim;
   const ImU32 color = imgui_color(hovered ? Role::text : Role::text_dim, dim ? 0.35 : 1);

@@ -30,7 +30,7 @@ Rectangle to_rectangle(const ScreenRect& rect) {
 void button(const std::string& name, const ScreenRect& rect) {
   const Rectangle place = to_rectangle(rect);
   ImGui::SetCursorScreenPos({place.x, place.y});
-  ImGui::InvisibleButton(name.c_str(), {std::max(1.0F, place.width), std::max(1.0F, place.height)});
+  hit_area(name.c_str(), {place.width, place.height});
 }
 
 /// The wheel zooms in all columns around the same point of the picture, dragging moves all, a

@@ -45,7 +45,7 @@ void normals_pane(const PanelInput& input,
     return draw_empty(place, "The sphere of normals appears when the window is computed");
   const std::string why = why_no_study(state, "Computing what a plane of each normal costs \u2026");
   if (!why.empty()) return draw_empty(place, why);
-  ImGui::InvisibleButton("normals", {place.width, place.height});
+  hit_area("normals", {place.width, place.height});
   const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
   const ScreenRect inner = disc_rect(rect);
   const NormalsContent content{*input.inspection(), state.study, answers(state), state.frame};

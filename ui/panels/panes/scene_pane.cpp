@@ -85,9 +85,9 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
     return draw_empty(place, "The scene appears when the window is computed");
   const WorkbenchState& state = input.state;
   const Inspection& inspection = *input.inspection();
-  ImGui::InvisibleButton("view",
-                         {place.width, place.height},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  hit_area("view",
+           {place.width, place.height},
+           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
   const double side = cube_side(inspection, state.cube_side);
   const OrbitCamera camera = state.orbit.value_or(
       scene_camera(inspection, side, place.width / place.height, state.viewpoint, state.frame));

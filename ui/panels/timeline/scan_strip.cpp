@@ -96,7 +96,7 @@ void scan_strip(const PanelInput& input, const Rectangle& place, Commands& comma
   const TimeAxis axis{
       place.x, place.right(), state.frame_count(), holding(state.time_span, state.frame)};
   ImGui::SetCursorScreenPos({place.x, place.y});
-  const bool clicked = ImGui::InvisibleButton("scan", {place.width, place.height});
+  const bool clicked = hit_area("scan", {place.width, place.height});
   list.PushClipRect({place.x, place.y}, {place.right(), place.bottom()}, true);
   draw_columns(list, *state.scan, axis, place);
   const float x = std::round(slot_middle(axis, state.settings.start));

@@ -123,7 +123,7 @@ void drag_window_ends(const PanelInput& input,
     const float at = slot_begin(axis, frame);
     if (at < bar.x || at > bar.right()) return;
     ImGui::SetCursorScreenPos({at - reach, bar.y});
-    ImGui::InvisibleButton(name, {2 * reach, bar.height});
+    hit_area(name, {2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     tooltip("Drag: moves this end of the window");
@@ -167,12 +167,12 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
       bar.x, bar.right(), state.frame_count(), holding(state.time_span, state.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
-  if (axis.frames < 1) return;
+  if (axis.frames < 1 || bar.width < 1) return;
   const Inspection* shown =
       input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
   drag_window_ends(input, axis, bar, commands);
   ImGui::SetCursorScreenPos({bar.x, bar.y});
-  ImGui::InvisibleButton("axis", {bar.width, bar.height});
+  hit_area("axis", {bar.width, bar.height});
   if (ImGui::IsItemHovered()) zoom_time(axis, commands);
   if (ImGui::IsItemActive()) {
     // The second press of a double click is not meant for the frame that then is under it.
@@ -264,13 +264,15 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   }
   const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
+  const float room = place.right() - 24 * s - left;
+  const bool numbered = room - numbers > 80 * s;  // where only one of both fits, it is the axis
   const Inspection* shown = input.inspection();
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
   Rectangle bar{left,
                 place.y + std::round(12 * s),
-                place.right() - numbers - 24 * s - left,
+                numbered ? room - numbers : room,
                 place.height - std::round(legend ? 34 * s : 22 * s)};
   if (input.state.view.scan) {
     const float strip = std::round(kScanHeight * s);
@@ -281,10 +283,11 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   if (legend)
     draw_verdict_legend(
         *ImGui::GetWindowDrawList(), *input.inspection(), bar.x, bar.bottom() + 4 * s, s);
-  draw_numbers(input,
-               place.right() - numbers - 8 * s,
-               place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s),
-               commands);
+  if (numbered)
+    draw_numbers(input,
+                 place.right() - numbers - 8 * s,
+                 place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s),
+                 commands);
   ImGui::PopStyleVar();
 }
 
