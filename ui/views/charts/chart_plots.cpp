@@ -31,6 +31,8 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kDashPeriod_px = 24;  ///< of curves over others, at scale 1
+
 void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(rgb), blue(rgb)); }
 
 bool drawable(double value, bool logarithmic) {
@@ -127,14 +129,50 @@ void add_band(const Plot& plot, const Curve& curve, std::uint32_t rgb) {
   }
 }
 
-void add_curve(const Plot& plot, const Curve& curve, const CurveStyle& style) {
+/// Whether the one would hide the other: they have places in common, and agree at all of these.
+bool coincide(const Line& a, const Line& b, double tolerance_px) {
+  int common = 0;
+  for (const Vector2d& point : a) {
+    const auto at =
+        std::ranges::equal_range(b, point.x(), {}, [](const Vector2d& p) { return p.x(); });
+    if (at.empty()) continue;
+    const auto near = [&](const Vector2d& p) {
+      return std::abs(p.y() - point.y()) <= tolerance_px;
+    };
+    if (std::ranges::none_of(at, near)) return false;  // where it steps there are two
+    ++common;
+  }
+  return common > 1;
+}
+
+/// Over those drawn before it: in the gaps of its dashes are the ones that it would hide.
+void add_line_over(const Plot& plot,
+                   const Line& line,
+                   std::uint32_t rgb,
+                   const std::vector<Line>& drawn) {
+  const double width = kCurveWidth_px * plot.scale;
+  const auto hidden =
+      std::ranges::count_if(drawn, [&](const Line& other) { return coincide(line, other, width); });
+  if (hidden == 0) return add_line(plot, line, rgb, width);
+  const double period = kDashPeriod_px * plot.scale;
+  const double dash = period / static_cast<double>(hidden + 1);
+  const std::array<double, 2> pattern = {dash, period - dash};
+  for (const auto& [from, to] : dashes_along(line, pattern)) add_line(plot, {from, to}, rgb, width);
+}
+
+/// `drawn`: the lines so far, to which this curve's are added.
+void add_curve(const Plot& plot,
+               const Curve& curve,
+               const CurveStyle& style,
+               std::vector<Line>& drawn) {
   Line points;
   for (const Line& run : runs(plot, curve.x, curve.y)) {
     points.insert(points.end(), run.begin(), run.end());
     if (style.dotted) {
       add_dots(plot, run, style.rgb);
     } else {
-      add_line(plot, run, style.rgb, kCurveWidth_px * plot.scale);
+      add_line_over(plot, run, style.rgb, drawn);
+      drawn.push_back(run);
     }
   }
   if (style.marker) add_markers(plot, points, style.rgb, style.marker_px * plot.scale);
@@ -216,9 +254,10 @@ ChartMapping fill_chart(vtkChartXY& vtk,
   std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);
   set_axes(plot, x, y);
   for (const Curve& curve : chart.curves) add_band(plot, curve, style_of(curve, styles).rgb);
+  std::vector<Line> drawn;
   for (const bool bounds : {true, false})
     for (const Curve& curve : chart.curves)
-      if (curve.dotted == bounds) add_curve(plot, curve, style_of(curve, styles));
+      if (curve.dotted == bounds) add_curve(plot, curve, style_of(curve, styles), drawn);
   return to;
 }
 

@@ -76,6 +76,24 @@ TEST_F(ChartViewTest, TheMappingCanBeTurnedRound) {
   }
 }
 
+/// Three that lie upon one another, the second but at some places; a fourth that only crosses.
+TEST_F(ChartViewTest, EqualCurvesAreToldApart) {
+  OffscreenContext context(kWidth, kHeight);
+  context.bind();
+  ChartView view;
+  Chart chart = chart_of({1, 2, 3, 4, 5}, {1, 4, 3, 3, 5});
+  constexpr std::uint32_t kGreen = 0x00FF00, kBlue = 0x0000FF, kYellow = 0xFFFF00;
+  chart.curves.push_back({"pba", kGreen, false, {2, 3, 4, 5}, {4, 3, 3, 5}, {}, {}});
+  chart.curves.push_back({"ba", kBlue, false, {1, 2, 3, 4, 5}, {1, 4, 3, 3, 5}, {}, {}});
+  chart.curves.push_back({"pnp", kYellow, false, {1, 5}, {5, 1}, {}, {}});
+  const cv::Mat picture =
+      read_texture(view.render(chart, kWidth, kHeight, 1, kTop), kWidth, kHeight);
+  keep("chart-equal", picture);
+  const double alone = count_pixels(picture, kYellow, 40);
+  for (const std::uint32_t rgb : {kRed, kGreen, kBlue})
+    EXPECT_GT(count_pixels(picture, rgb, 40), 0.1 * alone) << std::hex << rgb;
+}
+
 TEST_F(ChartViewTest, WhatIsUnchangedIsNotRenderedAgain) {
   OffscreenContext context(kWidth, kHeight);
   context.bind();
