@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 using Adapter = opengv::relative_pose::CentralRelativeWeightingAdapter;
 
 constexpr double kConfidence = 0.999;
-constexpr int kMostSamples = 150;
+constexpr int kMostSamples = 300;
 constexpr int kRefinements = 3;
 /// From the guess, as the sine of half an angle; the eigensolver then finds its own way.
 constexpr double kGuessSpread = 0.1;

@@ -70,11 +70,13 @@ Room simulate_room(const RoomOptions& options) {
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<double> u(20, 620), v(20, 460), share(0, 1);
   std::uniform_real_distribution<double> inverse(1 / options.farthest, 1 / options.nearest);
-  std::normal_distribution<double> noise(0, options.noise_px);
+  std::normal_distribution<double> noise;
   Tracks tracks;
   tracks.raw_px.assign(options.frames, Eigen::Matrix2Xd(2, options.tracks));
   while (static_cast<int>(tracks.ids.size()) < options.tracks) {
-    const Vector3d ray = K.inverse() * Vector3d(u(random), v(random), 1);
+    // One by one: which of two arguments is drawn first is the compiler's choice.
+    const double at_u = u(random), at_v = v(random);
+    const Vector3d ray = K.inverse() * Vector3d(at_u, at_v, 1);
     int plane = -1;
     double at = share(random);
     for (int k = 0; k < static_cast<int>(options.shares.size()) && plane < 0; ++k) {
@@ -88,7 +90,8 @@ Room simulate_room(const RoomOptions& options) {
     const auto j = static_cast<Eigen::Index>(tracks.ids.size());
     for (int i = 0; i < options.frames; ++i) {
       const Vector2d px = (K * to_camera(base.cameras[i], ray / rho)).hnormalized();
-      tracks.raw_px[i].col(j) = px + Vector2d(noise(random), noise(random));
+      const double noise_u = noise(random), noise_v = noise(random);
+      tracks.raw_px[i].col(j) = px + options.noise_px * Vector2d(noise_u, noise_v);
     }
     tracks.ids.push_back(j);
     room.plane_of_track.push_back(plane);

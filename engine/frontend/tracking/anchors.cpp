@@ -155,6 +155,16 @@ void lose_what_slides(Step& step) {
   }
 }
 
+/// The pixel of a whole place; of one that is far from the picture or not known, one whose patch
+/// has nothing of the picture.
+cv::Point pixel_at(const Vector2d& middle, const cv::Mat& picture, int half) {
+  const Vector2d size(picture.cols, picture.rows);
+  const bool near =
+      (middle.array() >= -half).all() && (middle.array() < (size.array() + half)).all();
+  if (!near) return {-half - 1, -half - 1};
+  return {static_cast<int>(middle.x()), static_cast<int>(middle.y())};
+}
+
 }  // namespace
 
 Anchors make_anchors(const cv::Mat& soft,
@@ -165,8 +175,7 @@ Anchors make_anchors(const cv::Mat& soft,
   Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half, options.shape), {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
-    const cv::Point pixel(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
-    anchors.looks.push_back(make_sought(make_look(soft, pixel, half)));
+    anchors.looks.push_back(make_sought(make_look(soft, pixel_at(middle, soft, half), half)));
     anchors.corners_px.col(j) -= middle;
     anchors.warps.push_back({middle});
   }

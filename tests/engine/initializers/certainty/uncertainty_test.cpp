@@ -236,9 +236,9 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
 /// lens does that is not quite its model; what the reference frame sees is moved too.
 void bend_pictures(Window& window, double most_px, std::uint64_t seed) {
   std::mt19937_64 random(seed + 1234);
-  std::normal_distribution<double> gauss(0, most_px / 4);
+  std::normal_distribution<double> gauss;
   const Eigen::Matrix<double, 2, 6> field =
-      Eigen::Matrix<double, 2, 6>::NullaryExpr([&] { return gauss(random); });
+      Eigen::Matrix<double, 2, 6>::NullaryExpr([&] { return most_px / 4 * gauss(random); });
   for (Eigen::Matrix2Xd& points : window.points_px) {
     for (int j = 0; j < points.cols(); ++j) {
       const double x = (points(0, j) - 320) / 240;
