@@ -4,6 +4,7 @@
 
 #include "engine/frontend/consistent_inliers.h"
 #include "engine/geometry/homography.h"
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/residuals.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
@@ -82,11 +83,27 @@ std::string reason_of_inconsistency(const Inspection& inspection, const Tally& t
       track.largest_mean_square);
 }
 
+/// Of a track that is no outlier, but on a plane that does not lead.
+std::string verdict_on(const Inspection& inspection, int plane, const Tally& tally, int column) {
+  const auto& inlier = inspection.window->planes[plane].inlier;
+  const auto agreeing =
+      std::count_if(inlier.begin() + 1, inlier.end(), [&](const auto& of) { return of[column]; });
+  return fmt::format(
+      "on {}: inlier of it in {} of {} frames, off the leading plane by up to {:.1f} px",
+      plane_title(inspection, plane),
+      agreeing,
+      tally.seen,
+      tally.worst_px);
+}
+
 std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   const Settings& settings = inspection.settings;
   if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end())
     return "left out by hand";
   const Tally tally(life, inspection.window->start);
+  const auto plane = plane_of(*inspection.window, life.column);
+  if (plane && *plane != inspection.window->leader && tally.seen > 0)
+    return verdict_on(inspection, *plane, tally, life.column);
   if (tally.seen == 0) return "seen in the reference frame only";
   if (tally.inlier > 0 && 2 * tally.inlier >= tally.seen)
     return fmt::format("inlier in {} of {} frames", tally.inlier, tally.seen);

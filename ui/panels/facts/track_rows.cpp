@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/track_rows.h"
 
+#include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/track_life.h"
 
 #include <algorithm>
@@ -11,16 +12,9 @@
 namespace gpo {
 namespace {
 
-std::optional<int> plane_of(const Window& window, int column) {
-  for (std::size_t k = 0; k < window.planes.size(); ++k)
-    if (std::ranges::binary_search(window.planes[k].tracks, column)) return static_cast<int>(k) + 1;
-  return std::nullopt;
-}
-
 /// On whatever plane.
 int inlier_frames(const Window& window, int column, std::optional<int> plane) {
-  const auto& of =
-      plane && *plane - 1 != window.leader ? window.planes[*plane - 1].inlier : window.inlier;
+  const auto& of = plane && *plane != window.leader ? window.planes[*plane].inlier : window.inlier;
   return static_cast<int>(
       std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
 }
@@ -61,7 +55,7 @@ std::vector<TrackRow> track_rows(const Inspection& inspection) {
     rows.push_back({.id = life.id,
                     .seen = static_cast<int>(life.frames.size()),
                     .inlier = inlier_frames(window, column, plane),
-                    .plane = plane,
+                    .plane = plane ? std::optional(*plane + 1) : std::nullopt,
                     .rms_px = rms_residual_px(life),
                     .depth = life.depth,
                     .verdict = life.verdict});

@@ -203,7 +203,8 @@ void draw_badge(ImDrawList& list,
   const float width = std::max(title.width, body.width) + 2 * padding;
   const float height = title.height + gap + body.height + 2 * padding;
   const ImVec2 corner = to_imgui(rect.min + rect.size.cwiseProduct(Eigen::Vector2d(0.5, 1)));
-  const ImVec2 min(std::round(corner.x - width / 2), std::round(corner.y - height - 14 * s));
+  const float below = 26 * s;  // is the line that tells of the pixel under the pointer
+  const ImVec2 min(std::round(corner.x - width / 2), std::round(corner.y - height - below));
   draw_ground(list, min, ImVec2(min.x + width, min.y + height), rgb);
   const ImVec2 at(min.x + padding, min.y + padding);
   const ImFont *bold = font(Font::bold), *regular = font(Font::regular);

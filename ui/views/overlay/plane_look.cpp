@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/plane_look.h"
 
+#include "engine/inspection/plane_names.h"
+
 #include <algorithm>
 #include <array>
 
@@ -45,12 +47,8 @@ std::optional<int> to_lead(const Inspection& inspection, std::int64_t id) {
   const auto& ids = inspection.tracks->ids;
   const auto found = std::ranges::find(ids, id);
   if (found == ids.end()) return std::nullopt;
-  const auto column = static_cast<int>(found - ids.begin());
-  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
-    if (k != window.leader && std::ranges::binary_search(window.planes[k].tracks, column))
-      return k + 1;
-  }
-  return std::nullopt;
+  const auto plane = plane_of(window, static_cast<int>(found - ids.begin()));
+  return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
 }
 
 }  // namespace gpo

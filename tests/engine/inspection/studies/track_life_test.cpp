@@ -86,6 +86,23 @@ TEST(TrackLife, OfAnInconsistentTrackSaysHowManyFramesAgree) {
   EXPECT_THAT(life.verdict, HasSubstr(" of 29 frames, 90 % are needed"));
 }
 
+TEST(TrackLife, OfATrackOnAnotherPlaneIsNoOutliers) {
+  Inspection inspection = made();
+  auto window = std::make_shared<Window>(*inspection.window);
+  window->planes = {{{140, 141}, window->H_i1, window->inlier},
+                    {{2}, window->H_i1, window->inlier}};
+  for (int i = 0; i < 20; ++i) window->planes[1].inlier[i][2] = true;
+  for (int i = 20; i < 30; ++i) window->planes[1].inlier[i][2] = false;
+  inspection.window = window;
+  EXPECT_EQ(track_life(inspection, 140).verdict, "inlier in 29 of 29 frames");
+  EXPECT_THAT(track_life(inspection, 2).verdict,
+              MatchesRegex("on plane 2: inlier of it in 19 of 29 frames, off the leading plane by "
+                           "up to [0-9.]+ px"));
+  window->leader = 1;
+  EXPECT_THAT(track_life(inspection, 140).verdict,
+              HasSubstr("on plane 1: inlier of it in 29 of 29"));
+}
+
 TEST(TrackLife, EndsWhereTheFrontEndLostIt) {
   Inspection inspection = made();
   auto tracks = std::make_shared<Tracks>(*inspection.tracks);
