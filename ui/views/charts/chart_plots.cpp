@@ -133,14 +133,14 @@ void add_band(const Plot& plot, const Curve& curve, std::uint32_t rgb) {
 bool coincide(const Line& a, const Line& b, double tolerance_px) {
   int common = 0;
   for (const Vector2d& point : a) {
-    const auto at =
-        std::ranges::equal_range(b, point.x(), {}, [](const Vector2d& p) { return p.x(); });
-    if (at.empty()) continue;
-    const auto near = [&](const Vector2d& p) {
-      return std::abs(p.y() - point.y()) <= tolerance_px;
-    };
-    if (std::ranges::none_of(at, near)) return false;  // where it steps there are two
-    ++common;
+    bool there = false, near = false;  // where a curve steps there are two at one place
+    for (const Vector2d& other : b) {
+      if (other.x() != point.x()) continue;
+      there = true;
+      near = near || std::abs(other.y() - point.y()) <= tolerance_px;
+    }
+    if (there && !near) return false;
+    common += there ? 1 : 0;
   }
   return common > 1;
 }
