@@ -65,5 +65,4 @@ rm -f "$name"-*.png
 key Home space
 until_true "Space to play" later_frame_is_saved
 
-key ctrl+q
-wait "$pid"
+quit

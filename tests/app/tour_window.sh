@@ -58,6 +58,8 @@ stop opened
 
 # Each menu opens by a click, Esc shuts it and nothing else; a letter is no shortcut meanwhile.
 mouse_to $((width * 3 / 4)) $((height - 8))
+long_at_rest() { at_rest && sleep 3 && same_as before.png; }  # nothing is computed any more
+until_true "a window at rest before its menus" long_at_rest
 stop shut
 for menu in 30 80 130 180; do
   mouse_to "$menu" 13
@@ -115,5 +117,4 @@ stop typed
 until_true "what was dropped to be opened" opened "$(basename "$other")"
 stop dropped
 
-key ctrl+q
-wait "$pid"
+quit

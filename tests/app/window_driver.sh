@@ -7,9 +7,9 @@
 fail() { echo "expected: $1" >&2; kill "$pid" 2> /dev/null; exit 1; }
 # Runs a command until it succeeds, for at most five minutes: a machine may have other work.
 until_true() {
-  local what=$1
+  local what=$1 until=$((SECONDS + 300))
   shift
-  for _ in $(seq 3000); do
+  while [ "$SECONDS" -lt "$until" ]; do
     "$@" && return
     kill -0 "$pid" 2> /dev/null || fail "$what (the program has ended)"
     sleep 0.1
@@ -26,6 +26,16 @@ window_is_there() { window=$(xdotool search --name 'GPO Inspector' 2> /dev/null 
 title_is() { [ "$(xdotool getwindowname "$window" 2> /dev/null)" = "$1" ]; }
 key() { xdotool key --window "$window" "$@"; }
 other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
+# Closes the window; the program's exit code.
+quit() {
+  local until=$((SECONDS + 300))
+  key ctrl+q
+  while kill -0 "$pid" 2> /dev/null; do
+    [ "$SECONDS" -lt "$until" ] || fail "Ctrl+Q to end the program"
+    sleep 0.1
+  done
+  wait "$pid"
+}
 at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
 same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
 # As fast as hands and pasting programs do.

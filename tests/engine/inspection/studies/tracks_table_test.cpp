@@ -94,6 +94,7 @@ TEST(TracksTable, HasThePlaneOfATrack) {
   Inspection inspection = tabled();
   auto window = std::make_shared<Window>(*inspection.window);
   window->planes.resize(2);
+  for (WindowPlane& plane : window->planes) plane.inlier = window->inlier;
   window->planes[0].tracks = {139};
   window->planes[1].tracks = {2, 5};
   inspection.window = window;
