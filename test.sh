@@ -11,7 +11,6 @@ cmake --build --preset ci
 # llvmpipe is what the snapshots' baselines were made with.
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 status=0
-# One more than there are processors: tests that drive a window wait for it.
-ctest --test-dir build/ci --output-on-failure -j "$(($(nproc) + 1))" "$@" || status=$?
+ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@" || status=$?
 grep -h -A 1 ': Skipped$' build/ci/Testing/Temporary/LastTest.log || true
 exit "$status"

@@ -50,6 +50,6 @@ drag() {
     sleep 0.05
     mouse_to $(($1 + ($3 - $1) * step / 5)) $(($2 + ($4 - $2) * step / 5))
   done
-  sleep 0.2
+  until_true "a window that has followed the mouse" at_rest
   xdotool mouseup 1
 }
