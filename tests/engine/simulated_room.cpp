@@ -75,7 +75,7 @@ Room simulate_room(const RoomOptions& options) {
   tracks.raw_px.assign(options.frames, Eigen::Matrix2Xd(2, options.tracks));
   while (static_cast<int>(tracks.ids.size()) < options.tracks) {
     // One by one: which of two arguments is drawn first is the compiler's choice.
-    const double at_u = u(random), at_v = v(random);
+    const double at_v = v(random), at_u = u(random);
     const Vector3d ray = K.inverse() * Vector3d(at_u, at_v, 1);
     int plane = -1;
     double at = share(random);
@@ -90,7 +90,7 @@ Room simulate_room(const RoomOptions& options) {
     const auto j = static_cast<Eigen::Index>(tracks.ids.size());
     for (int i = 0; i < options.frames; ++i) {
       const Vector2d px = (K * to_camera(base.cameras[i], ray / rho)).hnormalized();
-      const double noise_u = noise(random), noise_v = noise(random);
+      const double noise_v = noise(random), noise_u = noise(random);
       tracks.raw_px[i].col(j) = px + options.noise_px * Vector2d(noise_u, noise_v);
     }
     tracks.ids.push_back(j);
