@@ -67,12 +67,6 @@ std::string plane_title(const Inspection& inspection, int number) {
   return fmt::format("plane {}{}", number + 1, found ? " (" + found->name + ")" : "");
 }
 
-std::optional<int> plane_of(const Window& window, int track) {
-  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
-    if (std::ranges::binary_search(window.planes[k].tracks, track)) return k;
-  return std::nullopt;
-}
-
 std::optional<double> known_scale(const Inspection& inspection) {
   if (!inspection.inertial || !inspection.inertial->ok || !inspection.inertial->scale_known)
     return std::nullopt;

@@ -25,9 +25,6 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 /// "plane 2 (wall)", or "plane 2".
 std::string plane_title(const Inspection& inspection, int number);
 
-/// Number of the plane that the track lies on over the whole window; nothing: on none.
-std::optional<int> plane_of(const Window& window, int track);
-
 /// Meters per unit of the estimate by the accelerometer; nothing where it does not tell them.
 std::optional<double> known_scale(const Inspection& inspection);
 /// The same for who cannot do without. Throws InputError with the reason why it is not known.

@@ -28,4 +28,10 @@ bool Window::is_inlier_track(int track) const {
   return agreeing > 0 && 2 * agreeing >= seen;
 }
 
+std::optional<int> Window::plane_of(int track) const {
+  for (int k = 0; k < static_cast<int>(planes.size()); ++k)
+    if (std::ranges::binary_search(planes[k].tracks, track)) return k;
+  return std::nullopt;
+}
+
 }  // namespace gpo

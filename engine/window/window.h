@@ -97,6 +97,8 @@ struct Window {
   /// reference frame aside. These are the inliers that the results count and the points that they
   /// deliver.
   bool is_inlier_track(int track) const;
+  /// Number of the plane that the track lies on over the whole window; nothing: on none.
+  std::optional<int> plane_of(int track) const;
 };
 
 }  // namespace gpo

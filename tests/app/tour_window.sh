@@ -14,6 +14,8 @@ here=$(dirname "$0")
 source "$here/window_driver.sh"
 
 stop() { until_true "a window that comes to rest ($1)" at_rest; cp before.png "$1.png"; }
+# Nothing is computed any more.
+long_at_rest() { at_rest && sleep 3 && same_as before.png; }
 has_size() { import -window "$window" now.png; [ "$(identify -format %wx%h now.png)" = "$size" ]; }
 opened() { title_is "$1 – GPO Inspector"; }
 # state FILE KEYS...: a value of a session
@@ -58,7 +60,6 @@ stop opened
 
 # Each menu opens by a click, Esc shuts it and nothing else; a letter is no shortcut meanwhile.
 mouse_to $((width * 3 / 4)) $((height - 8))
-long_at_rest() { at_rest && sleep 3 && same_as before.png; }  # nothing is computed any more
 until_true "a window at rest before its menus" long_at_rest
 stop shut
 for menu in 30 80 130 180; do

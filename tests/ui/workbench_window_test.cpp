@@ -191,6 +191,9 @@ TEST_F(WorkbenchWindow, DrawsInAnyWidth) {
   glGetError();  // VTK's first frame asks OpenGL for what the core profile has not
   for (int width = 1; width < kWidth; width += width < 450 ? 1 : 100) draw({width, 720});
   for (int height = 1; height < 200; height += 3) draw({320, height});
+  state_.view.scan = true;
+  state_.scan = std::make_shared<const StartScan>();
+  for (int width = 300; width < 450; ++width) draw({width, 720});
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 

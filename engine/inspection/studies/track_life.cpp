@@ -101,7 +101,7 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end())
     return "left out by hand";
   const Tally tally(life, inspection.window->start);
-  const auto plane = plane_of(*inspection.window, life.column);
+  const auto plane = inspection.window->plane_of(life.column);
   if (plane && *plane != inspection.window->leader && tally.seen > 0)
     return verdict_on(inspection, *plane, tally, life.column);
   if (tally.seen == 0) return "seen in the reference frame only";

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/track_rows.h"
 
-#include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/track_life.h"
 
 #include <algorithm>
@@ -51,7 +50,7 @@ std::vector<TrackRow> track_rows(const Inspection& inspection) {
   std::vector<TrackRow> rows;
   for (int column = 0; column < inspection.tracks->track_count(); ++column) {
     const TrackLife life = track_life(inspection, column);
-    const auto plane = plane_of(window, column);
+    const auto plane = window.plane_of(column);
     rows.push_back({.id = life.id,
                     .seen = static_cast<int>(life.frames.size()),
                     .inlier = inlier_frames(window, column, plane),

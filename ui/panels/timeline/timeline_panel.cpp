@@ -167,7 +167,7 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
       bar.x, bar.right(), state.frame_count(), holding(state.time_span, state.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
-  if (axis.frames < 1 || bar.width < 1) return;
+  if (axis.frames < 1) return;
   const Inspection* shown =
       input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
   drag_window_ends(input, axis, bar, commands);
@@ -244,6 +244,21 @@ float width_of_longest_time(const PanelInput& input) {
   return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
 }
 
+/// Scan, axis and legend, one above the other; nothing where the window leaves them no room.
+void draw_over_time(const PanelInput& input, Rectangle bar, bool legend, Commands& commands) {
+  if (bar.empty()) return;
+  const float s = input.scale;
+  if (input.state.view.scan) {
+    const float strip = std::round(kScanHeight * s);
+    scan_strip(input, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, commands);
+    bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
+  }
+  draw_axis(input, bar, commands);
+  if (legend)
+    draw_verdict_legend(
+        *ImGui::GetWindowDrawList(), *input.inspection(), bar.x, bar.bottom() + 4 * s, s);
+}
+
 }  // namespace
 
 void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
@@ -270,19 +285,13 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
-  Rectangle bar{left,
-                place.y + std::round(12 * s),
-                numbered ? room - numbers : room,
-                place.height - std::round(legend ? 34 * s : 22 * s)};
-  if (input.state.view.scan) {
-    const float strip = std::round(kScanHeight * s);
-    scan_strip(input, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, commands);
-    bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
-  }
-  draw_axis(input, bar, commands);
-  if (legend)
-    draw_verdict_legend(
-        *ImGui::GetWindowDrawList(), *input.inspection(), bar.x, bar.bottom() + 4 * s, s);
+  draw_over_time(input,
+                 {left,
+                  place.y + std::round(12 * s),
+                  numbered ? room - numbers : room,
+                  place.height - std::round(legend ? 34 * s : 22 * s)},
+                 legend,
+                 commands);
   if (numbered)
     draw_numbers(input,
                  place.right() - numbers - 8 * s,

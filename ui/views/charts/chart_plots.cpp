@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <tuple>
 
@@ -31,7 +32,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDashPeriod_px = 24;  ///< of curves over others, at scale 1
+constexpr double kDashPeriod_px = 32;  ///< of curves over others, at scale 1
 
 void set_color(vtkPen& pen, std::uint32_t rgb) { pen.SetColorF(red(rgb), green(rgb), blue(rgb)); }
 
@@ -145,19 +146,26 @@ bool coincide(const Line& a, const Line& b, double tolerance_px) {
   return common > 1;
 }
 
-/// Over those drawn before it: in the gaps of its dashes are the ones that it would hide.
+/// Over those drawn before it: in the gaps of its dashes are the ones that it would hide. They are
+/// counted from the lowest one's beginning, so that those of several are in step.
 void add_line_over(const Plot& plot,
                    const Line& line,
                    std::uint32_t rgb,
                    const std::vector<Line>& drawn) {
   const double width = kCurveWidth_px * plot.scale;
-  const auto hidden =
-      std::ranges::count_if(drawn, [&](const Line& other) { return coincide(line, other, width); });
-  if (hidden == 0) return add_line(plot, line, rgb, width);
-  const double period = kDashPeriod_px * plot.scale;
-  const double dash = period / static_cast<double>(hidden + 1);
+  const auto hides = [&](const Line& other) { return coincide(line, other, width); };
+  const auto lowest = std::ranges::find_if(drawn, hides);
+  if (lowest == drawn.end()) return add_line(plot, line, rgb, width);
+  const double left = line.front().x(), period = kDashPeriod_px * plot.scale;
+  const auto hidden = static_cast<int>(std::ranges::count_if(drawn, hides));
+  const double dash = std::ldexp(period, -hidden);  // half as long as that of the one below
   const std::array<double, 2> pattern = {dash, period - dash};
-  for (const auto& [from, to] : dashes_along(line, pattern)) add_line(plot, {from, to}, rgb, width);
+  Line path;
+  std::ranges::copy_if(
+      *lowest, std::back_inserter(path), [&](const Vector2d& p) { return p.x() < left; });
+  path.insert(path.end(), line.begin(), line.end());
+  for (const auto& [from, to] : dashes_along(path, pattern))
+    if (from.x() >= left) add_line(plot, {from, to}, rgb, width);
 }
 
 /// `drawn`: the lines so far, to which this curve's are added.

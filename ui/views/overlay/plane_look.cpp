@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/plane_look.h"
 
-#include "engine/inspection/plane_names.h"
-
 #include <algorithm>
 #include <array>
 
@@ -47,7 +45,7 @@ std::optional<int> to_lead(const Inspection& inspection, std::int64_t id) {
   const auto& ids = inspection.tracks->ids;
   const auto found = std::ranges::find(ids, id);
   if (found == ids.end()) return std::nullopt;
-  const auto plane = plane_of(window, static_cast<int>(found - ids.begin()));
+  const auto plane = window.plane_of(static_cast<int>(found - ids.begin()));
   return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
 }
 
