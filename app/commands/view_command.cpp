@@ -91,14 +91,16 @@ struct Session {
       host.state.log.push_back({Severity::note, std::move(line)});
   }
 
-  void draw() {
+  /// Whether anything was done in it that the next frame is to show.
+  bool draw() {
     host.size = window.size();
-    if (host.size.width < 1 || host.size.height < 1) return;  // minimized
+    if (host.size.width < 1 || host.size.height < 1) return false;  // minimized
     gui.set_screen_scale(window.content_scale());  // Wayland tells it once the window is shown
     window.bind();
     const Commands commands = host.draw(seconds);
     window.swap();
     for (const Command& command : commands) apply(host.state, command);
+    return !commands.empty();
   }
 
   /// Tells the desktop, and who drives the window, what is open and whether it is being computed.
@@ -129,9 +131,11 @@ struct Session {
     advance(host.state, seconds);
   }
 
-  /// What was done in the window, before the frame that shows it.
-  void heed_input() {
-    for (const Command& command : input.hand_on(host.state)) apply(host.state, command);
+  /// What was done in the window, before the frame that shows it; whether there was anything.
+  bool heed_input() {
+    const Commands commands = input.hand_on(host.state);
+    for (const Command& command : commands) apply(host.state, command);
+    return !commands.empty();
   }
 
   /// One command at a time, each when what the last one asked for is computed.
@@ -145,16 +149,17 @@ struct Session {
   void run() {
     int frames = 0, alike = 0;  // since something happened
     while (!window.should_close() && !host.state.wishes.quit) {
-      heed_input();
+      if (heed_input()) frames = alike = 0;
       host.synchronize();
       tell_what_methods_say();
       go_on_with_script();
       update_title();
       window.set_fullscreen(host.state.fullscreen);
-      draw();
-      alike = host.redrawn() ? 0 : alike + 1;
+      const bool asked = draw();
+      alike = asked || host.redrawn() ? 0 : alike + 1;
       const bool settled = alike >= kFramesAlike || ++frames >= kMostFramesAfterEvent;
-      wait(settled && !input.waiting());
+      // Nothing else would wake it after the last key.
+      wait(settled && !input.waiting() && !host.state.wishes.quit);
       if (settled) frames = alike = 0;
     }
   }

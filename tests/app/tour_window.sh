@@ -118,4 +118,7 @@ stop typed
 until_true "what was dropped to be opened" opened "$(basename "$other")"
 stop dropped
 
+# Over what takes long to draw, all of the keys come within a frame, and nothing after them.
+mouse_to $((width * 2 / 5)) $((height * 2 / 5))
+stop hovering
 quit
