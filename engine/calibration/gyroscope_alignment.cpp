@@ -22,9 +22,9 @@ constexpr double kOffsetStep_s = 0.005;
 constexpr double kKneeInMedians = 2;  // of Huber's loss, in medians
 
 /// Wahba's problem by singular values (Markley 1988), reweighted.
-Alignment align(const Pairs& pairs) {
+GyroAlignment align(const Pairs& pairs) {
   const std::size_t n = pairs.pictures.size();
-  Alignment result;
+  GyroAlignment result;
   if (n < kLeastIntervals) return result;
   std::vector<double> weights(n, 1);
   for (int round = 0; round < 6; ++round) {
@@ -111,7 +111,7 @@ std::optional<GyroscopeStart> best_start(const RateIntegral& integral,
     const double offset_s = around_s + k * kOffsetStep_s;
     const Pairs pairs = pairs_at(integral, intervals, offset_s);
     if (2 * pairs.pictures.size() < intervals.size()) continue;
-    const Alignment alignment = align(pairs);
+    const GyroAlignment alignment = align(pairs);
     if (!best || alignment.cost < best->alignment.cost) best = GyroscopeStart{offset_s, alignment};
   }
   if (best && !std::isfinite(best->alignment.cost)) return std::nullopt;

@@ -74,7 +74,7 @@ Pairs pairs_at(const RateIntegral& integral,
 double correlation_of(const Pairs& pairs);
 
 /// gyroscope = R pictures + bias, weighted.
-struct Alignment {
+struct GyroAlignment {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   std::vector<double> errors_rad_s;
@@ -83,7 +83,7 @@ struct Alignment {
 
 struct GyroscopeStart {
   double offset_s = 0;
-  Alignment alignment;
+  GyroAlignment alignment;
 };
 
 inline constexpr std::size_t kLeastIntervals = 12;

@@ -17,11 +17,11 @@ namespace gpo {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const Range kAny{-kInfinity, kInfinity};
-const Range kMeters{-100, 100, "m"};
-const Range kLength{0.001, 20, "m"};
-const Range kDegrees{-3600, 3600, "deg"};
-const Range kSeed{0, 9e15};
+const Bounds kAny{-kInfinity, kInfinity};
+const Bounds kMeters{-100, 100, "m"};
+const Bounds kLength{0.001, 20, "m"};
+const Bounds kDegrees{-3600, 3600, "deg"};
+const Bounds kSeed{0, 9e15};
 
 std::uint64_t read_seed(StrictMap& map, const std::string& key) {
   return static_cast<std::uint64_t>(map.integer(key, kSeed, 1));
@@ -63,7 +63,7 @@ Pose read_pose(StrictMap& map, const std::string& key) {
 
 /// `scale` turns the file's unit into ours; `duration` is the time from start to end.
 template <int N>
-Path<N> read_path(StrictMap map, const Range& range, double scale, double duration) {
+Path<N> read_path(StrictMap map, const Bounds& range, double scale, double duration) {
   Path<N> path;
   path.start = scale * map.vector<N>("start", range);
   if (map.has("end")) {
@@ -137,7 +137,7 @@ std::string read_surface(StrictMap& map, const std::string& otherwise) {
 }
 
 WallRecipe read_wall(StrictMap map, double scale) {
-  const Range side{0.05, kLargestFace * scale, "m"};
+  const Bounds side{0.05, kLargestFace * scale, "m"};
   WallRecipe wall;
   wall.from = map.vector<2>("from", kMeters);
   wall.to = map.vector<2>("to", kMeters);

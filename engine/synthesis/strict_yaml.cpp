@@ -12,7 +12,7 @@
 namespace gpo {
 namespace {
 
-std::string expectation(const char* what, const Range& range) {
+std::string expectation(const char* what, const Bounds& range) {
   std::string text = what;
   if (!range.unit.empty()) text += fmt::format(" [{}]", range.unit);
   if (std::isfinite(range.low) && std::isfinite(range.high)) {
@@ -21,7 +21,7 @@ std::string expectation(const char* what, const Range& range) {
   return std::isfinite(range.low) ? text + fmt::format(" of at least {}", range.low) : text;
 }
 
-double number_within(const YamlEntry& entry, const Range& range) {
+double number_within(const YamlEntry& entry, const Bounds& range) {
   const std::string expected = expectation("a number", range);
   const double value = number(entry, expected);
   if (value < range.low || value > range.high) yaml_fail(entry, expected);
@@ -59,15 +59,15 @@ YamlEntry StrictMap::take(const std::string& key, const std::string& expected) {
   return at(map_, key, expected);
 }
 
-double StrictMap::number(const std::string& key, const Range& range) {
+double StrictMap::number(const std::string& key, const Bounds& range) {
   return number_within(take(key, expectation("a number", range)), range);
 }
 
-double StrictMap::number(const std::string& key, const Range& range, double otherwise) {
+double StrictMap::number(const std::string& key, const Bounds& range, double otherwise) {
   return has(key) ? number(key, range) : otherwise;
 }
 
-std::int64_t StrictMap::integer(const std::string& key, const Range& range) {
+std::int64_t StrictMap::integer(const std::string& key, const Bounds& range) {
   const std::string expected = expectation("a whole number", range);
   const YamlEntry entry = take(key, expected);
   const std::int64_t value = gpo::integer(entry, expected);
@@ -77,7 +77,7 @@ std::int64_t StrictMap::integer(const std::string& key, const Range& range) {
 }
 
 std::int64_t StrictMap::integer(const std::string& key,
-                                const Range& range,
+                                const Bounds& range,
                                 std::int64_t otherwise) {
   return has(key) ? integer(key, range) : otherwise;
 }
@@ -93,7 +93,7 @@ std::string StrictMap::choice(const std::string& key, const std::vector<std::str
 }
 
 std::vector<double> StrictMap::numbers(const std::string& key,
-                                       const Range& range,
+                                       const Bounds& range,
                                        int least,
                                        int most) {
   const std::string count =

@@ -15,7 +15,7 @@
 namespace gpo {
 
 /// Bounds of a number, both included, with the unit for people.
-struct Range {
+struct Bounds {
   double low;
   double high;
   std::string unit = "";
@@ -29,14 +29,14 @@ class StrictMap {
   static StrictMap open(const std::filesystem::path& file);
 
   bool has(const std::string& key);
-  double number(const std::string& key, const Range& range);
-  double number(const std::string& key, const Range& range, double otherwise);
-  std::int64_t integer(const std::string& key, const Range& range);
-  std::int64_t integer(const std::string& key, const Range& range, std::int64_t otherwise);
+  double number(const std::string& key, const Bounds& range);
+  double number(const std::string& key, const Bounds& range, double otherwise);
+  std::int64_t integer(const std::string& key, const Bounds& range);
+  std::int64_t integer(const std::string& key, const Bounds& range, std::int64_t otherwise);
   std::string choice(const std::string& key, const std::vector<std::string>& choices);
-  std::vector<double> numbers(const std::string& key, const Range& range, int least, int most);
+  std::vector<double> numbers(const std::string& key, const Bounds& range, int least, int most);
   template <int N>
-  Eigen::Matrix<double, N, 1> vector(const std::string& key, const Range& range) {
+  Eigen::Matrix<double, N, 1> vector(const std::string& key, const Bounds& range) {
     return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
   }
   StrictMap map(const std::string& key);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -287,6 +288,26 @@ TEST(Architecture, NoFunctionIsTooLongForAScreen) {
                                    "tests/app/layouts_test.cpp"));
 }
 
+/// The type that a line of a header begins to define at the level of its namespace; empty: none.
+std::string type_defined_in(const std::string& line) {
+  static const std::regex kDefinition(R"((?:struct|class|enum class) (\w+)[^<;]*\{.*)");
+  std::smatch parts;
+  return std::regex_match(line, parts, kDefinition) ? parts[1].str() : "";
+}
+
+// The linker takes one of two definitions for the other, and says nothing.
+TEST(Architecture, NoTypeIsDefinedTwice) {
+  std::map<std::string, Names> definitions;
+  for (const auto& [file, lines] : lines_of_tree()) {
+    if (!is_ours(file) || !file.ends_with(".h")) continue;
+    for (const std::string& line : lines) definitions[type_defined_in(line)].push_back(file);
+  }
+  definitions.erase("");
+  EXPECT_GT(definitions.size(), 500U);
+  std::erase_if(definitions, [](const auto& type) { return type.second.size() == 1; });
+  EXPECT_THAT(definitions, IsEmpty());
+}
+
 // What the tests above would say of a tree that is not in order.
 TEST(Architecture, AnArrowThatIsNotInTheTableIsTold) {
   const std::vector<Include> includes = {
@@ -305,6 +326,10 @@ TEST(Architecture, AnArrowThatIsNotInTheTableIsTold) {
               testing::ElementsAre("engine/geometry/a and engine/geometry/b"));
   EXPECT_THAT(using_libraries(includes, kPure, kLibrariesOfPicturesAndFiles),
               testing::ElementsAre("engine/geometry/pose.cpp includes opencv2/core.hpp"));
+  EXPECT_EQ(type_defined_in("class PlaneProblem {"), "PlaneProblem");
+  EXPECT_EQ(type_defined_in("enum class Loss { squared, huber };"), "Loss");
+  EXPECT_EQ(type_defined_in("struct ChoiceKeys<Loss> {"), "");
+  EXPECT_EQ(type_defined_in("struct Window;"), "");
 }
 
 }  // namespace

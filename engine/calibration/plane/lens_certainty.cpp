@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/plane/calibration_problem.h"
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ struct Linear {
   std::vector<int> source_of_row;
 };
 
-Linear linearized(PlaneProblem& problem) {
+Linear linearized(CalibrationProblem& problem) {
   std::vector<double> residuals;
   ceres::CRSMatrix crs;
   problem.evaluate(residuals, crs);
@@ -115,9 +115,9 @@ LensCertainty lens_certainty(const std::vector<SightedPlane>& planes,
                              const Adjustment& adjustment,
                              const LensPrior& prior,
                              double noise_px,
-                             const AdjustmentOptions& options) {
+                             const PlaneAdjustmentOptions& options) {
   Adjustment at = adjustment;
-  PlaneProblem problem(planes, gyro, width, height, prior, options, at);
+  CalibrationProblem problem(planes, gyro, width, height, prior, options, at);
   const Linear linear = linearized(problem);
   const Sparse normal = normal_matrix(linear.J);
   Factors factors(normal);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_adjustment.h"
 
-#include "engine/calibration/plane/plane_problem.h"
+#include "engine/calibration/plane/calibration_problem.h"
 
 #include <cmath>
 #include <limits>
@@ -41,9 +41,9 @@ Adjustment adjust(const std::vector<SightedPlane>& planes,
                   int height,
                   const Adjustment& start,
                   const LensPrior& prior,
-                  const AdjustmentOptions& options) {
+                  const PlaneAdjustmentOptions& options) {
   Adjustment result = start;
-  PlaneProblem problem(planes, gyro, width, height, prior, options, result);
+  CalibrationProblem problem(planes, gyro, width, height, prior, options, result);
   problem.solve();
   return result;
 }

@@ -23,7 +23,7 @@ Adjustment adjust(const std::vector<SightedPlane>& planes,
                   int height,
                   const Adjustment& start,
                   const LensPrior& prior,
-                  const AdjustmentOptions& options);
+                  const PlaneAdjustmentOptions& options);
 
 /// Lengths of the errors [px], one an observation: plane, sight, point. Infinite behind the camera.
 using SightErrors = std::vector<std::vector<Eigen::VectorXd>>;
@@ -48,6 +48,6 @@ LensCertainty lens_certainty(const std::vector<SightedPlane>& planes,
                              const Adjustment& adjustment,
                              const LensPrior& prior,
                              double noise_px,
-                             const AdjustmentOptions& options);
+                             const PlaneAdjustmentOptions& options);
 
 }  // namespace gpo

@@ -48,7 +48,7 @@ struct Work {
   int width;
   int height;
   LensPrior prior;
-  AdjustmentOptions options;
+  PlaneAdjustmentOptions options;
 };
 
 Adjustment adjusted(const Work& work, const Adjustment& start) {

@@ -41,7 +41,7 @@ struct Adjustment {
   bool usable = false;
 };
 
-struct AdjustmentOptions {
+struct PlaneAdjustmentOptions {
   double knee_px = 1;       ///< of Huber's loss, on the length of an error [px]
   double prior_px = 1;      ///< so many pixels of an error weigh as one sigma of a prior
   double noise_px = 1;      ///< the same of the heights' prior

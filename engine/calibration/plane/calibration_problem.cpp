@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane/plane_problem.h"
+#include "engine/calibration/plane/calibration_problem.h"
 
 #include <algorithm>
 #include <map>
@@ -86,13 +86,13 @@ std::pair<int, int> held_points(const SightedPlane& plane, const Eigen::Matrix3X
 
 }  // namespace
 
-PlaneProblem::PlaneProblem(const std::vector<SightedPlane>& planes,
-                           const GyroTurns& gyro,
-                           int width,
-                           int height,
-                           const LensPrior& prior,
-                           const AdjustmentOptions& options,
-                           Adjustment& unknowns)
+CalibrationProblem::CalibrationProblem(const std::vector<SightedPlane>& planes,
+                                       const GyroTurns& gyro,
+                                       int width,
+                                       int height,
+                                       const LensPrior& prior,
+                                       const PlaneAdjustmentOptions& options,
+                                       Adjustment& unknowns)
     : options_(options), unknowns_(unknowns) {
   problem_.AddParameterBlock(unknowns_.lens.data(), kLensUnknowns);
   free_blocks_.push_back(unknowns_.lens.data());
@@ -112,7 +112,9 @@ PlaneProblem::PlaneProblem(const std::vector<SightedPlane>& planes,
   if (!gyro.turns.empty()) add_turns(planes, gyro);
 }
 
-void PlaneProblem::add_sights(const std::vector<SightedPlane>& planes, int width, int height) {
+void CalibrationProblem::add_sights(const std::vector<SightedPlane>& planes,
+                                    int width,
+                                    int height) {
   auto* const loss = new ceres::HuberLoss(options_.knee_px);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     for (std::size_t i = 0; i < planes[p].sights.size(); ++i) {
@@ -133,7 +135,7 @@ void PlaneProblem::add_sights(const std::vector<SightedPlane>& planes, int width
   }
 }
 
-void PlaneProblem::hold_gauge(const std::vector<SightedPlane>& planes) {
+void CalibrationProblem::hold_gauge(const std::vector<SightedPlane>& planes) {
   const bool flat = !(options_.height_sigma > 0);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     Eigen::Matrix3Xd& places = unknowns_.planes[p].points;
@@ -153,7 +155,7 @@ void PlaneProblem::hold_gauge(const std::vector<SightedPlane>& planes) {
   }
 }
 
-void PlaneProblem::add_heights() {
+void CalibrationProblem::add_heights() {
   const double weight = options_.noise_px / options_.height_sigma;
   for (AdjustedPlane& plane : unknowns_.planes) {
     for (Eigen::Index j = 0; j < plane.points.cols(); ++j) {
@@ -168,7 +170,7 @@ void PlaneProblem::add_heights() {
   }
 }
 
-void PlaneProblem::add_turns(const std::vector<SightedPlane>& planes, const GyroTurns& gyro) {
+void CalibrationProblem::add_turns(const std::vector<SightedPlane>& planes, const GyroTurns& gyro) {
   double* const bias = unknowns_.bias_change_rad_s.data();
   const Vector3d weights = Vector3d::Constant(options_.prior_px / gyro.bias_sigma_rad_s);
   problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorError<3>, 3, 3>(
@@ -197,7 +199,7 @@ void PlaneProblem::add_turns(const std::vector<SightedPlane>& planes, const Gyro
   }
 }
 
-void PlaneProblem::solve() {
+void CalibrationProblem::solve() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.max_num_iterations = options_.most_iterations;
@@ -228,7 +230,7 @@ void PlaneProblem::solve() {
   unknowns_.cost = summary.final_cost;
 }
 
-void PlaneProblem::evaluate(std::vector<double>& residuals, ceres::CRSMatrix& jacobian) {
+void CalibrationProblem::evaluate(std::vector<double>& residuals, ceres::CRSMatrix& jacobian) {
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = free_blocks_;
   options.num_threads = 1;

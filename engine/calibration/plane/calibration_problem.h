@@ -62,15 +62,15 @@ struct ResidualSource {
 };
 
 /// The least squares of `adjust`, over the unknowns of an adjustment that it changes in place.
-class PlaneProblem {
+class CalibrationProblem {
  public:
-  PlaneProblem(const std::vector<SightedPlane>& planes,
-               const GyroTurns& gyro,
-               int width,
-               int height,
-               const LensPrior& prior,
-               const AdjustmentOptions& options,
-               Adjustment& unknowns);
+  CalibrationProblem(const std::vector<SightedPlane>& planes,
+                     const GyroTurns& gyro,
+                     int width,
+                     int height,
+                     const LensPrior& prior,
+                     const PlaneAdjustmentOptions& options,
+                     Adjustment& unknowns);
 
   void solve();
 
@@ -84,7 +84,7 @@ class PlaneProblem {
   void hold_gauge(const std::vector<SightedPlane>& planes);
   void add_heights();
 
-  const AdjustmentOptions& options_;
+  const PlaneAdjustmentOptions& options_;
   Adjustment& unknowns_;
   ceres::Problem problem_;
   std::vector<ResidualSource> sources_;
