@@ -25,7 +25,9 @@ void lay_prints(cv::Mat& texture,
                 const std::vector<PrintRecipe>& prints,
                 const Eigen::Vector2d& origin,
                 std::uint64_t seed,
-                int threads) {
+                int threads,
+                const std::function<void()>& step) {
+  step();
   const double per_meter = kSheetTexelsPerMeter / face.scale;
   for (std::size_t i = 0; i < prints.size(); ++i) {
     const PrintRecipe& print = prints[i];
@@ -37,6 +39,7 @@ void lay_prints(cv::Mat& texture,
                turn_into(print.angle).topLeftCorner<2, 2>(),
                draw_print(print.kind, size, Random(seed, 100 + i))},
               threads);
+    step();
   }
 }
 
@@ -143,7 +146,10 @@ float wall_light(const SceneWall& wall, double height, double scale) {
   return static_cast<float>(direct * (1 - 0.25 * std::exp(-height / (0.06 * scale))));
 }
 
-SceneWall make_wall(const WallRecipe& recipe, double scale, int threads) {
+SceneWall make_wall(const WallRecipe& recipe,
+                    double scale,
+                    int threads,
+                    const std::function<void()>& step) {
   const Eigen::Vector2d foot = recipe.to - recipe.from;
   SceneWall wall;
   wall.foot = {recipe.from.x(), recipe.from.y(), 0};
@@ -151,7 +157,7 @@ SceneWall make_wall(const WallRecipe& recipe, double scale, int threads) {
   wall.size = {foot.norm(), recipe.height};
   const PaintedFace face{wall.size, scale};
   wall.texture = paint_face(face, recipe.surface, recipe.texture_seed, threads);
-  lay_prints(wall.texture, face, recipe.prints, -wall.size / 2, recipe.texture_seed, threads);
+  lay_prints(wall.texture, face, recipe.prints, -wall.size / 2, recipe.texture_seed, threads, step);
   for (int row = 0; row < wall.texture.rows; ++row) {
     const double height = (1 - (row + 0.5) / wall.texture.rows) * wall.size.y();
     cv::Mat pixels = wall.texture.row(row);
@@ -162,12 +168,12 @@ SceneWall make_wall(const WallRecipe& recipe, double scale, int threads) {
 
 }  // namespace
 
-Scene make_scene(const DeskRecipe& desk, int threads) {
+Scene make_scene(const DeskRecipe& desk, int threads, const std::function<void()>& step) {
   Scene scene;
   scene.desk_size = desk.size;
   scene.board = desk.board;
   scene.desk = paint_face(face_of(desk), desk.surface, desk.texture_seed, threads);
-  lay_prints(scene.desk, face_of(desk), desk.prints, {0, 0}, desk.texture_seed, threads);
+  lay_prints(scene.desk, face_of(desk), desk.prints, {0, 0}, desk.texture_seed, threads, step);
   if (desk.board) {
     const BoardRecipe& board = *desk.board;
     scene.R_board_world = turn_into(board.angle);
@@ -181,20 +187,24 @@ Scene make_scene(const DeskRecipe& desk, int threads) {
               threads);
   }
   scene.light = make_light(desk);
+  step();
   apply_light(scene, threads);
+  step();
   for (std::size_t i = 0; i < desk.boxes.size(); ++i) {
     scene.boxes.push_back(make_box(desk.boxes[i], desk.scale, Random(desk.texture_seed, 1000 + i)));
+    step();
   }
   for (const WallRecipe& wall : desk.walls) {
-    scene.walls.push_back(make_wall(wall, desk.scale, threads));
+    scene.walls.push_back(make_wall(wall, desk.scale, threads, step));
   }
   return scene;
 }
 
-Scene make_scene(const Recipe& recipe, int threads) {
+Scene make_scene(const Recipe& recipe, int threads, const std::function<void()>& step) {
   Scene scene;
-  if (has_desk(recipe)) scene = make_scene(recipe.desk, threads);
+  if (has_desk(recipe)) scene = make_scene(recipe.desk, threads, step);
   if (recipe.rubble.empty()) return scene;
+  step();
   scene.stone = make_stone(threads);
   for (const RubbleRecipe& heap : recipe.rubble) pile_rocks(scene.rocks, heap);
   return scene;

@@ -6,6 +6,7 @@
 #include "engine/synthesis/rubble.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -44,9 +45,12 @@ struct Scene {
   cv::Mat stone;  ///< CV_8UC1 of three dimensions: the brightness of a block of stone
 };
 
-Scene make_scene(const DeskRecipe& desk, int threads);
+/// Painting takes seconds: `step` is called after each part of it, and stops it where it throws.
+Scene make_scene(
+    const DeskRecipe& desk, int threads, const std::function<void()>& step = [] {});
 /// With its rubble.
-Scene make_scene(const Recipe& recipe, int threads);
+Scene make_scene(
+    const Recipe& recipe, int threads, const std::function<void()>& step = [] {});
 
 /// Interpolated texture, CV_8UC3 or CV_32FC1, at the fraction (u, v) of its width and height, v
 /// downwards.

@@ -123,7 +123,11 @@ void write_pictures(const Recipe& recipe,
                     const fs::path& folder,
                     const SynthesisProgress& progress,
                     int threads) {
-  const Scene scene = make_scene(recipe, threads);
+  const auto step = [&] {
+    if (progress) progress(0, recipe.frame_count);
+  };
+  const Scene scene = make_scene(recipe, threads, step);
+  step();
   const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
   std::string list = kPictureListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {

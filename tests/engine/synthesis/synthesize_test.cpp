@@ -288,6 +288,14 @@ TEST(Synthesize, LeavesNothingBehindWhereItIsStopped) {
   EXPECT_TRUE(fs::is_empty(folder));
 }
 
+// Who closes the window does not wait for a desk to be painted.
+TEST(Synthesize, TellsOfThePartsOfItsSceneBeforeItsFirstPicture) {
+  const Recipe recipe = recipe_of(small_recipe_text());
+  int parts = 0;
+  synthesize(recipe, test_folder("parts") / "small", [&](int done, int) { parts += done == 0; });
+  EXPECT_GE(parts, 4 + static_cast<int>(recipe.desk.prints.size() + recipe.desk.boxes.size()));
+}
+
 class Desk : public testing::Test {
  protected:
   const fs::path folder = fs::path(GPO_SOURCE_DIR) / "sequences" / "desk";
