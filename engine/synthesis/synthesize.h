@@ -23,8 +23,8 @@ struct ImuSample {
 /// Samples from 0.1 s before the first to 0.1 s after the last frame, between the frames' times.
 std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 
-/// Called for each frame, and before the first with none done, some times a second; stops
-/// everything where it throws.
+/// Called after each frame and, with none done, after each part of the scene that is painted before
+/// the first; stops everything where it throws.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
 /// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
