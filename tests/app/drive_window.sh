@@ -25,7 +25,7 @@ key shift+Left s
 until_true "Shift+Left to go ten frames back" saved 0020
 cmp -s "$name-0029.png" "$name-0030.png" && fail "pictures of two frames to differ"
 
-until_true "a window that comes to rest" at_rest
+until_true "a window that comes to rest" long_at_rest
 key F1
 until_true "F1 to list the keys" other_than before.png
 key Escape
@@ -52,7 +52,7 @@ typed=$(grep -c '"note": "/c1 n' typed.json)
 # Esc shuts a menu and nothing else; its letters are no shortcuts.
 # Where the mouse rests on nothing that tells of itself.
 xdotool mousemove --window "$window" 700 708
-until_true "a window that comes to rest" at_rest
+until_true "a window that comes to rest" long_at_rest
 cp before.png shut.png
 xdotool mousemove --window "$window" 30 13 click 1
 until_true "a click to open the menu" other_than shut.png

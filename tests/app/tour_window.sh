@@ -14,8 +14,6 @@ here=$(dirname "$0")
 source "$here/window_driver.sh"
 
 stop() { until_true "a window that comes to rest ($1)" at_rest; cp before.png "$1.png"; }
-# Nothing is computed any more.
-long_at_rest() { at_rest && sleep 3 && same_as before.png; }
 has_size() { import -window "$window" now.png; [ "$(identify -format %wx%h now.png)" = "$size" ]; }
 opened() { title_is "$1 – GPO Inspector"; }
 # state FILE KEYS...: a value of a session

@@ -4,7 +4,7 @@
 #
 # Hands on the real window, for the scripts that source this. `pid` is the program's, `window` its window's.
 
-fail() { echo "expected: $1" >&2; kill "$pid" 2> /dev/null; exit 1; }
+fail() { echo "expected: $1 (pictures in $PWD)" >&2; kill "$pid" 2> /dev/null; exit 1; }
 # Runs a command until it succeeds, for at most five minutes: a machine may have other work.
 until_true() {
   local what=$1 until=$((SECONDS + 300))
@@ -25,7 +25,14 @@ start_program() {
 window_is_there() { window=$(xdotool search --name 'GPO Inspector' 2> /dev/null | head -1); [ -n "$window" ]; }
 title_is() { [ "$(xdotool getwindowname "$window" 2> /dev/null)" = "$1" ]; }
 key() { xdotool key --window "$window" "$@"; }
-other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
+# Two pictures but for the status line, whose message goes after twelve seconds, whatever is done meanwhile.
+same() { cmp -s <(above_status_line "$1") <(above_status_line "$2"); }
+above_status_line() { convert "$1" -gravity South -chop 0x28 rgb:-; }
+same_as() { import -window "$window" now.png; same "$1" now.png; }
+other_than() { ! same_as "$1"; }
+at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
+# Nothing is computed any more.
+long_at_rest() { at_rest && sleep 3 && same_as before.png; }
 # Closes the window; the program's exit code.
 quit() {
   local until=$((SECONDS + 300))
@@ -36,8 +43,6 @@ quit() {
   done
   wait "$pid"
 }
-at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
-same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
 # As fast as hands and pasting programs do.
 type_command() { xdotool key --delay 10 ctrl+p; xdotool type --delay 10 "$1"; xdotool key --delay 10 Return; }
 mouse_to() { xdotool mousemove --window "$window" "$1" "$2"; }
