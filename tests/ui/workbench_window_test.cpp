@@ -271,7 +271,7 @@ TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
 
 /// Draws in a real window; in a process that has a display.
 TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
-  const auto inspection = made();
+  const auto& inspection = made();
   const cv::Size size(1280, 720);
   cv::Mat on_screen;
   {

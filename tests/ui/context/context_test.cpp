@@ -4,6 +4,7 @@
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
+#include "ui/views/picture/picture_texture.h"
 
 #include <cstdlib>
 
@@ -41,7 +42,7 @@ cv::Mat draw_sphere_in_gui(int width, int height) {
     const unsigned texture = render_to_texture(*window, width - 40, height - 20 - frame);
     gui.begin_frame(width, height);
     auto& list = *ImGui::GetBackgroundDrawList();
-    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)),
+    list.AddImage(imgui_texture(texture),
                   ImVec2(0, 0),
                   ImVec2(width - 40.F, height - 20.F),
                   ImVec2(0, 1),

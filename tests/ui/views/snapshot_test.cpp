@@ -54,7 +54,7 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = "GPO_TEST_KEEP='" + folder.string() + "' '" + self +
                               "' --gtest_filter='Snapshot.*SameBytesAgain' >/dev/null";
-  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT(concurrency-mt-unsafe)
+  ASSERT_EQ(std::system(command.c_str()), 0);
   const cv::Mat image = cv::imread((folder / "image.png").string());
   const cv::Mat scene = cv::imread((folder / "scene.png").string());
   EXPECT_TRUE(same_bytes(snapshot_image(made_inspection(), 34), image));

@@ -6,6 +6,7 @@
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
+#include "ui/panels/panels.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/track_colors.h"

@@ -3,6 +3,7 @@
 #include "ui/panels/facts/uncertainty_facts.h"
 
 #include "tests/ui/made_inspection.h"
+#include "ui/look/numbers.h"
 
 #include <map>
 

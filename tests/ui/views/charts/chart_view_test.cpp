@@ -20,9 +20,6 @@ namespace {
 constexpr std::uint32_t kRed = 0xFF0000;
 constexpr int kWidth = 400, kHeight = 200;
 constexpr double kTop = 24;
-/// OpenGL rounds a point to whole pixels: Mesa 22 covers one column more than its size, Mesa 25
-/// leaves out the one on the left.
-constexpr double kMostOff_px = 1.35;
 
 class ChartViewTest : public DrawingTest {};
 
@@ -37,7 +34,7 @@ Eigen::Vector2d middle_of_red(const cv::Mat& picture) {
   int count = 0;
   for (int y = 0; y < picture.rows; ++y)
     for (int x = 0; x < picture.cols; ++x) {
-      const auto bgr = picture.at<cv::Vec3b>(y, x);
+      const auto& bgr = picture.at<cv::Vec3b>(y, x);
       if (bgr[2] < 240 || bgr[1] > 15) continue;
       sum += Eigen::Vector2d(x + 0.5, y + 0.5);
       ++count;

@@ -42,27 +42,28 @@ class WorkerLinkTest : public testing::Test {
     return opened(recording);
   }
   Worker::Opened opened(const std::shared_ptr<Recording>& recording) {
-    return {recording,
-            [this, recording](const Settings& settings, std::stop_token stop, const Progress&) {
-              {
-                const std::lock_guard lock(mutex_);
-                starts_.push_back(settings.start);
-              }
-              while (hold_ && !stop.stop_requested()) std::this_thread::yield();
-              auto inspection = std::make_shared<Inspection>();
-              inspection->recording = recording;
-              inspection->settings = settings;
-              return inspection;
-            },
-            [this, recording](const std::stop_token& stop, const Progress&) {
-              while (hold_ && !stop.stop_requested()) std::this_thread::yield();
-              if (stop.stop_requested()) return Worker::Opened{};
-              Worker::Opened opened = open("desk");
-              auto calibrated = std::make_shared<Recording>(*recording);
-              calibrated->camera_source = CameraSource::self_calibrated;
-              opened.recording = calibrated;
-              return opened;
-            }};
+    return {
+        recording,
+        [this, recording](const Settings& settings, const std::stop_token& stop, const Progress&) {
+          {
+            const std::lock_guard lock(mutex_);
+            starts_.push_back(settings.start);
+          }
+          while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+          auto inspection = std::make_shared<Inspection>();
+          inspection->recording = recording;
+          inspection->settings = settings;
+          return inspection;
+        },
+        [this, recording](const std::stop_token& stop, const Progress&) {
+          while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+          if (stop.stop_requested()) return Worker::Opened{};
+          Worker::Opened opened = open("desk");
+          auto calibrated = std::make_shared<Recording>(*recording);
+          calibrated->camera_source = CameraSource::self_calibrated;
+          opened.recording = calibrated;
+          return opened;
+        }};
   }
   void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_, "example"); }
   void settle() {
