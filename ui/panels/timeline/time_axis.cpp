@@ -25,8 +25,9 @@ float slot_middle(const TimeAxis& axis, int frame) {
 }
 
 int frame_at(const TimeAxis& axis, float x) {
-  const auto slot = static_cast<int>(std::floor((x - axis.left) / slot_width(axis)));
-  return std::clamp(axis.span.first + slot, 0, axis.frames - 1);
+  // Clamped as a number with a point: a pointer that is nowhere is beyond all integers.
+  const double frame = axis.span.first + std::floor((x - axis.left) / slot_width(axis));
+  return static_cast<int>(std::clamp(frame, 0.0, axis.frames - 1.0));
 }
 
 }  // namespace gpo

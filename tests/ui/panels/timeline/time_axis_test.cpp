@@ -3,6 +3,7 @@
 #include "ui/panels/timeline/time_axis.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +23,9 @@ TEST(TimeAxis, BeyondItsEndsAreTheFirstAndLastFrame) {
   EXPECT_EQ(frame_at(axis, 100), 0);
   EXPECT_EQ(frame_at(axis, 1100), 59);
   EXPECT_EQ(frame_at(axis, 5000), 59);
+  // A pointer that is nowhere, as Dear ImGui says it.
+  EXPECT_EQ(frame_at(axis, std::numeric_limits<float>::lowest()), 0);
+  EXPECT_EQ(frame_at(axis, std::numeric_limits<float>::max()), 59);
 }
 
 TEST(TimeAxis, ShowsASpan) {
