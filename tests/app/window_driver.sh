@@ -25,14 +25,11 @@ start_program() {
 window_is_there() { window=$(xdotool search --name 'GPO Inspector' 2> /dev/null | head -1); [ -n "$window" ]; }
 title_is() { [ "$(xdotool getwindowname "$window" 2> /dev/null)" = "$1" ]; }
 key() { xdotool key --window "$window" "$@"; }
-# Two pictures but for the status line, whose message goes after twelve seconds, whatever is done meanwhile.
-same() { cmp -s <(above_status_line "$1") <(above_status_line "$2"); }
-above_status_line() { convert "$1" -gravity South -chop 0x28 rgb:-; }
-same_as() { import -window "$window" now.png; same "$1" now.png; }
-other_than() { ! same_as "$1"; }
+same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
+other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
 at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
-# Nothing is computed any more.
-long_at_rest() { at_rest && sleep 3 && same_as before.png; }
+# Nothing is computed any more, and there is no message: they go after twelve seconds.
+long_at_rest() { at_rest && sleep 13 && same_as before.png; }
 # Closes the window; the program's exit code.
 quit() {
   local until=$((SECONDS + 300))

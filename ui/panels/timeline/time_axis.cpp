@@ -25,7 +25,7 @@ float slot_middle(const TimeAxis& axis, int frame) {
 }
 
 int frame_at(const TimeAxis& axis, float x) {
-  // Clamped as a number with a point: a pointer that is nowhere is beyond all integers.
+  // Clamped before it is made an integer: Dear ImGui's place of no pointer is beyond them all.
   const double frame = axis.span.first + std::floor((x - axis.left) / slot_width(axis));
   return static_cast<int>(std::clamp(frame, 0.0, axis.frames - 1.0));
 }
