@@ -134,18 +134,17 @@ std::string bar_text(const Inspection& inspection, int frame) {
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". The window starts here: its reference frame";
-  const auto& growth = inspection.growth;
+  const std::vector<Verdict> growth = shown_growth(inspection);
   if (in_window > static_cast<int>(growth.size())) return text;
-  const auto& result = inspection.initialization;
-  const bool whole = in_window + 1 == window.frame_count() && result && result->verdict;
-  const Verdict& verdict = whole ? *result->verdict : growth[in_window - 1];
+  const Verdict& verdict = growth[in_window - 1];
   text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",
                       in_window + 1,
                       window.start,
                       frame,
                       verdict_text(verdict),
                       verdict.reason);
-  if (!whole)
+  const bool whole = in_window + 1 == window.frame_count();
+  if (!whole || !inspection.initialization || !inspection.initialization->verdict)
     text += "\n(by GPO with the rotations as given; a method that corrects them is surer)";
   return text;
 }

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -24,8 +26,7 @@ struct BarColors {
 /// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
 /// taken for one, so what is no inlier is gray. A window that failed has no colors: green would be
 /// taken for success.
-BarColors bar_colors(const Inspection& inspection, int frame) {
-  const auto& growth = inspection.growth;
+BarColors bar_colors(const Inspection& inspection, std::span<const Verdict> growth, int frame) {
   const bool failed = !inspection.initialization || !inspection.initialization->ok;
   if (failed || growth.empty())
     return {imgui_color(Role::text_dim, 0.75), imgui_color(Role::text_dim, 0.4)};
@@ -40,11 +41,12 @@ BarColors bar_colors(const Inspection& inspection, int frame) {
 void draw_tracks(
     ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
   const Window& window = *inspection.window;
+  const std::vector<Verdict> growth = shown_growth(inspection);
   const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
   for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
     const auto& points = window.points_px[i];
     const auto seen = (points.row(0).array() == points.row(0).array()).count();
-    const BarColors colors = bar_colors(inspection, i);
+    const BarColors colors = bar_colors(inspection, growth, i);
     const float left = slot_begin(axis, window.start + i);
     const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
     float y = bottom;
@@ -66,7 +68,7 @@ void draw_tracks(
 
 void draw_verdict_signs(
     ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale) {
-  for (const VerdictRun& run : verdict_runs(inspection.growth)) {
+  for (const VerdictRun& run : verdict_runs(shown_growth(inspection))) {
     const int start = inspection.window->start;
     const float left = slot_begin(axis, start + run.first);
     const float width = slot_begin(axis, start + run.last + 1) - left;

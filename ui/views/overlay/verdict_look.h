@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/initializers/common/verdict.h"
+#include "engine/inspection/inspection.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <cstdint>
@@ -22,6 +22,10 @@ ReadinessLook look_of(Readiness readiness);
 /// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.100 d": what
 /// is known of it.
 std::string verdict_text(const Verdict& verdict);
+
+/// The verdicts of windows of 2, 3, ... frames; that of the whole one is its result's, where there
+/// is one.
+std::vector<Verdict> shown_growth(const Inspection& inspection);
 
 /// Windows of consecutive lengths with the same verdict.
 struct VerdictRun {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/verdict_look.h"
 
+#include "tests/ui/made_inspection.h"
+
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -30,6 +32,20 @@ TEST(VerdictLook, RunsCountFramesOfTheWindow) {
               testing::ElementsAre(
                   VerdictRun{1, 2, degenerate}, VerdictRun{3, 3, weak}, VerdictRun{4, 5, ready}));
   EXPECT_TRUE(verdict_runs({}).empty());
+}
+
+TEST(VerdictLook, OfTheWholeWindowIsItsResults) {
+  Inspection inspection = made_inspection({.pictures = false, .normal_sigma_deg = 0.31});
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  result->verdict->readiness = weak;
+  inspection.initialization = result;
+  const std::vector<Verdict> shown = shown_growth(inspection);
+  ASSERT_EQ(shown.size(), inspection.growth.size());
+  EXPECT_EQ(inspection.growth.back().readiness, ready);
+  EXPECT_EQ(shown.back().readiness, weak);
+  EXPECT_EQ(shown[shown.size() - 2].readiness, ready);
+  result->verdict.reset();
+  EXPECT_EQ(shown_growth(inspection).back().readiness, ready) << "there is no other";
 }
 
 }  // namespace
