@@ -145,7 +145,9 @@ std::string bar_text(const Inspection& inspection, int frame) {
                       verdict.reason);
   const bool whole = in_window + 1 == window.frame_count();
   if (!whole || !inspection.initialization || !inspection.initialization->verdict)
-    text += "\n(by GPO with the rotations as given; a method that corrects them is surer)";
+    text +=
+        "\n(by GPO with the rotations as given; whether parts of the picture disagree is not "
+        "asked)";
   return text;
 }
 
