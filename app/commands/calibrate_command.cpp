@@ -10,10 +10,10 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/board/charuco.h"
+#include "engine/recording/board/board_corners.h"
 #include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/layouts/pictures_reader.h"
 
 #include <array>
 #include <cstdio>

@@ -6,6 +6,7 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"
 #include "engine/base/error.h"
+#include "engine/base/hash.h"
 #include "engine/geometry/camera_guess.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
@@ -27,19 +28,12 @@ namespace fs = std::filesystem;
 /// To be raised whenever another camera is found in the same pictures.
 constexpr int kAlgorithm = 2;
 
-/// FNV-1a.
-std::uint64_t hash(std::string_view bytes) {
-  std::uint64_t value = 14695981039346656037U;
-  for (const char byte : bytes) value = (value ^ static_cast<unsigned char>(byte)) * 1099511628211U;
-  return value;
-}
-
 /// Where the camera of these pictures is kept.
 fs::path kept_file(const Recording& recording) {
   const std::string pictures =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, hash(pictures));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(pictures));
 }
 
 /// What was kept may have been cut, or be another program's.

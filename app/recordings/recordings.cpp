@@ -3,15 +3,22 @@
 #include "app/recordings/recordings.h"
 
 #include "app/recordings/found_camera.h"
-#include "app/recordings/known_files.h"
-#include "app/recordings/own_files.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress_bar.h"
-#include "engine/recording/layouts/open_recording.h"
+#include "engine/base/error.h"
+#include "engine/experiment/results_file.h"
+#include "engine/files/folder.h"
+#include "engine/files/yaml_entry.h"
+#include "engine/recording/file_kinds.h"
 #include "engine/synthesis/synthesized.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench/session/user_folders.h"
 
+#include <algorithm>
+#include <array>
+#include <initializer_list>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -22,12 +29,54 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
-
-bool is_recipe(const fs::path& path) {
-  const fs::path extension = path.extension();
-  return (extension == ".yaml" || extension == ".yml") && fs::is_regular_file(path);
+/// Whether it is YAML or JSON with one of these keys. What cannot be read is none of ours: who
+/// reads it next will say what is wrong.
+bool has_key(const fs::path& file, std::initializer_list<const char*> keys) {
+  if (!is_yaml_name(file) && file.extension() != ".json") return false;
+  try {
+    const YamlEntry root = load_yaml(file);
+    return std::ranges::any_of(keys, [&](const char* key) { return find(root, key).has_value(); });
+  } catch (const InputError&) {
+    return false;
+  }
 }
+
+bool is_board(const fs::path& file) { return has_key(file, {"pattern"}); }
+bool is_plane(const fs::path& file) { return has_key(file, {"normal"}); }
+bool is_mounting(const fs::path& file) { return has_key(file, {"T_truth_camera"}); }
+bool is_calibration(const fs::path& file) {
+  return has_key(file, {"intrinsics", "camera_matrix", "cam0", "K", "distortion_model"});
+}
+
+struct KnownFile {
+  bool (*is)(const fs::path& file);
+  const char* what;
+  const char* instead;
+};
+
+constexpr const char* kItsFolder = "a recording, such as the folder that it lies in";
+constexpr std::array<KnownFile, 7> kKnownFiles = {
+    {{is_session, "a session", "a recording; `view --session` opens it"},
+     {is_results, "results of `evaluate`", "a recording; the window opens it"},
+     {is_picture_name, "one picture", "a recording, such as a folder of numbered pictures"},
+     {is_board, "the description of a printed board", kItsFolder},
+     {is_plane, "the true plane of a recording", kItsFolder},
+     {is_mounting, "how a truth was measured", kItsFolder},
+     {is_calibration, "the calibration of a camera", kItsFolder}}};
+
+/// Refuses a file that belongs to a recording, or to this program, but is none: a board.yaml, a
+/// calibration, a session, ... Throws InputError that says what it is and what is to be named
+/// instead. Everything else passes, also what does not exist.
+void refuse_known_file(const fs::path& path) {
+  if (!is_file(path)) return;
+  for (const KnownFile& known : kKnownFiles) {
+    if (!known.is(path)) continue;
+    throw InputError(
+        fmt::format("{}: found {}, expected {}", path.string(), known.what, known.instead));
+  }
+}
+
+constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
 
 /// Those that are about to be made: "orbit, approach", or their number where that is too long.
 std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
@@ -72,6 +121,15 @@ Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recordi
     return calibrated ? opened_for_window(calibrated) : Worker::Opened{};
   };
   return opened;
+}
+
+fs::path program_folder() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none).parent_path();
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
 }
 
 }  // namespace
@@ -136,6 +194,26 @@ Worker::Open opener_for_window(std::size_t cache_mib,
     const fs::path folder = folder_for_window(path, stop, progress);
     return opened_for_window(open_resolved(path, folder, options, false));
   };
+}
+
+fs::path example_recording() {
+  std::error_code none;
+  const fs::path here = program_folder();
+  fs::path example = fs::path("sequences") / "desk";
+  for (const fs::path& root : {here.parent_path() / "share" / "gpo-inspector",
+                               fs::path(GPO_SOURCE_DIR),
+                               here,
+                               here.parent_path(),
+                               fs::current_path(none)}) {
+    if (fs::exists(root / example, none)) return root / example;
+  }
+  return example;
+}
+
+fs::path made_recordings_folder() {
+  fs::path built = GPO_RECORDINGS_DIR;
+  if (is_below(program_folder(), built.parent_path())) return built;
+  return user_cache_folder() / "recordings";
 }
 
 }  // namespace gpo

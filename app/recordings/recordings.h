@@ -34,4 +34,12 @@ Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<std::filesystem::path>& recording = {},
                                const TopicChoices& topics = {});
 
+/// The bundled recording: in the source tree, or beside the program as it was installed
+/// (share/gpo-inspector).
+std::filesystem::path example_recording();
+
+/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the
+/// program was installed.
+std::filesystem::path made_recordings_folder();
+
 }  // namespace gpo

@@ -13,4 +13,7 @@ namespace gpo {
 /// properties are passed over. Throws InputError that names the line, or the vertex.
 Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
 
+/// Beyond this, coordinates are no result.
+inline constexpr double kLargestCoordinate = 1e12;
+
 }  // namespace gpo

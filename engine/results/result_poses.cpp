@@ -9,7 +9,6 @@
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/companions/truth_file.h"
 #include "engine/results/colmap_model.h"
-#include "engine/results/largest_coordinate.h"
 #include "engine/results/ply_points.h"
 
 #include <algorithm>

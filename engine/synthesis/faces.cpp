@@ -3,8 +3,8 @@
 #include "engine/synthesis/faces.h"
 
 #include "engine/base/parallel.h"
+#include "engine/synthesis/drawing.h"
 #include "engine/synthesis/random.h"
-#include "engine/synthesis/textures.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/textures.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
-#include "engine/files/output_folder.h"
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/synthesis/random.h"

@@ -2,34 +2,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesized.h"
 
+#include "engine/base/error.h"
+#include "engine/base/hash.h"
 #include "engine/base/parallel.h"
 #include "engine/files/text_file.h"
-#include "engine/synthesis/folder_lock.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFormat = 1;  ///< counts up when the same recipe makes other bytes
-
-/// FNV-1a.
-std::uint64_t hash(const std::string& bytes) {
-  std::uint64_t sum = 0xcbf29ce484222325ULL;
-  for (const char byte : bytes) {
-    sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  }
-  return sum;
+[[noreturn]] void refuse(const fs::path& folder, const std::error_code& why) {
+  throw InputError(fmt::format(
+      "{}: cannot be made ({}), expected a folder to write into", folder.string(), why.message()));
 }
+
+/// An open and locked descriptor; -1 where the folder went away meanwhile.
+int lock(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT) return -1;
+  if (descriptor < 0) refuse(folder, {errno, std::generic_category()});
+  while (flock(descriptor, LOCK_EX) != 0) {
+    if (errno == EINTR) continue;
+    const std::error_code why(errno, std::generic_category());
+    close(descriptor);
+    refuse(folder, why);
+  }
+  return descriptor;
+}
+
+/// Who held the lock before may have taken the folder away, and another one may be in its place.
+bool is_still_there(int descriptor, const fs::path& folder) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(descriptor, &held) == 0 && stat(folder.c_str(), &named) == 0 &&
+         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+/// Holds a folder against other threads and processes that lock it, too; the system lets go of what
+/// a killed process held. Makes the folder, and takes it away at the end where it is still empty.
+class FolderLock {
+ public:
+  /// Waits. Throws InputError where the folder cannot be made or locked.
+  explicit FolderLock(std::filesystem::path folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  int descriptor_ = -1;
+};
+
+FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)) {
+  while (true) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) refuse(folder_, error);
+    descriptor_ = lock(folder_);
+    if (descriptor_ >= 0 && is_still_there(descriptor_, folder_)) return;
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+}
+
+FolderLock::~FolderLock() {
+  std::error_code not_empty;
+  fs::remove(folder_, not_empty);
+  close(descriptor_);
+}
+
+constexpr int kFormat = 1;  ///< counts up when the same recipe makes other bytes
 
 struct Missing {
   fs::path folder;
@@ -99,7 +156,7 @@ void make_all(const std::vector<Missing>& missing, int threads, const SynthesisP
 fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache) {
   const std::string stem = recipe.stem().string();
   const std::uint64_t key =
-      hash(fmt::format("{} {}", kFormat, read_file(recipe, kMostBytesByHand)));
+      fnv1a(fmt::format("{} {}", kFormat, read_file(recipe, kMostBytesByHand)));
   return cache / fmt::format("{}-{:016x}", stem, key) / stem;
 }
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_corners.h"
 
-#include "engine/recording/board/april_tags.h"
-#include "engine/recording/board/charuco.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,16 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/euroc_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/imu_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/pictures/picture_files.h"
 
 #include <algorithm>
@@ -160,9 +157,7 @@ bool euroc_lacks_pictures(const fs::path& folder) {
   return std::ranges::none_of(list.files, is_file);
 }
 
-Recording read_euroc(const fs::path& folder,
-                     const std::optional<fs::path>& tracks,
-                     std::size_t cache_bytes) {
+Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   Recording recording;
   const fs::path calibration_file = calibration_of(folder);
   const auto calibration = read_calibration(calibration_file);
@@ -170,8 +165,8 @@ Recording read_euroc(const fs::path& folder,
   recording.T_body_camera = calibration.T_body_camera;
   PictureList list = read_picture_list(folder);
   recording.timestamps_ns = list.timestamps_ns;
-  add_pictures(recording, std::move(list), tracks.has_value(), cache_bytes);
-  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
+  add_pictures(recording, std::move(list), options.tracks.has_value(), options.cache_bytes);
+  if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
 
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);

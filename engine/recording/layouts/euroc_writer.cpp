@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/euroc_writer.h"
-
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
-#include "engine/files/output_folder.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/euroc_text.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/recording/pictures/picture_file.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"

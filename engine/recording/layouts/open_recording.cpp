@@ -4,11 +4,9 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/containers/open_bag.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/companions/sidecar_files.h"
-#include "engine/recording/layouts/layouts.h"
-#include "engine/recording/pictures/video_file.h"
+#include "engine/recording/file_kinds.h"
 #include "engine/recording/rest.h"
 
 #include <algorithm>
@@ -95,17 +93,19 @@ Found find_recording(const fs::path& path, const OpenOptions& options) {
     if (const auto found = find_layout(path, options)) return *found;
   }
   throw InputError(path.string() +
-                   ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or "
-                   "mp4, avi, mov, mkv, bag, db3, mcap");
+                   ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or " +
+                   recording_endings());
 }
 
 Recording read(const Found& found, const OpenOptions& options) {
-  const auto& [layout, path, folder, tracks] = found;
-  if (layout->read_topics != nullptr)
-    return layout->read_topics(path, tracks, options.cache_bytes, options.topics);
-  if (options.topics.empty()) return layout->read(path, tracks, options.cache_bytes);
-  throw InputError(fmt::format(
-      "{}: found {} and no topics, expected a bag for --topic", path.string(), layout->title));
+  if (!found.layout->has_topics && !options.topics.empty()) {
+    throw InputError(fmt::format("{}: found {} and no topics, expected a bag for --topic",
+                                 found.path.string(),
+                                 found.layout->title));
+  }
+  OpenOptions with_tracks = options;
+  with_tracks.tracks = found.tracks;
+  return found.layout->read(found.path, with_tracks);
 }
 
 bool is_recording_file(const fs::path& path) { return is_video_name(path) || is_bag_name(path); }

@@ -1,16 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/pictures_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/bag_reader.h"
+#include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/told_view.h"
-#include "engine/recording/layouts/tracks_reader.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/pictures/picture_files.h"
 #include "engine/recording/pictures/video_file.h"
@@ -193,9 +191,8 @@ std::shared_ptr<const FrameCache> open_pictures(const fs::path& path,
   Recording recording;  // not calibrated: of any size
   if (const auto video = video_at(path)) {
     if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).pictures;
-    throw InputError(
-        path.string() +
-        ": found a file that is no video, expected a folder or mp4, avi, mov, mkv, bag, db3, mcap");
+    throw InputError(path.string() + ": found a file that is no video, expected a folder or " +
+                     recording_endings());
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
     if (!is_folder(folder)) continue;
@@ -207,9 +204,8 @@ std::shared_ptr<const FrameCache> open_pictures(const fs::path& path,
   throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
 }
 
-Recording read_pictures(const fs::path& path,
-                        const std::optional<fs::path>& tracks,
-                        std::size_t cache_bytes) {
+Recording read_pictures(const fs::path& path, const OpenOptions& options) {
+  const auto& tracks = options.tracks;
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   const auto video = video_at(path);
   std::optional<Log> log = log_beside(folder, video);
@@ -222,11 +218,11 @@ Recording read_pictures(const fs::path& path,
   recording.T_body_camera = calibration.T_body_camera;
   VideoFile opened;
   if (video) {
-    opened = open_video(*video, recording.camera, cache_bytes);
+    opened = open_video(*video, recording.camera, options.cache_bytes);
     recording.pictures = opened.pictures;
     recording.picture_files = {*video};
   } else if (auto files = pictures_in(folder); !files.empty()) {
-    add_picture_files(recording, std::move(files), cache_bytes);
+    add_picture_files(recording, std::move(files), options.cache_bytes);
   }
   if (!found) {
     const auto& files = recording.picture_files;

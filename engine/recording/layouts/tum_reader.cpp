@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/tum_reader.h"
-
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/pictures/picture_files.h"
 
 #include <utility>
@@ -39,16 +37,14 @@ std::optional<fs::path> find_tum(const fs::path& folder) {
   return is_file(folder / "rgb.txt") ? std::optional(folder) : std::nullopt;
 }
 
-Recording read_tum(const fs::path& folder,
-                   const std::optional<fs::path>& tracks,
-                   std::size_t cache_bytes) {
+Recording read_tum(const fs::path& folder, const OpenOptions& options) {
   Recording recording;
   const CsvTable list =
       read_csv(folder / "rgb.txt", {"timestamp", ""}, CsvColumns::exactly, Separator::blanks);
   recording.timestamps_ns = csv_time_stamps(list, TimeUnit::seconds);
   recording.camera = read_calibration(calibration_in(folder)).camera;
-  add_pictures(recording, folder, list, tracks.has_value(), cache_bytes);
-  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
+  add_pictures(recording, folder, list, options.tracks.has_value(), options.cache_bytes);
+  if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }

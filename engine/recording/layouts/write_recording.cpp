@@ -8,10 +8,9 @@
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/bag_writer.h"
 #include "engine/recording/bags/message_bytes.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/sidecar_files.h"
-#include "engine/recording/layouts/camera_info.h"
 #include "engine/recording/layouts/euroc_text.h"
-#include "engine/recording/layouts/euroc_writer.h"
 #include "engine/recording/pictures/picture_file.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "engine/recording/loggers/gpmf_items.h"
 
 #include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,22 +16,15 @@ namespace {
 
 using Bytes = std::string_view;
 
-std::uint64_t unsigned_at(Bytes data, std::size_t at, int size) {
-  std::uint64_t value = 0;
-  for (int k = 0; k < size; ++k)
-    value = value << 8 | static_cast<unsigned char>(data[at + static_cast<std::size_t>(k)]);
-  return value;
-}
-
 /// A key of letters, digits and blanks as it stands, anything else as its bytes.
 std::string printable(Bytes key) {
   const bool plain = std::ranges::all_of(key, [](char c) { return c >= ' ' && c <= '~'; });
-  return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", unsigned_at(key, 0, 4));
+  return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
 }
 
 double number_at(const GpmfItem& item, std::size_t index) {
   const int size = gpmf_size(item.type);
-  const std::uint64_t bits = unsigned_at(item.data, index * static_cast<std::size_t>(size), size);
+  const std::uint64_t bits = big_endian(item.data, index * static_cast<std::size_t>(size), size);
   switch (item.type) {
     case 'b':
       return static_cast<std::int8_t>(bits);
@@ -56,8 +50,8 @@ std::optional<GpmfItem> GpmfItems::next() {
   if (rest_.size() < kHead || rest_.starts_with(Bytes("\0\0\0\0", 4))) return std::nullopt;
   GpmfItem item{rest_.substr(0, 4),
                 rest_[4],
-                static_cast<int>(unsigned_at(rest_, 5, 1)),
-                static_cast<int>(unsigned_at(rest_, 6, 2)),
+                static_cast<int>(big_endian(rest_, 5, 1)),
+                static_cast<int>(big_endian(rest_, 6, 2)),
                 {}};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;

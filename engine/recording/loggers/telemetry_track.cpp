@@ -3,9 +3,12 @@
 #include "engine/recording/loggers/telemetry_track.h"
 
 #include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
 #include "engine/recording/pictures/libav.h"
 #include "engine/recording/pictures/movie_boxes.h"
 
+#include <bit>
+#include <cstdint>
 #include <memory>
 
 #include <fmt/format.h>
@@ -16,19 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
-
-using Format = std::unique_ptr<AVFormatContext, libav::Closer<avformat_close_input>>;
-
-/// Nothing where it is no such container.
-Format open_container(const fs::path& video) {
-  AVFormatContext* opened = nullptr;
-  AVDictionary* options = nullptr;
-  av_dict_set(&options, "format_whitelist", "mov", 0);
-  const std::string address = "file:" + video.string();
-  const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
-  av_dict_free(&options);
-  return Format(error < 0 ? nullptr : opened);
-}
 
 /// The letters of a codec's tag.
 std::string tag_of(const AVStream& stream) {
@@ -53,10 +43,14 @@ AVStream* telemetry_stream(AVFormatContext& format) {
   return found;
 }
 
+constexpr std::size_t kHead = 4;  // two bytes that are reserved, two that tell the kind
+constexpr std::uint64_t kExposure = 1;
+constexpr std::uint64_t kGyroscope = 2;
+
 }  // namespace
 
 std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
-  const Format format = open_container(video);
+  const libav::Format format = libav::open_input(video, "mov");
   AVStream* stream = format ? telemetry_stream(*format) : nullptr;
   if (stream == nullptr) return std::nullopt;
   TelemetryTrack track{tag_of(*stream), {}};
@@ -84,6 +78,36 @@ std::string gopro_settings(const fs::path& video) {
   MovieFile movie(video);
   const auto box = movie.box_at({"moov", "udta", "GPMF"});
   return box ? movie.bytes_of(*box) : "";
+}
+
+CammSample parse_camm(std::string_view bytes, const std::string& source) {
+  const auto need = [&](std::size_t length) {
+    if (bytes.size() >= length) return;
+    throw InputError(fmt::format(
+        "{}: found a sample of {} bytes (cut), expected {}", source, bytes.size(), length));
+  };
+  need(kHead);
+  CammSample sample;
+  const std::uint64_t kind = little_endian(bytes, 2, 2);
+  if (kind == kExposure) {
+    need(kHead + 8);
+    const auto skew_ns = static_cast<std::int32_t>(little_endian(bytes, kHead + 4, 4));
+    sample.readout_s = 1e-9 * skew_ns;
+  }
+  if (kind == kGyroscope) {
+    need(kHead + 12);
+    Eigen::Vector3d rates;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
+      rates[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
+    }
+    if (!rates.allFinite()) {
+      throw InputError(
+          fmt::format("{}: found a rate that is not finite, expected three numbers", source));
+    }
+    sample.rates_rad_s = rates;
+  }
+  return sample;
 }
 
 }  // namespace gpo

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -28,5 +31,15 @@ std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& 
 
 /// What a GoPro says of the whole video, the box moov/udta/GPMF; empty where there is none.
 std::string gopro_settings(const std::filesystem::path& video);
+
+/// What a sample of a Camera Motion Metadata (CAMM) track says; most say one thing.
+struct CammSample {
+  std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
+  std::optional<double> readout_s;             ///< from the first row to the last
+};
+
+/// Kinds of samples that are not known are passed over. Throws InputError, which names `source`:
+/// one that is cut, or rates that are no numbers.
+CammSample parse_camm(std::string_view bytes, const std::string& source);
 
 }  // namespace gpo

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/movie_boxes.h"
 
+#include "engine/files/byte_cursor.h"
+
 #include <array>
 #include <bit>
 
@@ -15,11 +17,7 @@ using Bytes = std::string_view;
 constexpr std::uint64_t kMostBoxBytes = 1 << 20;
 constexpr int kMostBoxes = 10'000;
 
-std::uint64_t big_endian(Bytes bytes) {
-  std::uint64_t value = 0;
-  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
-  return value;
-}
+std::uint64_t big_endian(Bytes bytes) { return gpo::big_endian(bytes, 0, bytes.size()); }
 
 /// Its length and its kind, or of a key its namespace, go before what a box holds.
 struct MemoryBox {

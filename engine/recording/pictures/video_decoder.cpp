@@ -3,7 +3,6 @@
 #include "engine/recording/pictures/video_decoder.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/pictures/ffmpeg_versions.h"
 #include "engine/recording/pictures/libav.h"
 
 #include <algorithm>
@@ -24,13 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
-/// Containers of one file; playlists, which FFmpeg knows too, would open further files and
-/// addresses.
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
 
-using Format = std::unique_ptr<AVFormatContext, libav::Closer<avformat_close_input>>;
 using libav::Codec;
+using libav::Format;
 using libav::Frame;
 using libav::Packet;
 using libav::Scaler;
@@ -59,23 +56,14 @@ struct VideoDecoder::Input {
   Frame frame{av_frame_alloc()};
   Scaler scaler;
 
-  explicit Input(const fs::path& file) {
-    AVFormatContext* opened = nullptr;
-    AVDictionary* options = nullptr;
-    av_dict_set(&options, "format_whitelist", kContainers, 0);
-    // Without the protocol's name a path with a colon would be taken for an address.
-    const std::string address = "file:" + file.string();
-    const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
-    av_dict_free(&options);
-    if (error < 0) fail_to_open(file);
-    format.reset(opened);
-    if (avformat_find_stream_info(opened, nullptr) < 0) fail_to_open(file);
+  explicit Input(const fs::path& file) : format(libav::open_input(file, kContainers)) {
+    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);
     const AVCodec* decoder = nullptr;
-    const int best = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
-    stream = opened->streams[best];
-    for (unsigned i = 0; i < opened->nb_streams; ++i) {
-      if (opened->streams[i] != stream) opened->streams[i]->discard = AVDISCARD_ALL;
+    stream = format->streams[best];
+    for (unsigned i = 0; i < format->nb_streams; ++i) {
+      if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
     }
     codec.reset(avcodec_alloc_context3(decoder));
     codec->thread_count = 0;

@@ -4,12 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/files/text_file.h"
 #include "engine/recording/pictures/picture_files.h"
 #include "engine/recording/pictures/video_decoder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -73,12 +71,6 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
           std::make_shared<const FrameCache>(count, decode, left),
           static_cast<double>(index.times.front()) * index.unit_s,
           index.quarter_turns};
-}
-
-bool is_video_name(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
-  constexpr std::array<const char*, 4> kEndings = {".mp4", ".avi", ".mov", ".mkv"};
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
 }  // namespace gpo

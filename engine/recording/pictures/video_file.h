@@ -25,7 +25,4 @@ struct VideoFile {
 /// cannot be opened, is cut, or has another size than the camera.
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
 
-/// Whether the file's name ends in mp4, avi, mov or mkv.
-bool is_video_name(const std::filesystem::path& file);
-
 }  // namespace gpo

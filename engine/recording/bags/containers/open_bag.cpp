@@ -3,11 +3,7 @@
 #include "engine/recording/bags/containers/open_bag.h"
 
 #include "engine/base/error.h"
-#include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/file_bytes.h"
-#include "engine/recording/bags/containers/mcap.h"
-#include "engine/recording/bags/containers/ros1_bag.h"
-#include "engine/recording/bags/containers/sqlite_bag.h"
 
 #include <memory>
 #include <string>
@@ -19,7 +15,7 @@ Bag open_bag(const std::filesystem::path& file) {
   const std::string begin = bytes->read(0, 16);
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
   if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
-  if (begin.starts_with(kSqliteMagic)) return open_sqlite_bag(file);
+  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
   if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG")) {
     throw InputError(file.string() +
                      ": found a bag of an old format, expected version 2.0 (rosbag fix makes one)");
@@ -27,11 +23,6 @@ Bag open_bag(const std::filesystem::path& file) {
   throw InputError(
       file.string() +
       ": found no bag, expected one of ROS 1 (version 2.0), MCAP or SQLite's database");
-}
-
-bool is_bag_name(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
-  return ending == ".bag" || ending == ".db3" || ending == ".mcap";
 }
 
 }  // namespace gpo

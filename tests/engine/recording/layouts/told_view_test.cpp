@@ -6,7 +6,6 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/gpmf_view.h"
 #include "engine/recording/pictures/movie_boxes.h"
 #include "tests/engine/recording/loggers/telemetry_video.h"
 #include "tests/engine/recording/pictures/made_video.h"
