@@ -172,34 +172,40 @@ VideoDecoder::VideoDecoder(fs::path file)
   PacketTimes times;
   while (input_->read_packet()) times.add(*input_->packet, parameters.video_delay > 0);
   times.finish();
-  timed_ = times.exact;
   index_.times = std::move(times.all);
   index_.key_times = std::move(times.keys);
-  input_.reset();
-  if (timed_) return;
+  restart();
+  if (times.exact) return;
+  numbering_ = Numbering::by_count;
   index_.times.clear();
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
   for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
     index_.times.push_back(std::llround(frame * period));
   }
-  input_.reset();
-  last_ = -1;
+  restart();
 }
 
 VideoDecoder::~VideoDecoder() = default;
 
-/// Decodes the frame after the last one; its number, or -1 at the end.
+void VideoDecoder::restart() {
+  input_.reset();
+  state_ = State::begin;
+}
+
+/// Decodes the next frame; its number, or -1 at the end.
 int VideoDecoder::next_frame() {
-  if (!input_) {
-    input_ = std::make_unique<Input>(file_);
-    last_ = -1;
-  }
+  if (!input_) input_ = std::make_unique<Input>(file_);
   while (input_->decode_frame()) {
-    if (!timed_) return ++last_;
-    const auto& times = index_.times;
-    const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
-    if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
-    return last_ = static_cast<int>(at - times.begin());
+    if (numbering_ == Numbering::by_count) {
+      last_ = state_ == State::begin ? 0 : last_ + 1;
+    } else {
+      const auto& times = index_.times;
+      const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
+      if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
+      last_ = static_cast<int>(at - times.begin());
+    }
+    state_ = State::decoding;
+    return last_;
   }
   return -1;
 }
@@ -209,46 +215,46 @@ int VideoDecoder::next_frame() {
 int VideoDecoder::go_to(int frame) {
   const auto& keys = index_.key_times;
   const std::int64_t time = index_.times[frame];
+  const bool timed = numbering_ == Numbering::by_time;
   auto key = std::ranges::upper_bound(keys, time);
   if (key != keys.begin()) --key;
-  if (input_ && last_ >= 0 && frame > last_) {
-    const bool key_between = timed_ && key != keys.end() && *key > index_.times[last_];
+  if (state_ == State::decoding && frame > last_) {
+    const bool key_between = timed && key != keys.end() && *key > index_.times[last_];
     if (!key_between || frame - last_ <= kStepsWorthDecoding) return last_ + 1;
   }
   kept_.clear();
-  last_ = -1;
-  const bool seekable = timed_ && key != keys.end() && *key <= time;
-  if (!seekable || !input_ || !input_->seek(*key)) input_ = std::make_unique<Input>(file_);
+  const bool seekable = timed && key != keys.end() && *key <= time;
+  if (seekable && input_ && input_->seek(*key)) {
+    state_ = State::sought;
+  } else {
+    restart();
+  }
   if (!seekable) return 0;
   return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
 }
 
 cv::Mat VideoDecoder::decode(int frame) {
   if (const auto kept = kept_.find(frame); kept != kept_.end()) return kept->second;
-  const bool backward = last_ > frame;
+  const bool backward = state_ == State::decoding && last_ > frame;
   const int whole = go_to(frame);
   const int first_kept = backward ? std::max(whole, frame - kKept) : frame;
-  for (int tries = 0;;) {
-    const bool landed = last_ < 0;
+  while (true) {
+    const bool sought = state_ == State::sought;
     const int decoded = next_frame();
-    if (landed && decoded > frame && tries++ == 0) {
-      input_ = std::make_unique<Input>(file_);  // it led too far: from the beginning
-      last_ = -1;
+    if (sought && decoded > frame) {
+      restart();  // it led too far
       continue;
     }
-    if (decoded < 0 || decoded > frame) fail(frame);
+    if (decoded < 0 || decoded > frame) {
+      restart();
+      throw InputError(fmt::format(
+          "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+    }
     if (decoded < first_kept) continue;
     cv::Mat picture = input_->picture(file_);
     if (decoded == frame) return picture;
     kept_[decoded] = std::move(picture);
   }
-}
-
-void VideoDecoder::fail(int frame) {
-  input_.reset();
-  last_ = -1;
-  throw InputError(fmt::format(
-      "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
 }
 
 }  // namespace gpo

@@ -44,15 +44,25 @@ class VideoDecoder {
 
  private:
   struct Input;
+  /// What the next frame will be.
+  enum class State {
+    begin,    ///< the first one; the file is opened for it
+    sought,   ///< one about a key frame, which is known once it is decoded
+    decoding  ///< the one after `last_`
+  };
+  /// By what the number of a frame is known: its time, or the frames before it.
+  enum class Numbering { by_time, by_count };
+
   int next_frame();
   int go_to(int frame);
-  [[noreturn]] void fail(int frame);
+  void restart();
 
   std::filesystem::path file_;
   std::unique_ptr<Input> input_;
   VideoIndex index_;
-  bool timed_ = true;  ///< a frame is known by its time, otherwise by its count from the beginning
-  int last_ = -1;      ///< frame that was decoded last; -1: none yet
+  Numbering numbering_ = Numbering::by_time;
+  State state_ = State::begin;
+  int last_ = 0;  ///< the frame that was decoded last
   std::map<int, cv::Mat> kept_;
 };
 
