@@ -14,4 +14,14 @@ std::vector<std::string> parameter_names(const Camera& camera);
 /// Their values.
 std::vector<double> parameters(const Camera& camera);
 
+/// How many digits a file has, and who says so.
+struct YamlStyle {
+  int coefficient_digits = 6;
+  int sigma_digits = 3;
+  const char* source = "";         ///< a line
+  const char* sigmas_remark = "";  ///< a line
+};
+/// `resolution` to `distortion_coefficients_sigma`; without a lens or sigmas where there are none.
+std::string camera_yaml(const Camera& camera, const YamlStyle& style);
+
 }  // namespace gpo

@@ -83,31 +83,6 @@ class CsvText {
   int line_ = 1;
 };
 
-template <class Number>
-Number number_of(const std::string& text, const char* expected) {
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (const auto value = parse_number(text)) return *value;
-  } else if (const auto value = parse_integer(text)) {
-    if (std::in_range<Number>(*value)) return static_cast<Number>(*value);
-  }
-  throw InputError(fmt::format("found '{}', expected {}", text, expected));
-}
-
-template <class Value>
-void read_value(const std::string& text, Value& value) {
-  if constexpr (OfASetting<Value>) {
-    read_setting_cell(value.settings, value.setting, text);
-  } else if constexpr (is_optional<Value>) {
-    value.reset();
-    if (!text.empty()) read_value(text, value.emplace());
-  } else if constexpr (std::is_same_v<Value, std::string>) {
-    value = text;
-  } else {
-    value = number_of<Value>(
-        text, std::is_floating_point_v<Value> ? "a number" : "a whole number in its range");
-  }
-}
-
 void check(const Row& row) {
   if (row.status != "ok" && row.status != "failed")
     throw InputError(fmt::format("status: found '{}', expected ok or failed", row.status));
@@ -117,17 +92,10 @@ void check(const Row& row) {
 }
 
 Row row_of(const Line& line, const std::vector<std::string>& names) {
-  Row row;
-  visit_row(row, [&](const char* name, auto& value) {
+  Row row = row_from([&](const char* name) -> std::optional<std::string> {
     const auto column = std::ranges::find(names, name);
-    if (column == names.end()) return;
-    try {
-      read_value(line.cells[column - names.begin()], value);
-    } catch (const SettingError&) {
-      throw;  // names itself
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", name, error.what()));
-    }
+    if (column == names.end()) return std::nullopt;
+    return line.cells[column - names.begin()];
   });
   check(row);
   return row;

@@ -210,15 +210,12 @@ CsvTable read_csv(const std::filesystem::path& file,
                   CsvColumns columns,
                   Separator separator) {
   CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
-  std::string_view text = *table.text;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  TextLines lines(*table.text);
   std::vector<HeaderCandidate> above;
   bool named = false;
-  for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = text.find('\n');
-    const bool last = end == std::string_view::npos;
-    std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(last ? text.size() : end + 1);
+  while (const auto next = lines.next()) {
+    std::string_view line = *next;
+    const int number = lines.number();
     const bool comment = line.starts_with('#');
     if (comment) line = trimmed(line.substr(1));
     if (line.empty() || (comment && !table.rows.empty())) continue;
@@ -232,7 +229,7 @@ CsvTable read_csv(const std::filesystem::path& file,
       continue;
     }
     const CsvRow row{number, line};
-    check_count(table, row, names, columns, last);
+    check_count(table, row, names, columns, !lines.ended());
     if (table.rows.empty()) table.columns = cell_count(line, separator);
     if (table.rows.size() == kMostRows) {
       csv_fail(table, number, "one more row", fmt::format("at most {}", kMostRows));

@@ -53,36 +53,27 @@ struct Header {
 /// Walks through the lines of a file, of which the rest may be binary.
 class HeaderLines {
  public:
-  HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
+  HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), lines_(bytes) {}
 
-  bool more() const { return place_ < bytes_.size(); }
+  bool more() const { return !rest().empty(); }
   std::vector<std::string> words() {
     constexpr std::size_t kLongest = 4096;
-    const std::string_view rest = bytes_.substr(place_);
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    ++number_;
-    if (end > kLongest) fail(fmt::format("a line of {} bytes", end), "a shorter one");
-    place_ += std::min(end + 1, rest.size());
+    std::string_view line = lines_.next().value_or("");
+    if (line.size() > kLongest)
+      fail(fmt::format("a line of {} bytes", line.size()), "a shorter one");
     std::vector<std::string> words;
-    std::string_view line = trimmed(rest.substr(0, end));
-    while (!line.empty()) {
-      const std::size_t length = std::min(line.find_first_of(" \t"), line.size());
-      words.emplace_back(line.substr(0, length));
-      line = trimmed(line.substr(length));
-    }
+    while (!line.empty()) words.emplace_back(take_word(line));
     return words;
   }
-  std::string_view rest() const { return bytes_.substr(place_); }
+  std::string_view rest() const { return lines_.rest(); }
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw InputError(
-        fmt::format("{}:{}: found {}, expected {}", file_.string(), number_, found, expected));
+    throw InputError(fmt::format(
+        "{}:{}: found {}, expected {}", file_.string(), lines_.number(), found, expected));
   }
 
  private:
   const fs::path& file_;
-  std::string_view bytes_;
-  std::size_t place_ = 0;
-  int number_ = 0;
+  TextLines lines_;
 };
 
 void add_property(const std::vector<std::string>& words, const HeaderLines& lines, Header& header) {

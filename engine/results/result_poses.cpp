@@ -26,12 +26,10 @@ namespace fs = std::filesystem;
 
 /// The first line that is neither empty nor a remark nor the names of columns.
 std::string_view first_row(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty() || line[0] == '#') continue;
-    if (parse_decimal(line.substr(0, line.find_first_of(", \t")), 0)) return line;
+  TextLines lines(text);
+  while (const auto line = lines.next()) {
+    if (line->empty() || line->front() == '#') continue;
+    if (parse_decimal(line->substr(0, line->find_first_of(", \t")), 0)) return *line;
   }
   return {};
 }
@@ -45,10 +43,7 @@ std::string_view last_row(std::string_view text) {
 
 std::size_t words_in(std::string_view line) {
   std::size_t count = 0;
-  for (std::size_t at = 0; at < line.size(); ++count) {
-    at = std::min(line.find_first_of(" \t", at), line.size());
-    at = std::min(line.find_first_not_of(" \t", at), line.size());
-  }
+  for (; !line.empty(); ++count) take_word(line);
   return count;
 }
 

@@ -173,12 +173,7 @@ void shade_side(cv::Mat& side) {
 
 }  // namespace
 
-std::vector<std::string> box_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kBoxKinds.size());
-  for (const BoxKind& kind : kBoxKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> box_kinds() { return keys_of(kBoxKinds); }
 
 BoxFaces draw_box(const std::string& kind, cv::Vec3d size_px, Random random) {
   BoxFaces faces;

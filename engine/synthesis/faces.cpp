@@ -136,12 +136,7 @@ cv::Vec3f cover(const cv::Vec3f& under,
 
 }  // namespace
 
-std::vector<std::string> surface_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kSurfaceKinds.size());
-  for (const SurfaceKind& kind : kSurfaceKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> surface_kinds() { return keys_of(kSurfaceKinds); }
 
 Eigen::Vector2d texel_place(const PaintedFace& face, double col, double row, double per_meter) {
   return {(col + 0.5) / per_meter - face.size.x() / 2, face.size.y() / 2 - (row + 0.5) / per_meter};

@@ -280,12 +280,7 @@ constexpr std::array<PrintKind, 9> kPrintKinds = {{{"magazine", draw_magazine},
 
 }  // namespace
 
-std::vector<std::string> print_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kPrintKinds.size());
-  for (const PrintKind& kind : kPrintKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> print_kinds() { return keys_of(kPrintKinds); }
 
 cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random) {
   cv::Mat canvas = blank_canvas(size_px, kPaper);

@@ -3,7 +3,7 @@
 #include "engine/inspection/report/topic_info.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/open_bag.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/layouts/layouts.h"
 
 #include <fmt/format.h>

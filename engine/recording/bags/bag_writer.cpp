@@ -3,10 +3,7 @@
 #include "engine/recording/bags/bag_writer.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/mcap_record.h"
-#include "engine/recording/bags/containers/open_bag.h"
-#include "engine/recording/bags/containers/ros1_record.h"
-#include "engine/recording/bags/message_bytes.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <algorithm>
 #include <array>

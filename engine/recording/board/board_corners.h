@@ -23,6 +23,13 @@ namespace gpo {
 /// be hidden, which are NaN; its markers tell the ends apart. So do the tags of a board of tags.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
+/// Sub-pixel corners by windows of half so wide; one that moves by more than `reach_px` stays where
+/// it was. Returns which moved no further.
+std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
+                                 const cv::Mat& gray,
+                                 int half_px,
+                                 double reach_px);
+
 /// OpenCV's predefined dictionary of that name, with or without `DICT_`, in full and as OpenCV
 /// spells it: "5x5_100" -> "DICT_5X5_100". Nothing where there is none.
 std::optional<std::string> dictionary_name(const std::string& name);

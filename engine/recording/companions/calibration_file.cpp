@@ -110,8 +110,9 @@ void set_resolution(Camera& camera, const YamlEntry& entry, double width, double
   camera.height = static_cast<int>(height);
 }
 
-void set_intrinsics(
-    Camera& camera, const YamlEntry& entry, double fx, double fy, double cx, double cy) {
+/// `k`: fx, fy, cx, cy.
+void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
+  const auto& [fx, fy, cx, cy] = k;
   if (fx <= 0 || fy <= 0) {
     yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
   }
@@ -153,7 +154,7 @@ Camera euroc_camera(const YamlEntry& root) {
   set_resolution(camera, resolution, size[0], size[1]);
   const auto intrinsics = at(root, "intrinsics", "[fx, fy, cx, cy]");
   const auto k = numbers(intrinsics, 4, "4 (fx, fy, cx, cy)");
-  set_intrinsics(camera, intrinsics, k[0], k[1], k[2], k[3]);
+  set_intrinsics(camera, intrinsics, {k[0], k[1], k[2], k[3]});
   camera.distortion =
       distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
   const auto euroc_key = find(root, "distortion_coefficients");
@@ -189,7 +190,7 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   }
-  set_intrinsics(camera, matrix, k[0], k[4], k[2], k[5]);
+  set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
   const auto coefficients = find_any(root, kCoefficients);
   if (!coefficients) return camera;
   const auto fisheye = find(root, "fisheye_model");

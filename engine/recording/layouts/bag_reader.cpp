@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/bag_contents.h"
 #include "engine/recording/bags/bag_picture.h"
-#include "engine/recording/bags/containers/open_bag.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"

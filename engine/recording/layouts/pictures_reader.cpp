@@ -11,7 +11,7 @@
 #include "engine/recording/layouts/told_view.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/pictures/picture_files.h"
-#include "engine/recording/pictures/video_file.h"
+#include "engine/recording/pictures/video_decoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,42 +74,45 @@ std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   return times;
 }
 
+/// What else may tell the frames' times.
+struct OtherTimes {
+  const std::optional<Log>& log;
+  const std::vector<std::int64_t>& video_ns;
+  const Calibration& calibration;
+  const std::string& calibration_name;
+};
+
+void check_count(const fs::path& file,
+                 std::size_t found,
+                 const char* things,
+                 std::optional<int> count) {
+  if (!count || static_cast<int>(found) == *count) return;
+  throw InputError(fmt::format(
+      "{}: found {} {}, expected {}, one a picture", file.string(), found, things, *count));
+}
+
 /// Times of the frames: the file's, else the log's, else the video's, else regular ones.
-void set_times(Recording& recording,
-               const fs::path& folder,
-               std::optional<int> count,
-               const std::optional<Log>& log,
-               const std::vector<std::int64_t>& video_times,
-               const std::optional<double>& rate_hz,
-               const std::string& calibration_name) {
+std::vector<std::int64_t> frame_times(Recording& recording,
+                                      const fs::path& folder,
+                                      std::optional<int> count,
+                                      const OtherTimes& other) {
   const fs::path file = folder / "frame_timestamps.txt";
   if (auto stored = stored_times(file)) {
-    if (count && static_cast<int>(stored->size()) != *count) {
-      throw InputError(file.string() + ": found " + std::to_string(stored->size()) +
-                       " time stamps, expected " + std::to_string(*count) + ", one a picture");
-    }
-    recording.timestamps_ns = *std::move(stored);
-    return;
+    check_count(file, stored->size(), "time stamps", count);
+    return *std::move(stored);
   }
-  if (log && !log->frame_times_ns.empty()) {
-    if (count && std::ssize(log->frame_times_ns) != *count) {
-      throw InputError(log->frames_file.string() + ": found " +
-                       std::to_string(log->frame_times_ns.size()) + " frames, expected " +
-                       std::to_string(*count) + ", one a picture");
-    }
-    recording.timestamps_ns = log->frame_times_ns;
-    return;
+  if (other.log && !other.log->frame_times_ns.empty()) {
+    check_count(other.log->frames_file, other.log->frame_times_ns.size(), "frames", count);
+    return other.log->frame_times_ns;
   }
-  if (!video_times.empty()) {
-    recording.timestamps_ns = video_times;
-    return;
+  if (!other.video_ns.empty()) return other.video_ns;
+  const auto& rate_hz = other.calibration.rate_hz;
+  if (!rate_hz) {
+    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " +
+                              other.calibration_name + ": 30 frames a second are assumed");
   }
   const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
-  recording.timestamps_ns = regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
-  if (!rate_hz) {
-    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " + calibration_name +
-                              ": 30 frames a second are assumed");
-  }
+  return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
 }
 
 /// A gyroscope's table, where its maker knows nothing of the camera.
@@ -233,7 +236,8 @@ Recording read_pictures(const fs::path& path, const OpenOptions& options) {
   check_size_is_known(recording.camera, calibration_file);
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
-  set_times(recording, folder, count, log, opened.timestamps_ns, calibration.rate_hz, name);
+  recording.timestamps_ns =
+      frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
   if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
     read_tracks(*tracks, recording.frame_count());  // names the line
   }

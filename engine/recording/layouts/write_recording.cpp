@@ -7,7 +7,6 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/bag_writer.h"
-#include "engine/recording/bags/message_bytes.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/euroc_text.h"

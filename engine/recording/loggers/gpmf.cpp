@@ -3,7 +3,7 @@
 #include "engine/recording/loggers/gpmf.h"
 
 #include "engine/recording/loggers/gpmf_items.h"
-#include "engine/recording/loggers/signed_axes.h"
+#include "engine/recording/loggers/log.h"
 
 #include <array>
 #include <cmath>

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/containers/chunk_reader.h"
-#include "engine/recording/bags/containers/open_bag.h"
-#include "engine/recording/bags/containers/ros1_record.h"
-#include "engine/recording/bags/containers/topic_list.h"
 
 #include <algorithm>
 #include <functional>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/recording/bags/bag_writer.h"
-#include "engine/recording/bags/message_bytes.h"
 #include "engine/recording/bags/messages.h"
 
 #include <cstdint>
