@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/recordings/found_camera.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"

@@ -3,8 +3,8 @@
 #include "app/pictures/snapshots.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
-#include "engine/experiment/ranges.h"
 #include "engine/experiment/summary.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"

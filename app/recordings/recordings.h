@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/calibration/self_calibration.h"
 #include "engine/inspection/worker.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,8 +38,8 @@ Worker::Open opener_for_window(std::size_t cache_mib,
 /// (share/gpo-inspector).
 std::filesystem::path example_recording();
 
-/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the
-/// program was installed.
-std::filesystem::path made_recordings_folder();
+/// With a progress bar on standard error; from the recording's guess, or a field of view of 70
+/// degrees where it has another camera, which is not to be believed. Throws Interrupted.
+SelfCalibration self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
-#include "engine/calibration/report_row.h"
+#include "engine/calibration/camera_parameters.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace gpo {
 
 /// Names of what is calibrated of a camera, in order: "fx", ..., "k1", ...
@@ -23,5 +25,10 @@ struct YamlStyle {
 };
 /// `resolution` to `distortion_coefficients_sigma`; without a lens or sigmas where there are none.
 std::string camera_yaml(const Camera& camera, const YamlStyle& style);
+
+/// A line of what `calibrate` prints.
+inline std::string row(const std::string& name, const std::string& value) {
+  return fmt::format("{:<12}{}\n", name, value);
+}
 
 }  // namespace gpo

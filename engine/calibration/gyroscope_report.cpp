@@ -3,7 +3,6 @@
 #include "engine/calibration/gyroscope_report.h"
 
 #include "engine/calibration/camera_parameters.h"
-#include "engine/calibration/report_row.h"
 #include "engine/geometry/pose.h"
 
 #include <array>

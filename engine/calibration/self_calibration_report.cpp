@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/camera_parameters.h"
-#include "engine/calibration/report_row.h"
 #include "engine/calibration/self_calibration.h"
 
 #include <fmt/format.h>

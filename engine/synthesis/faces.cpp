@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/faces.h"
 
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"

@@ -3,7 +3,6 @@
 #include "engine/synthesis/recipe.h"
 
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/faces.h"
 #include "engine/synthesis/strict_yaml.h"
 
 #include <cmath>

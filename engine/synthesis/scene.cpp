@@ -4,7 +4,6 @@
 
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/faces.h"
 #include "engine/synthesis/random.h"
 
 #include <algorithm>

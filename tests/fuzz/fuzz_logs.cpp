@@ -6,7 +6,6 @@
 #include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/loggers/telemetry_track.h"
-#include "engine/recording/pictures/movie_boxes.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/fuzzed_folder.h"
 

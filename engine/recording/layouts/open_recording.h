@@ -3,9 +3,14 @@
 #pragma once
 
 #include "engine/recording/layouts/layouts.h"
+#include "engine/recording/recording.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -13,5 +18,18 @@ namespace gpo {
 /// is known to exist. Throws InputError.
 std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
                                                 const OpenOptions& options = {});
+
+/// A stretch of time in which neither the gyroscope's rates vary nor the pictures move: what the
+/// gyroscope says there is its bias.
+struct Rest {
+  std::int64_t first_ns = 0;  ///< camera's clock
+  std::int64_t last_ns = 0;
+  Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
+  double sigma_rad_s = 0;  ///< each axis: by its noise, and by what the pictures may hide
+};
+
+/// The longest one of at least 0.75 s. Looks at pictures (or tracks) only where the gyroscope seems
+/// to rest. Throws InputError where a picture cannot be read.
+std::optional<Rest> find_rest(const Recording& recording);
 
 }  // namespace gpo

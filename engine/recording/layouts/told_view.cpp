@@ -5,10 +5,9 @@
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/loggers/gpmf_items.h"
+#include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/telemetry_track.h"
 #include "engine/recording/pictures/libav.h"
-#include "engine/recording/pictures/movie_boxes.h"
 
 #include <array>
 #include <cmath>
