@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -56,14 +57,6 @@ void read_value(const std::string& text, Value& value) {
   }
 }
 
-/// Quoted where it holds a comma, a quote or a line's end.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 template <class Value>
 std::string value_cell(const Value& value) {
   if constexpr (OfASetting<Value>) {
@@ -71,7 +64,7 @@ std::string value_cell(const Value& value) {
   } else if constexpr (is_optional<Value>) {
     return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
-    return cell(value);
+    return csv_quoted(value);
   } else {
     return fmt::format("{}", value);
   }

@@ -285,4 +285,57 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
   return times;
 }
 
+QuotedCsv::QuotedCsv(const std::filesystem::path& file) : file_(file), text_(read_file(file)) {}
+
+QuotedCsv::Row QuotedCsv::next() {
+  Row row{line_, {}};
+  while (true) {
+    row.cells.push_back(cell());
+    const char after = at_end() ? '\n' : text_[at_++];
+    if (after == ',') continue;
+    if (after == '\n') break;
+    throw InputError(fmt::format(
+        "{}:{}: found '{}' after a quoted cell, expected a comma", file_.string(), line_, after));
+  }
+  ++line_;
+  return row;
+}
+
+std::string QuotedCsv::cell() {
+  if (!at_end() && text_[at_] == '"') return quoted_cell();
+  const std::size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
+  std::string plain = text_.substr(at_, end - at_);
+  at_ = end;
+  if (!plain.empty() && plain.back() == '\r') plain.pop_back();
+  return plain;
+}
+
+/// From its first quote to its last; a quote within is written twice.
+std::string QuotedCsv::quoted_cell() {
+  std::string cell;
+  const int first_line = line_;
+  while (true) {
+    const std::size_t quote = text_.find('"', at_ + 1);
+    if (quote == std::string::npos) {
+      throw InputError(
+          fmt::format("{}:{}: found a quote that does not end", file_.string(), first_line));
+    }
+    const std::string_view part = std::string_view(text_).substr(at_ + 1, quote - at_ - 1);
+    line_ += static_cast<int>(std::ranges::count(part, '\n'));
+    cell += part;
+    at_ = quote + 1;
+    if (at_end() || text_[at_] != '"') break;
+    cell += '"';
+  }
+  if (!at_end() && text_[at_] == '\r') ++at_;
+  return cell;
+}
+
+std::string csv_quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 }  // namespace gpo
