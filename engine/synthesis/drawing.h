@@ -28,14 +28,14 @@ double ratio_of(const cv::Mat& canvas);
 cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
 
 enum class Face { sans, bold, serif };
-/// Text whose capitals are `height` high, base line at y; shrunk to fit into `max_width`.
-void draw_text(cv::Mat& canvas,
-               const std::string& text,
-               cv::Point2d place,
-               double height,
-               const cv::Scalar& color,
-               Face face = Face::sans,
-               double max_width = 1e9);
+struct TextStyle {
+  double height;  ///< of capitals
+  cv::Scalar color;
+  Face face = Face::sans;
+  double max_width = 1e9;  ///< it is shrunk to fit into this
+};
+/// `place` is where the base line begins.
+void draw_text(cv::Mat& canvas, const std::string& text, cv::Point2d place, const TextStyle& style);
 std::string pick_word(Random& random);
 /// The last one is drawn first.
 std::string pick_words(int count, Random& random);

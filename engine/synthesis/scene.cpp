@@ -18,15 +18,20 @@ namespace {
 constexpr double kLightTexelsPerMeter = 400;  ///< at scale 1
 const cv::Vec3f kBoardPaper(232, 237, 239);
 
-/// Draws the prints and lays them, the last one on top; their centers are from `origin` on.
+struct PrintLayout {
+  const std::vector<PrintRecipe>& prints;
+  Eigen::Vector2d origin;  ///< from which their centers are
+  std::uint64_t seed;
+};
+
+/// Draws the prints and lays them, the last one on top.
 void lay_prints(cv::Mat& texture,
                 const PaintedFace& face,
-                const std::vector<PrintRecipe>& prints,
-                const Eigen::Vector2d& origin,
-                std::uint64_t seed,
+                const PrintLayout& layout,
                 int threads,
                 const std::function<void()>& step) {
   step();
+  const auto& [prints, origin, seed] = layout;
   const double per_meter = kSheetTexelsPerMeter / face.scale;
   for (std::size_t i = 0; i < prints.size(); ++i) {
     const PrintRecipe& print = prints[i];
@@ -156,7 +161,8 @@ SceneWall make_wall(const WallRecipe& recipe,
   wall.size = {foot.norm(), recipe.height};
   const PaintedFace face{wall.size, scale};
   wall.texture = paint_face(face, recipe.surface, recipe.texture_seed, threads);
-  lay_prints(wall.texture, face, recipe.prints, -wall.size / 2, recipe.texture_seed, threads, step);
+  lay_prints(
+      wall.texture, face, {recipe.prints, -wall.size / 2, recipe.texture_seed}, threads, step);
   for (int row = 0; row < wall.texture.rows; ++row) {
     const double height = (1 - (row + 0.5) / wall.texture.rows) * wall.size.y();
     cv::Mat pixels = wall.texture.row(row);
@@ -172,7 +178,7 @@ Scene make_scene(const DeskRecipe& desk, int threads, const std::function<void()
   scene.desk_size = desk.size;
   scene.board = desk.board;
   scene.desk = paint_face(face_of(desk), desk.surface, desk.texture_seed, threads);
-  lay_prints(scene.desk, face_of(desk), desk.prints, {0, 0}, desk.texture_seed, threads, step);
+  lay_prints(scene.desk, face_of(desk), {desk.prints, {0, 0}, desk.texture_seed}, threads, step);
   if (desk.board) {
     const BoardRecipe& board = *desk.board;
     scene.R_board_world = turn_into(board.angle);

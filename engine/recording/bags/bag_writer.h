@@ -13,7 +13,7 @@
 
 namespace gpo {
 
-/// What is written: a name and a type that message_bytes.h knows.
+/// What is written: a name and a type that `message_type` knows.
 struct WrittenTopic {
   std::string name;
   std::string type;
