@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
-#include "engine/results/ply_points.h"
 
 #include <algorithm>
 #include <array>
