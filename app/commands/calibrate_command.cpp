@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/recordings/found_camera.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"
@@ -10,10 +9,10 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/board/charuco.h"
+#include "engine/recording/board/board_corners.h"
 #include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/layouts/pictures_reader.h"
 
 #include <array>
 #include <cstdio>

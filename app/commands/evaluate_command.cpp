@@ -8,7 +8,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/summary_json.h"
 #include "engine/experiment/tables.h"
 #include "engine/experiment/window_files.h"
 #include "engine/files/json_text.h"

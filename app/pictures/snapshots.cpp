@@ -3,6 +3,10 @@
 #include "app/pictures/snapshots.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
+#include "engine/experiment/figures.h"
+#include "engine/experiment/summary.h"
+#include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 #include "ui/views/figures/figure_view.h"
 #include "ui/views/snapshot.h"
@@ -31,6 +35,19 @@ int frame_to_draw(const ViewRequest& request, const Recording& recording) {
                                  recording.frame_count() - 1));
 }
 
+/// One inspection a configuration, in their order.
+std::vector<std::shared_ptr<const Inspection>> inspect_each(
+    const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request) {
+  Inspector inspector(recording);
+  const std::vector<Configuration> configurations = configurations_of(request);
+  const Settings base = base_of(configurations, request.window);
+  std::vector<std::shared_ptr<const Inspection>> inspections;
+  inspections.reserve(configurations.size());
+  for (const Configuration& configuration : configurations)
+    inspections.push_back(inspector.inspect(apply(configuration, base)));
+  return inspections;
+}
+
 DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
                        const ViewRequest& request) {
   DrawnView drawn;
@@ -45,13 +62,6 @@ DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
           failure_text(key_of(configuration_of(inspection->settings)), result.reason));
   }
   return drawn;
-}
-
-DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
-                      const ViewRequest& request) {
-  const LengthCurves curves = curves_over_length(recording, request.compared);
-  const cv::Size pixels = request.size.value_or(default_figure_size(curves.figure));
-  return {draw_figure(curves.figure, pixels), curves.any_ok, curves.longest, curves.failures};
 }
 
 cv::Mat picture_of(const ViewRequest& request,
@@ -79,7 +89,69 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   return drawn;
 }
 
+/// Descending.
+std::vector<int> lengths_of(const ComparisonRequest& request) {
+  const std::string text = request.lengths.value_or("5:end:5");
+  std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
+  if (lengths.empty() || lengths.front() < 2) {
+    throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
+                                 text,
+                                 request.window.frames));
+  }
+  std::ranges::reverse(lengths);
+  return lengths;
+}
+
+/// The errors over the length of windows from one start.
+DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
+                      const ViewRequest& request) {
+  const std::vector<Configuration> configurations = configurations_of(request.compared);
+  Settings window = base_of(configurations, request.compared.window);
+  FigurePlan plan{"curves", "", {}};
+  for (const Configuration& configuration : configurations)
+    plan.configurations.push_back(configuration_of(apply(configuration, window)));
+  DrawnView drawn;
+  std::vector<Row> rows;
+  Inspector inspector(recording);
+  // The longest window first: the Inspector keeps its tracks for the others.
+  for (const int length : lengths_of(request.compared)) {
+    window.frames = length;
+    for (const Configuration& configuration : configurations) {
+      const auto inspection = inspector.inspect(apply(configuration, window));
+      if (!inspection->truth) {
+        throw InputError(fmt::format(
+            "--view curves: {} has no ground truth to measure errors against", recording->name));
+      }
+      rows.push_back(make_row(*inspection));
+      if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
+    }
+  }
+  std::ranges::reverse(rows);
+  Figure figure = figure_over_length(rows, plan);
+  // One window a length is what was asked for here, not few of many.
+  for (Chart& chart : figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
+  figure.title =
+      fmt::format("{}: windows from frame {}, by their length", recording->name, window.start);
+  for (const Configuration& configuration : plan.configurations) {
+    const auto own = rows_of(rows, {&configuration, 1});
+    const bool solved = std::ranges::any_of(own, &Row::ok);
+    drawn.ok |= solved;
+    if (!solved)
+      drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
+  }
+  drawn.picture = draw_figure(figure, request.size.value_or(default_figure_size(figure)));
+  return drawn;
+}
+
 }  // namespace
+
+std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
+  if (request.methods) return parse_configurations(*request.methods);
+  std::vector<Configuration> all;
+  for (const Method& method : methods()) all.push_back({.method = method.key});
+  return all;
+}
 
 const std::vector<std::string>& view_names() {
   static const std::vector<std::string> names{

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "app/pictures/comparison.h"
+#include "engine/experiment/configuration.h"
+#include "engine/inspection/inspection.h"
 
 #include <memory>
 #include <optional>
@@ -13,6 +14,16 @@
 #include <opencv2/core/mat.hpp>
 
 namespace gpo {
+
+/// What methods are compared on: one window, or all its beginnings.
+struct ComparisonRequest {
+  std::optional<std::string> methods;  ///< as `evaluate` reads them; default: the methods' table
+  std::optional<std::string> lengths;  ///< of the windows; default: 5 to the window's, by 5
+  Settings window;                     ///< what no configuration names is as here
+};
+
+/// What is compared, in its order. Throws InputError.
+std::vector<Configuration> configurations_of(const ComparisonRequest& request);
 
 /// One picture of one recording.
 struct ViewRequest {

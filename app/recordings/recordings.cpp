@@ -2,17 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings/recordings.h"
 
-#include "app/recordings/found_camera.h"
-#include "app/recordings/known_files.h"
-#include "app/recordings/own_files.h"
 #include "app/terminal/interrupt.h"
+#include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"
-#include "engine/recording/layouts/open_recording.h"
-#include "engine/synthesis/synthesized.h"
+#include "engine/base/error.h"
+#include "engine/base/hash.h"
+#include "engine/experiment/results_file.h"
+#include "engine/files/folder.h"
+#include "engine/files/yaml_entry.h"
+#include "engine/geometry/camera_guess.h"
+#include "engine/recording/camera_source.h"
+#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/content.h"
+#include "engine/recording/file_kinds.h"
+#include "engine/synthesis/synthesize.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench/session/user_folders.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,12 +37,71 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
-
-bool is_recipe(const fs::path& path) {
-  const fs::path extension = path.extension();
-  return (extension == ".yaml" || extension == ".yml") && fs::is_regular_file(path);
+/// Whether it is YAML or JSON with one of these keys. What cannot be read is none of ours: who
+/// reads it next will say what is wrong.
+bool has_key(const fs::path& file, std::initializer_list<const char*> keys) {
+  if (!is_yaml_name(file) && file.extension() != ".json") return false;
+  try {
+    const YamlEntry root = load_yaml(file);
+    return std::ranges::any_of(keys, [&](const char* key) { return find(root, key).has_value(); });
+  } catch (const InputError&) {
+    return false;
+  }
 }
+
+bool is_board(const fs::path& file) { return has_key(file, {"pattern"}); }
+bool is_plane(const fs::path& file) { return has_key(file, {"normal"}); }
+bool is_mounting(const fs::path& file) { return has_key(file, {"T_truth_camera"}); }
+bool is_calibration(const fs::path& file) {
+  return has_key(file, {"intrinsics", "camera_matrix", "cam0", "K", "distortion_model"});
+}
+
+struct KnownFile {
+  bool (*is)(const fs::path& file);
+  const char* what;
+  const char* instead;
+};
+
+constexpr const char* kItsFolder = "a recording, such as the folder that it lies in";
+constexpr std::array<KnownFile, 7> kKnownFiles = {
+    {{is_session, "a session", "a recording; `view --session` opens it"},
+     {is_results, "results of `evaluate`", "a recording; the window opens it"},
+     {is_picture_name, "one picture", "a recording, such as a folder of numbered pictures"},
+     {is_board, "the description of a printed board", kItsFolder},
+     {is_plane, "the true plane of a recording", kItsFolder},
+     {is_mounting, "how a truth was measured", kItsFolder},
+     {is_calibration, "the calibration of a camera", kItsFolder}}};
+
+/// Refuses a file that belongs to a recording, or to this program, but is none: a board.yaml, a
+/// calibration, a session, ... Throws InputError that says what it is and what is to be named
+/// instead. Everything else passes, also what does not exist.
+void refuse_known_file(const fs::path& path) {
+  if (!is_file(path)) return;
+  for (const KnownFile& known : kKnownFiles) {
+    if (!known.is(path)) continue;
+    throw InputError(
+        fmt::format("{}: found {}, expected {}", path.string(), known.what, known.instead));
+  }
+}
+
+fs::path program_folder() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none).parent_path();
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the
+/// program was installed.
+fs::path made_recordings_folder() {
+  fs::path built = GPO_RECORDINGS_DIR;
+  if (is_below(program_folder(), built.parent_path())) return built;
+  return user_cache_folder() / "recordings";
+}
+
+constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
 
 /// Those that are about to be made: "orbit, approach", or their number where that is too long.
 std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
@@ -65,6 +139,76 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   return made;
 }
 
+/// To be raised whenever another camera is found in the same pictures.
+constexpr int kAlgorithm = 2;
+
+/// Where the camera of these pictures is kept.
+fs::path kept_file(const Recording& recording) {
+  const std::string pictures =
+      content_of(recording).at("pictures") + fs::absolute(recording.path).string();
+  return recording.cache_folder / "cameras" /
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(pictures));
+}
+
+/// What was kept may have been cut, or be another program's.
+std::optional<Camera> kept_camera(const fs::path& file) {
+  try {
+    if (!fs::exists(file)) return std::nullopt;
+    return read_calibration(file).camera;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// A guess may rest on what the camera wrote; any other camera is not to be believed here.
+Camera start_of(const Recording& recording) {
+  const Camera& camera = recording.camera;
+  return recording.camera_source == CameraSource::guess
+             ? camera
+             : camera_of_view(camera.width, camera.height);
+}
+
+SelfCalibration calibrate(const Recording& recording,
+                          const CalibrationProgress& progress,
+                          const std::stop_token& stop) {
+  // Without its axes a gyroscope tells nothing of the camera.
+  const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
+  return calibrate_from_plane(*recording.pictures,
+                              start_of(recording),
+                              with_gyroscope ? &*recording.gyroscope : nullptr,
+                              recording.timestamps_ns,
+                              {},
+                              progress,
+                              stop);
+}
+
+/// Keeps what was found, and gives it to the recording as it will be read the next time.
+void keep(const SelfCalibration& found, Recording& recording) {
+  const fs::path file = kept_file(recording);
+  write_output(file, to_yaml(found, recording.name));
+  set_camera(recording,
+             kept_camera(file).value_or(found.lens.camera),
+             CameraSource::self_calibrated,
+             "kept in " + file.string());
+}
+
+std::string why_not(const SelfCalibration& found) {
+  return "calibration from the plane failed: " + found.lens.reason;
+}
+
+/// The recording with the camera that is found in its pictures, which is kept in the user's cache;
+/// null where it was stopped. Throws InputError with the reason where none is found.
+std::shared_ptr<const Recording> self_calibrated(const Recording& recording,
+                                                 const std::stop_token& stop,
+                                                 const CalibrationProgress& progress) {
+  const SelfCalibration found = calibrate(recording, progress, stop);
+  if (stop.stop_requested()) return nullptr;
+  if (!found.lens.ok) throw InputError(why_not(found));
+  Recording calibrated = recording;
+  keep(found, calibrated);
+  return std::make_shared<const Recording>(std::move(calibrated));
+}
+
 Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
   Worker::Opened opened = Worker::with_inspector(recording);
   opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
@@ -92,6 +236,24 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 }
 
 namespace {
+
+/// Gives a recording the camera that was found in the same pictures before, from the user's cache;
+/// where there is none and `calibrates`, finds one now and keeps it there. Where it cannot be
+/// found, a note says why and the guess stays.
+void use_found_camera(Recording& recording, bool calibrates) {
+  if (!recording.pictures) return;
+  const fs::path file = kept_file(recording);
+  if (const auto camera = kept_camera(file)) {
+    set_camera(recording, *camera, CameraSource::self_calibrated, "kept in " + file.string());
+    return;
+  }
+  if (!calibrates) return;
+  const SelfCalibration found = self_calibrate(recording);
+  if (found.lens.ok)
+    keep(found, recording);
+  else
+    recording.notes.push_back(why_not(found));
+}
 
 /// `folder` is what is read, `path` what the user gave.
 std::shared_ptr<const Recording> open_resolved(const fs::path& path,
@@ -136,6 +298,36 @@ Worker::Open opener_for_window(std::size_t cache_mib,
     const fs::path folder = folder_for_window(path, stop, progress);
     return opened_for_window(open_resolved(path, folder, options, false));
   };
+}
+
+fs::path example_recording() {
+  std::error_code none;
+  const fs::path here = program_folder();
+  fs::path example = fs::path("sequences") / "desk";
+  for (const fs::path& root : {here.parent_path() / "share" / "gpo-inspector",
+                               fs::path(GPO_SOURCE_DIR),
+                               here,
+                               here.parent_path(),
+                               fs::current_path(none)}) {
+    if (fs::exists(root / example, none)) return root / example;
+  }
+  return example;
+}
+
+SelfCalibration self_calibrate(const Recording& recording) {
+  const Interrupt interrupt;
+  std::optional<ProgressBar> bar;
+  std::string shown;
+  const auto progress = [&](const char* what, int done, int of) {
+    interrupt.check("nothing was written");
+    if (shown != what) bar.emplace(what);
+    shown = what;
+    bar->show(done, of);
+  };
+  SelfCalibration found = calibrate(recording, progress, interrupt.token());
+  bar.reset();
+  interrupt.check("nothing was written");
+  return found;
 }
 
 }  // namespace gpo

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/calibration/self_calibration.h"
 #include "engine/inspection/worker.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,5 +33,13 @@ std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
 Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<std::filesystem::path>& recording = {},
                                const TopicChoices& topics = {});
+
+/// The bundled recording: in the source tree, or beside the program as it was installed
+/// (share/gpo-inspector).
+std::filesystem::path example_recording();
+
+/// With a progress bar on standard error; from the recording's guess, or a field of view of 70
+/// degrees where it has another camera, which is not to be believed. Throws Interrupted.
+SelfCalibration self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -24,13 +24,6 @@ constexpr const char* to_string(E value) {
   return ChoiceKeys<E>::keys[static_cast<std::size_t>(value)];
 }
 
-template <Choice E>
-bool is_choice(const std::string& key) {
-  for (const char* known : ChoiceKeys<E>::keys)
-    if (key == known) return true;
-  return false;
-}
-
 /// Throws SettingError that names the known ones.
 [[noreturn]] void refuse_choice(const char* name,
                                 const std::string& key,

@@ -2,30 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
-#include "engine/calibration/report_row.h"
+#include "engine/calibration/camera_parameters.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 
 namespace {
-
-/// "[1, 2]", rounded to `digits` significant ones.
-std::string list(const std::vector<double>& values, int digits) {
-  std::string text;
-  for (const double value : values) {
-    text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
-  }
-  return fmt::format("[{}]", text);
-}
-
-std::vector<double> first_four(const std::vector<double>& all) {
-  return {all.begin(), all.begin() + 4};
-}
-std::vector<double> coefficients(const std::vector<double>& all) {
-  return {all.begin() + 4, all.end()};
-}
 
 std::string seen(const CameraCalibration& calibration) {
   return fmt::format("corners in {:.0f} % of the picture, board slanted by up to {:.0f} deg",
@@ -41,8 +24,6 @@ std::string board(const CameraCalibration& calibration) {
 }  // namespace
 
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source) {
-  const Camera& camera = calibration.camera;
-  const auto values = parameters(camera);
   std::string text = fmt::format("# calibrated from {}: {} views of a board, RMS {:.2f} px\n# {}\n",
                                  source,
                                  calibration.frames.size(),
@@ -52,19 +33,11 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
   for (const std::string& warning : calibration.warnings) {
     text += fmt::format("# warning: {}\n", warning);
   }
-  text += fmt::format(
-      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
-      "distortion_model: {}\ndistortion_coefficients: {}\n",
-      camera.width,
-      camera.height,
-      list(first_four(values), 8),
-      camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
-      list(coefficients(values), 6));
-  return text + fmt::format(
-                    "# standard deviations, from leaving out blocks of time\n"
-                    "intrinsics_sigma: {}\ndistortion_coefficients_sigma: {}\n",
-                    list(first_four(calibration.sigmas), 3),
-                    list(coefficients(calibration.sigmas), 3));
+  Camera with_sigmas = calibration.camera;
+  with_sigmas.sigmas = calibration.sigmas;
+  return text +
+         camera_yaml(with_sigmas,
+                     {.sigmas_remark = "# standard deviations, from leaving out blocks of time\n"});
 }
 
 std::string to_text(const CameraCalibration& calibration) {

@@ -6,7 +6,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/board_pose.h"
-#include "engine/recording/pictures/each_picture.h"
+#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
 #include <cmath>

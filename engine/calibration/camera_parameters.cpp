@@ -5,6 +5,8 @@
 #include <array>
 #include <span>
 
+#include <fmt/format.h>
+
 namespace gpo {
 
 std::vector<std::string> parameter_names(const Camera& camera) {
@@ -22,6 +24,35 @@ std::vector<double> parameters(const Camera& camera) {
   std::vector<double> values = {camera.fx, camera.fy, camera.cx, camera.cy};
   values.insert(values.end(), camera.coefficients.begin(), camera.coefficients.end());
   return values;
+}
+
+std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
+  const auto list = [](std::span<const double> values, int digits) {
+    std::string text;
+    for (const double value : values)
+      text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
+    return fmt::format("[{}]", text);
+  };
+  const std::vector<double> all = parameters(camera);
+  const std::span<const double> values = all, sigmas = camera.sigmas;
+  std::string text = fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\n{}intrinsics: {}  # fx, fy, cx, cy\n",
+      camera.width,
+      camera.height,
+      style.source,
+      list(values.first(4), 8));
+  if (camera.distortion != Distortion::none)
+    text += fmt::format(
+        "distortion_model: {}\ndistortion_coefficients: {}\n",
+        camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
+        list(values.subspan(4), style.coefficient_digits));
+  if (sigmas.size() != values.size()) return text;
+  text += fmt::format(
+      "{}intrinsics_sigma: {}\n", style.sigmas_remark, list(sigmas.first(4), style.sigma_digits));
+  if (values.size() > 4)
+    text += fmt::format("distortion_coefficients_sigma: {}\n",
+                        list(sigmas.subspan(4), style.sigma_digits));
+  return text;
 }
 
 }  // namespace gpo

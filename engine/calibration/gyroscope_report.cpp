@@ -3,7 +3,6 @@
 #include "engine/calibration/gyroscope_report.h"
 
 #include "engine/calibration/camera_parameters.h"
-#include "engine/calibration/report_row.h"
 #include "engine/geometry/pose.h"
 
 #include <array>
@@ -37,14 +36,6 @@ std::string vector_text(const Vector3d& v, int digits) {
   return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
-Curve curve(const char* name, std::uint32_t rgb, const std::vector<double>& x) {
-  Curve one;
-  one.name = name;
-  one.rgb = rgb;
-  one.x = x;
-  return one;
-}
-
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// Between windows the pictures tell nothing: a gap.
 constexpr double kGap_s = 0.3;
@@ -56,7 +47,6 @@ double rotation_between_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) 
 }
 
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
-  const std::vector<double> values = parameters(camera);
   const auto row_of = [&](int k) {
     const Vector3d r = fit.R_gyro_camera.row(k);
     return fmt::format("[{:.9f}, {:.9f}, {:.9f}, 0]", r.x(), r.y(), r.z());
@@ -76,23 +66,7 @@ std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::st
         fmt::format("# the clocks drift by {:.1f} +- {:.1f} us/s, which this file cannot tell\n",
                     1e6 * *fit.drift,
                     1e6 * fit.drift_sigma);
-  text += fmt::format(
-      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: [{:.8g}]  # fx, fy, cx, cy\n",
-      camera.width,
-      camera.height,
-      fmt::join(values.begin(), values.begin() + 4, ", "));
-  if (camera.distortion != Distortion::none)
-    text += fmt::format(
-        "distortion_model: {}\ndistortion_coefficients: [{:.8g}]\n",
-        camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
-        fmt::join(values.begin() + 4, values.end(), ", "));
-  if (camera.sigmas.size() == values.size()) {
-    text += fmt::format("intrinsics_sigma: [{:.4g}]\n",
-                        fmt::join(camera.sigmas.begin(), camera.sigmas.begin() + 4, ", "));
-    if (values.size() > 4)
-      text += fmt::format("distortion_coefficients_sigma: [{:.4g}]\n",
-                          fmt::join(camera.sigmas.begin() + 4, camera.sigmas.end(), ", "));
-  }
+  text += camera_yaml(camera, {.coefficient_digits = 8, .sigma_digits = 4});
   return text + fmt::format("T_BS: [{}, {}, {}, [0, 0, 0, 1]]\ntimeshift_cam_imu: {:.6f}  # s\n",
                             row_of(0),
                             row_of(1),
@@ -158,47 +132,45 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
 
 std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
   constexpr std::uint32_t kPictures = 0x222222, kBefore = 0xD55E00, kAfter = 0x0072B2;
-  std::vector<Chart> charts;
-  const auto fill = [&](Curve& one, const auto& value) {
-    std::vector<double> x;
+  const auto curve = [&](const char* name, std::uint32_t rgb, const auto& value) {
+    Curve one;
+    one.name = name;
+    one.rgb = rgb;
+    one.dotted = rgb == kBefore;
     for (std::size_t k = 0; k < rates.time_s.size(); ++k) {
       if (k > 0 && rates.time_s[k] - rates.time_s[k - 1] > kGap_s) {
-        x.push_back(rates.time_s[k - 1] + 1e-6);
+        one.x.push_back(rates.time_s[k - 1] + 1e-6);
         one.y.push_back(kNothing);
       }
-      x.push_back(rates.time_s[k]);
+      one.x.push_back(rates.time_s[k]);
       one.y.push_back(value(k));
     }
-    one.x = x;
+    return one;
   };
+  /// What the gyroscope says, before and after; `of(rates, k)` is a sample's value.
+  const auto both = [&](const auto& of) {
+    return std::vector{
+        curve("gyroscope, as recorded", kBefore, [&](auto k) { return of(rates.before_rad_s, k); }),
+        curve("gyroscope, calibrated", kAfter, [&](auto k) { return of(rates.after_rad_s, k); })};
+  };
+  std::vector<Chart> charts;
   for (int axis = 0; axis < 3; ++axis) {
-    Chart chart{.title = fmt::format("about {}", std::array{"x", "y", "z"}[axis]),
-                .x_label = "time [s]",
-                .y_label = "rate [rad/s]",
-                .curves = {}};
-    Curve pictures = curve("pictures", kPictures, {});
-    Curve before = curve("gyroscope, as recorded", kBefore, {});
-    Curve after = curve("gyroscope, calibrated", kAfter, {});
-    before.dotted = true;
-    fill(pictures, [&](std::size_t k) { return rates.pictures_rad_s[k](axis); });
-    fill(before, [&](std::size_t k) { return rates.before_rad_s[k](axis); });
-    fill(after, [&](std::size_t k) { return rates.after_rad_s[k](axis); });
-    chart.curves = {pictures, before, after};
-    charts.push_back(std::move(chart));
+    const auto of = [&](const auto& all, std::size_t k) { return all[k](axis); };
+    charts.push_back({.title = fmt::format("about {}", std::array{"x", "y", "z"}[axis]),
+                      .x_label = "time [s]",
+                      .y_label = "rate [rad/s]",
+                      .curves = both(of)});
+    auto& curves = charts.back().curves;
+    curves.insert(curves.begin(), curve("pictures", kPictures, [&](std::size_t k) {
+                    return of(rates.pictures_rad_s, k);
+                  }));
   }
-  Chart left{.title = "what is left",
-             .x_label = "time [s]",
-             .y_label = "|difference| [rad/s]",
-             .curves = {}};
-  Curve before = curve("gyroscope, as recorded", kBefore, {});
-  Curve after = curve("gyroscope, calibrated", kAfter, {});
-  before.dotted = true;
-  fill(before,
-       [&](std::size_t k) { return (rates.before_rad_s[k] - rates.pictures_rad_s[k]).norm(); });
-  fill(after,
-       [&](std::size_t k) { return (rates.after_rad_s[k] - rates.pictures_rad_s[k]).norm(); });
-  left.curves = {before, after};
-  charts.push_back(std::move(left));
+  charts.push_back({.title = "what is left",
+                    .x_label = "time [s]",
+                    .y_label = "|difference| [rad/s]",
+                    .curves = both([&](const auto& all, std::size_t k) {
+                      return (all[k] - rates.pictures_rad_s[k]).norm();
+                    })});
   return charts;
 }
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/report_row.h"
+#include "engine/calibration/camera_parameters.h"
 #include "engine/calibration/self_calibration.h"
 
 #include <fmt/format.h>
@@ -47,7 +47,6 @@ std::vector<std::string> warnings(const SelfCalibration& calibration) {
 }  // namespace
 
 std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
-  const Camera& camera = calibration.lens.camera;
   std::string text = fmt::format("# calibrated from {} and a plane in view, RMS {:.2f} px\n# {}\n",
                                  source,
                                  calibration.lens.rms_px,
@@ -55,25 +54,7 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
   text += fmt::format("# {}: {}\n", kLensNames[kReadout], readout(calibration.lens));
   for (const std::string& warning : warnings(calibration))
     text += fmt::format("# warning: {}\n", warning);
-  const auto list = [](const std::vector<double>& values, std::size_t from, int digits) {
-    std::string joined;
-    for (std::size_t k = from; k < from + 4; ++k)
-      joined += fmt::format("{}{:.{}g}", k == from ? "" : ", ", values[k], digits);
-    return fmt::format("[{}]", joined);
-  };
-  std::vector<double> values{camera.fx, camera.fy, camera.cx, camera.cy};
-  values.insert(values.end(), camera.coefficients.begin(), camera.coefficients.end());
-  return text + fmt::format(
-                    "resolution: [{}, {}]\ncamera_model: pinhole\nsource: self-calibrated\n"
-                    "intrinsics: {}  # fx, fy, cx, cy\n"
-                    "distortion_model: radial-tangential\ndistortion_coefficients: {}\n"
-                    "intrinsics_sigma: {}\ndistortion_coefficients_sigma: {}\n",
-                    camera.width,
-                    camera.height,
-                    list(values, 0, 8),
-                    list(values, 4, 6),
-                    list(camera.sigmas, 0, 3),
-                    list(camera.sigmas, 4, 3));
+  return text + camera_yaml(calibration.lens.camera, {.source = "source: self-calibrated\n"});
 }
 
 std::string to_text(const SelfCalibration& calibration) {

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/initializers/common/sources.h"
 #include "engine/initializers/methods.h"
+#include "engine/window/window.h"
 
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace gpo {
 
@@ -35,5 +39,9 @@ struct CommandOptions {
 /// keeps them for further windows until the last copy of it is gone. Whatever a command does is a
 /// failure of that window, with a reason in one line. `number`: of the user's own, for its color.
 Method command_method(const MethodCommand& command, const CommandOptions& options, int number);
+
+/// All that a user's own method is told of a window, as `method_window.schema.json` has it but for
+/// `id`. What is not known is not there; what is not seen is null.
+nlohmann::ordered_json window_json(const Window& window, const Sources& sources);
 
 }  // namespace gpo

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/experiment/configuration.h"
-#include "engine/experiment/ranges.h"
 #include "engine/recording/content.h"
 #include "engine/recording/recording.h"
 
@@ -11,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +20,22 @@
 namespace gpo {
 
 constexpr int kPaperFrames = 30;  ///< of the windows whose running times the paper tells
+
+/// Whole numbers from `first` to `last`, both included, every `step`-th.
+struct Range {
+  int first = 0;
+  std::optional<int> last;  ///< nothing: `end`, known once there is a recording
+  int step = 1;
+
+  bool operator==(const Range&) const = default;
+};
+
+/// Reads `A`, `A:B`, `A:B:STEP`, and lists of these with commas; B may be `end`. `name` is named
+/// in the InputError.
+std::vector<Range> parse_ranges(const std::string& text, const std::string& name);
+
+/// The numbers in all of the ranges, ascending, each once; `end` stands for `end`.
+std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 
 /// A recording of an experiment, and where its windows start.
 struct ExperimentRecording {

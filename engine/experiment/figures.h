@@ -4,13 +4,24 @@
 
 #include "engine/experiment/configuration.h"
 #include "engine/experiment/figure.h"
-#include "engine/experiment/figure_plan.h"
 #include "engine/experiment/row.h"
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gpo {
+
+/// What a figure compares.
+struct FigurePlan {
+  std::string name;  ///< of its files
+  std::string title;
+  std::vector<Configuration> configurations;
+};
+
+/// The paper's figures whose titles are true of at least two of the configurations, and one of all
+/// configurations where the others leave any out.
+std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations);
 
 /// ATE, PNE and PDE over the length of the window: median and quartiles over the windows that all
 /// configurations solved (`on_common_windows`), dotted the bound on the normal for the first

@@ -4,9 +4,12 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/files/csv_table.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
 
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,27 +32,29 @@ ordered_json json_of(const Value& value) {
   }
 }
 
-template <class Value>
-void read_value(const ordered_json& json, Value& value) {
-  if constexpr (OfASetting<Value>) {
-    const std::string cell = json.is_null()     ? ""
-                             : json.is_string() ? json.get<std::string>()
-                                                : json.dump();
-    read_setting_cell(value.settings, value.setting, cell);
-  } else if constexpr (is_optional<Value>) {
-    value.reset();
-    if (!json.is_null()) read_value(json, value.emplace());
-  } else {
-    value = json.get<Value>();
+template <class Number>
+Number number_of(const std::string& text, const char* expected) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (const auto value = parse_number(text)) return *value;
+  } else if (const auto value = parse_integer(text)) {
+    if (std::in_range<Number>(*value)) return static_cast<Number>(*value);
   }
+  throw InputError(fmt::format("found '{}', expected {}", text, expected));
 }
 
-/// Quoted where it holds a comma, a quote or a line's end.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+template <class Value>
+void read_value(const std::string& text, Value& value) {
+  if constexpr (OfASetting<Value>) {
+    read_setting_cell(value.settings, value.setting, text);
+  } else if constexpr (is_optional<Value>) {
+    value.reset();
+    if (!text.empty()) read_value(text, value.emplace());
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    value = text;
+  } else {
+    value = number_of<Value>(
+        text, std::is_floating_point_v<Value> ? "a number" : "a whole number in its range");
+  }
 }
 
 template <class Value>
@@ -59,7 +64,7 @@ std::string value_cell(const Value& value) {
   } else if constexpr (is_optional<Value>) {
     return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
-    return cell(value);
+    return csv_quoted(value);
   } else {
     return fmt::format("{}", value);
   }
@@ -159,10 +164,28 @@ ordered_json to_json(const Row& row) {
   return json;
 }
 
-Row row_from_json(const ordered_json& json) {
+Row row_from(const std::function<std::optional<std::string>(const char* name)>& cell_of) {
   Row row;
-  visit_row(row, [&](const char* name, auto& value) { read_value(json.at(name), value); });
+  visit_row(row, [&](const char* name, auto& value) {
+    const auto cell = cell_of(name);
+    if (!cell) return;
+    try {
+      read_value(*cell, value);
+    } catch (const SettingError&) {
+      throw;  // names itself
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", name, error.what()));
+    }
+  });
   return row;
+}
+
+Row row_from_json(const ordered_json& json) {
+  return row_from([&](const char* name) -> std::optional<std::string> {
+    const ordered_json& value = json.at(name);
+    if (value.is_null()) return "";
+    return value.is_string() ? value.get<std::string>() : value.dump();
+  });
 }
 
 }  // namespace gpo

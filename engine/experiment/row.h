@@ -5,6 +5,7 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -109,6 +110,10 @@ Row refused_row(const std::string& recording, const Settings& settings, const st
 
 /// Header and lines of results.csv. Numbers have all the digits they need to be read back.
 std::string to_csv(std::span<const Row> rows);
+
+/// From its cells, by the names of the columns; a column without one is unknown. Throws InputError
+/// that names the column.
+Row row_from(const std::function<std::optional<std::string>(const char* name)>& cell_of);
 
 nlohmann::ordered_json to_json(const Row& row);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.

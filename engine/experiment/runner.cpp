@@ -3,23 +3,37 @@
 #include "engine/experiment/runner.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/processor.h"
 #include "engine/experiment/window_files.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 
 #include <atomic>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <numeric>
 #include <thread>
 
 #include <fmt/format.h>
+#include <sys/utsname.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What running times were measured on, as the system calls it: "AMD EPYC 7B13".
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos || !line.starts_with("model name")) continue;
+    return std::string(trimmed(std::string_view(line).substr(colon + 1)));
+  }
+  utsname system{};  // not all kinds of processors have a model's name
+  return uname(&system) == 0 ? system.machine : "unknown";
+}
 
 /// The tasks with the lengths that no earlier run has finished.
 std::vector<ExperimentTask> unfinished(const Experiment& experiment,

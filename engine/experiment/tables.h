@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
 #include <span>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 namespace gpo {
 
@@ -33,5 +36,10 @@ std::string to_markdown(const Table& table);
 std::string to_csv(const Table& table);
 /// In columns, for a terminal.
 std::string to_text(const Table& table);
+
+/// summary.json: the experiment; on what its times were measured; per configuration and length over
+/// all windows; the same for each recording; and for each of the figures over the windows that all
+/// of its configurations solved.
+nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row> rows);
 
 }  // namespace gpo

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
-#include "engine/files/output_folder.h"
 
 #include <algorithm>
 #include <utility>

@@ -9,6 +9,28 @@
 
 namespace gpo {
 
+enum class ByteOrder { little, big };
+
+/// An unsigned number of up to 8 bytes; 0 where it is not whole.
+inline std::uint64_t number_at(std::string_view bytes,
+                               std::uint64_t place,
+                               std::size_t count,
+                               ByteOrder order) {
+  if (count > bytes.size() || place > bytes.size() - count) return 0;
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t from = order == ByteOrder::big ? k : count - 1 - k;
+    value = value << 8 | static_cast<unsigned char>(bytes[place + from]);
+  }
+  return value;
+}
+inline std::uint64_t big_endian(std::string_view bytes, std::uint64_t place, std::size_t count) {
+  return number_at(bytes, place, count, ByteOrder::big);
+}
+inline std::uint64_t little_endian(std::string_view bytes, std::uint64_t place, std::size_t count) {
+  return number_at(bytes, place, count, ByteOrder::little);
+}
+
 /// Walks through bytes as bags and other binary files have them, little-endian. Once something lies
 /// beyond the end all that is read is 0 or empty, and `ok` is false: who reads many fields asks
 /// once.

@@ -210,15 +210,12 @@ CsvTable read_csv(const std::filesystem::path& file,
                   CsvColumns columns,
                   Separator separator) {
   CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
-  std::string_view text = *table.text;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  TextLines lines(*table.text);
   std::vector<HeaderCandidate> above;
   bool named = false;
-  for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = text.find('\n');
-    const bool last = end == std::string_view::npos;
-    std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(last ? text.size() : end + 1);
+  while (const auto next = lines.next()) {
+    std::string_view line = *next;
+    const int number = lines.number();
     const bool comment = line.starts_with('#');
     if (comment) line = trimmed(line.substr(1));
     if (line.empty() || (comment && !table.rows.empty())) continue;
@@ -232,7 +229,7 @@ CsvTable read_csv(const std::filesystem::path& file,
       continue;
     }
     const CsvRow row{number, line};
-    check_count(table, row, names, columns, last);
+    check_count(table, row, names, columns, !lines.ended());
     if (table.rows.empty()) table.columns = cell_count(line, separator);
     if (table.rows.size() == kMostRows) {
       csv_fail(table, number, "one more row", fmt::format("at most {}", kMostRows));
@@ -286,6 +283,59 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
     times.push_back(*time);
   }
   return times;
+}
+
+QuotedCsv::QuotedCsv(const std::filesystem::path& file) : file_(file), text_(read_file(file)) {}
+
+QuotedCsv::Row QuotedCsv::next() {
+  Row row{line_, {}};
+  while (true) {
+    row.cells.push_back(cell());
+    const char after = at_end() ? '\n' : text_[at_++];
+    if (after == ',') continue;
+    if (after == '\n') break;
+    throw InputError(fmt::format(
+        "{}:{}: found '{}' after a quoted cell, expected a comma", file_.string(), line_, after));
+  }
+  ++line_;
+  return row;
+}
+
+std::string QuotedCsv::cell() {
+  if (!at_end() && text_[at_] == '"') return quoted_cell();
+  const std::size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
+  std::string plain = text_.substr(at_, end - at_);
+  at_ = end;
+  if (!plain.empty() && plain.back() == '\r') plain.pop_back();
+  return plain;
+}
+
+/// From its first quote to its last; a quote within is written twice.
+std::string QuotedCsv::quoted_cell() {
+  std::string cell;
+  const int first_line = line_;
+  while (true) {
+    const std::size_t quote = text_.find('"', at_ + 1);
+    if (quote == std::string::npos) {
+      throw InputError(
+          fmt::format("{}:{}: found a quote that does not end", file_.string(), first_line));
+    }
+    const std::string_view part = std::string_view(text_).substr(at_ + 1, quote - at_ - 1);
+    line_ += static_cast<int>(std::ranges::count(part, '\n'));
+    cell += part;
+    at_ = quote + 1;
+    if (at_end() || text_[at_] != '"') break;
+    cell += '"';
+  }
+  if (!at_end() && text_[at_] == '\r') ++at_;
+  return cell;
+}
+
+std::string csv_quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 }  // namespace gpo

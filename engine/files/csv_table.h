@@ -55,6 +55,33 @@ std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 /// ("timestamp [ns]", "time_ms"), else in `otherwise`. Throws InputError.
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
+/// A table of which some cells may be quoted, and then hold commas and lines' ends: row by row,
+/// since others could not be cut into lines.
+class QuotedCsv {
+ public:
+  struct Row {
+    int line = 1;  ///< in which it begins, from 1
+    std::vector<std::string> cells;
+  };
+
+  /// Throws InputError.
+  explicit QuotedCsv(const std::filesystem::path& file);
+  bool at_end() const { return at_ >= text_.size(); }
+  /// Throws InputError with file and line where a quote does not end, or not before a comma.
+  Row next();
+
+ private:
+  std::string cell();
+  std::string quoted_cell();
+
+  std::filesystem::path file_;
+  std::string text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+/// A cell of such a table: quoted where it holds a comma, a quote or a line's end.
+std::string csv_quoted(const std::string& text);
+
 [[noreturn]] void csv_fail(const CsvTable& table,
                            int line,
                            const std::string& found,

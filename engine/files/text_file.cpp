@@ -83,6 +83,28 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
+std::string_view take_word(std::string_view& rest) {
+  constexpr std::string_view kBlanks = " \t";
+  const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
+  rest.remove_prefix(word.size());
+  rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  return word;
+}
+
+TextLines::TextLines(std::string_view text) : rest_(text) {
+  if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+}
+
+std::optional<std::string_view> TextLines::next() {
+  if (rest_.empty()) return std::nullopt;
+  const std::size_t end = rest_.find('\n');
+  ended_ = end != std::string_view::npos;
+  const std::string_view line = rest_.substr(0, end);
+  rest_.remove_prefix(ended_ ? end + 1 : rest_.size());
+  ++number_;
+  return trimmed(line);
+}
+
 std::optional<double> parse_number(std::string_view text) {
   text = without_plus(text);
   double value = 0;

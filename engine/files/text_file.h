@@ -24,6 +24,25 @@ std::string read_file(const std::filesystem::path& file,
 /// Without white space at both ends.
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
+/// Takes a word off the front of a text that begins with it, and the blanks behind it.
+std::string_view take_word(std::string_view& rest);
+
+/// Takes lines off the front of a text, behind its byte order mark.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text);
+
+  /// The next one without blanks at its ends; nothing at the end.
+  std::optional<std::string_view> next();
+  int number() const { return number_; }  ///< of the last one, from 1
+  bool ended() const { return ended_; }   ///< whether that had a line's end
+  std::string_view rest() const { return rest_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+  bool ended_ = true;
+};
 
 /// A finite number that fills the whole text; nothing otherwise.
 std::optional<double> parse_number(std::string_view text);

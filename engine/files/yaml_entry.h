@@ -42,4 +42,11 @@ std::int64_t integer(const YamlEntry& entry, const std::string& expected);
 std::vector<double> numbers(const YamlEntry& entry);
 std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std::string& expected);
 
+/// Whether the first thing in a file is a tag. Throws InputError where it cannot be read.
+bool is_xml(const std::filesystem::path& file);
+
+/// Parses an XML file as OpenCV's FileStorage writes it into what its YAML would have been:
+/// elements are keys, several words are a list, `<_>` are the items of a list. Throws InputError.
+YamlEntry load_opencv_xml(const std::filesystem::path& file);
+
 }  // namespace gpo

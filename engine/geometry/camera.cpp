@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera.h"
 
+#include "engine/base/error.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -30,6 +34,31 @@ double& parameter(Camera& camera, std::size_t k) {
 }
 
 }  // namespace
+
+bool is_focal_length(double focal_px) { return focal_px > 0 && focal_px <= 1e6; }
+
+bool are_coefficients(const std::vector<double>& coefficients) {
+  return std::ranges::all_of(coefficients,
+                             [](double k) { return std::abs(k) <= kLargestCoefficient; });
+}
+
+bool has_near_principal_point(const Camera& camera) {
+  if (camera.width == 0 || camera.height == 0) return true;
+  return camera.cx > -camera.width && camera.cx < 2 * camera.width && camera.cy > -camera.height &&
+         camera.cy < 2 * camera.height;
+}
+
+void check_camera(const Camera& camera) {
+  const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
+  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy)) {
+    throw InputError(
+        fmt::format("camera: fx {}, fy {}, cx {}, cy {}, expected focal lengths above 0",
+                    camera.fx,
+                    camera.fy,
+                    camera.cx,
+                    camera.cy));
+  }
+}
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   Eigen::Matrix3d K;

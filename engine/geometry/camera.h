@@ -28,6 +28,19 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+// What a camera may have: files, messages and callers that say anything else are broken.
+
+/// Largest of a lens' coefficients, and of their standard deviations [-].
+inline constexpr double kLargestCoefficient = 1e6;
+/// Whether it is positive and at most 1e6 px.
+bool is_focal_length(double focal_px);
+bool are_coefficients(const std::vector<double>& coefficients);
+/// Whether the principal point is in the picture, or not further away than that is wide and high;
+/// true where the picture's size is not known.
+bool has_near_principal_point(const Camera& camera);
+/// Throws InputError where focal lengths are not positive or anything is no number.
+void check_camera(const Camera& camera);
+
 /// K, 3x3, of the undistorted image [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 

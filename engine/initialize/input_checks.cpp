@@ -24,18 +24,6 @@ bool is_rotation(const Eigen::Matrix3d& R) {
 
 }  // namespace
 
-void check_camera(const Camera& camera) {
-  const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
-  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy)) {
-    throw InputError(
-        fmt::format("camera: fx {}, fy {}, cx {}, cy {}, expected focal lengths above 0",
-                    camera.fx,
-                    camera.fy,
-                    camera.cx,
-                    camera.cy));
-  }
-}
-
 void check_options(const InitializeOptions& options) {
   find_method(options.method);
   if (!(options.ransac_threshold_px > 0)) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
 #include "engine/initialize.h"
 #include "engine/window/gyroscope.h"
 
@@ -10,7 +9,6 @@ namespace gpo {
 
 // What the front door lets in; each throws InputError, SettingError where it is an option's.
 
-void check_camera(const Camera& camera);
 void check_options(const InitializeOptions& options);
 /// `number` of the frame for messages; `before` may be null.
 void check_frame(const Frame& frame, int number, const Frame* before);

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <thread>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
@@ -29,6 +30,24 @@ constexpr milliseconds kGrace{500};
 
 void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
+}
+
+/// What is written into one end comes out of the other; no child inherits either.
+struct Pipe {
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw std::system_error(errno, std::generic_category(), "pipe");
+    reads = Descriptor(ends[0]);
+    writes = Descriptor(ends[1]);
+  }
+  Descriptor reads, writes;
+};
+
+/// Reads and writes of it return at once.
+void make_nonblocking(const Descriptor& descriptor) {
+  const int flags = fcntl(descriptor.number(), F_GETFL);
+  fcntl(descriptor.number(), F_SETFL, flags | O_NONBLOCK);
 }
 
 /// What posix_spawn wants to know: the three streams, no other descriptor, a group of its own so
@@ -111,7 +130,7 @@ std::string ending_of(pid_t pid) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::string& command) {
-  Pipe in = make_pipe(), out = make_pipe(), err = make_pipe();
+  Pipe in, out, err;
   pid_ = SpawnPlan(in, out, err).spawn(command);
   in_ = std::move(in.writes);
   out_ = std::move(out.reads);

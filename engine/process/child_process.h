@@ -2,17 +2,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/process/descriptor.h"
-
 #include <chrono>
 #include <cstddef>
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <sys/types.h>
+#include <unistd.h>
 
 namespace gpo {
+
+/// A file descriptor that is closed at the end.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+
+  int number() const { return number_; }  ///< -1: closed
+  bool is_open() const { return number_ >= 0; }
+  void close() {
+    if (is_open()) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_ = -1;
+};
 
 /// How a question to a process ended.
 enum class Reply {

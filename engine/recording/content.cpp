@@ -3,8 +3,8 @@
 #include "engine/recording/content.h"
 
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/file_kinds.h"
 
 #include <array>
 #include <memory>
@@ -78,15 +78,6 @@ std::string tags_text(const Board& board) {
       "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
 }
 
-std::string text_of(const Board& board) {
-  return fmt::format("{}x{} {} {} {}",
-                     board.columns,
-                     board.rows,
-                     board.square_m,
-                     board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : tags_text(board));
-}
-
 std::string digest_of(const std::vector<TrackObservation>& tracks) {
   std::string text;
   for (const TrackObservation& one : tracks)
@@ -109,11 +100,16 @@ std::string digest_of(const std::vector<fs::path>& pictures) {
   return sha256(text);
 }
 
-bool is_recipe(const fs::path& path) {
-  return (path.extension() == ".yaml" || path.extension() == ".yml") && is_file(path);
-}
-
 }  // namespace
+
+std::string text_of(const Board& board) {
+  return fmt::format("{}x{} {} {} {}",
+                     board.columns,
+                     board.rows,
+                     board.square_m,
+                     board.markers ? board.markers->side_m : 0,
+                     board.markers ? board.markers->dictionary : tags_text(board));
+}
 
 RecordingContent content_of(const Recording& recording) {
   RecordingContent content;

@@ -19,6 +19,9 @@ using RecordingContent = std::map<std::string, std::string>;
 /// InputError where a picture's file has gone.
 RecordingContent content_of(const Recording& recording);
 
+/// All that is known of a board, in a line.
+std::string text_of(const Board& board);
+
 /// The names of the parts that differ, or that only one has.
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b);
 

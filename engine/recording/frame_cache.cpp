@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/frame_cache.h"
 
-#include <exception>
+#include "engine/base/parallel.h"
+
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
 std::size_t size_in_bytes(const cv::Mat& picture) { return picture.total() * picture.elemSize(); }
+
+struct Picture {
+  int frame;
+  cv::Mat bgr;
+};
 
 }  // namespace
 
@@ -82,6 +89,75 @@ void FrameCache::forget() const {
   by_index_.clear();
   recent_.clear();
   bytes_ = 0;
+}
+
+PicturesAhead::PicturesAhead(const FrameCache& pictures, int first, int end)
+    : pictures_(pictures),
+      next_(first),
+      end_(end),
+      decoder_([this, first, end](const std::stop_token& stop) { decode(stop, first, end); }) {}
+
+void PicturesAhead::decode(const std::stop_token& stop, int first, int end) {
+  for (int index = first; index < end; ++index) {
+    {
+      std::unique_lock lock(mutex_);
+      const auto is_room = [this]() { return ready_.size() < kAhead; };
+      if (!changed_.wait(lock, stop, is_room)) return;
+    }
+    Entry entry;
+    try {
+      entry.gray = pictures_.gray(index);
+    } catch (...) {
+      entry.error = std::current_exception();
+    }
+    const std::scoped_lock lock(mutex_);
+    const bool failed = entry.error != nullptr;
+    ready_.push(std::move(entry));
+    if (failed) end_ = index + 1;
+    changed_.notify_all();
+    if (failed || stop.stop_requested()) return;
+  }
+}
+
+cv::Mat PicturesAhead::gray(int index) {
+  std::unique_lock lock(mutex_);
+  if (index != next_ || next_ >= end_) {
+    lock.unlock();
+    return pictures_.gray(index);
+  }
+  changed_.wait(lock, [this]() { return !ready_.empty(); });
+  Entry entry = std::move(ready_.front());
+  ready_.pop();
+  ++next_;
+  changed_.notify_all();
+  if (entry.error) std::rethrow_exception(entry.error);
+  return std::move(entry.gray);
+}
+
+void for_each_picture(const FrameCache& pictures,
+                      const std::vector<int>& frames,
+                      const std::stop_token& stop,
+                      const std::function<void(int frame, const cv::Mat& gray)>& look) {
+  std::mutex decoding;
+  std::size_t next = 0;
+  const auto take = [&]() -> std::optional<Picture> {
+    const std::scoped_lock lock(decoding);
+    if (next == frames.size() || stop.stop_requested()) return std::nullopt;
+    const std::size_t i = next;
+    next = frames.size();  // where decoding throws the others have nothing left to do
+    Picture picture{frames[i], pictures.bgr(frames[i])};
+    next = i + 1;
+    return picture;
+  };
+  const int count = static_cast<int>(frames.size());
+  const int threads = std::min(count, static_cast<int>(std::thread::hardware_concurrency()));
+  in_parallel(threads, threads, [&](int) {
+    while (const auto picture = take()) {
+      cv::Mat gray;
+      cv::cvtColor(picture->bgr, gray, cv::COLOR_BGR2GRAY);
+      look(picture->frame, gray);
+    }
+  });
 }
 
 }  // namespace gpo

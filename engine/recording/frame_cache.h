@@ -4,11 +4,16 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <list>
 #include <mutex>
+#include <queue>
+#include <stop_token>
+#include <thread>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -57,5 +62,43 @@ class FrameCache {
   mutable std::list<Entry> recent_;  ///< most recently used first
   mutable std::unordered_map<int, std::list<Entry>::iterator> by_index_;
 };
+
+/// Gray pictures for one who asks for them one after the other: the next few are decoded on a
+/// thread of their own while the last one is worked on. One thread asks. Destroying it waits for no
+/// more than the picture that is just being decoded.
+class PicturesAhead {
+ public:
+  static constexpr int kAhead = 3;  ///< pictures decoded before they are asked for, at most
+
+  /// `pictures` from `first` up to and without `end`; they are to live longer than this.
+  PicturesAhead(const FrameCache& pictures, int first, int end);
+
+  /// Picture `index`, CV_8UC1. Throws what decoding it throws. What is not the next one is decoded
+  /// as if nothing were ahead.
+  cv::Mat gray(int index);
+
+ private:
+  struct Entry {
+    cv::Mat gray;
+    std::exception_ptr error;
+  };
+  void decode(const std::stop_token& stop, int first, int end);
+
+  const FrameCache& pictures_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::queue<Entry> ready_;
+  int next_;              ///< of the first one that is ready or becomes it
+  int end_;               ///< where decoding stops: behind the last one, or the first that failed
+  std::jthread decoder_;  ///< last, so that it is joined first
+};
+
+/// Calls `look(frame, gray)` for each of the frames, on all processors at once. They are decoded in
+/// the order given, because a video goes backward only from its beginning again. Once stopped it
+/// returns when the pictures at work are done. Throws what decoding and `look` throw.
+void for_each_picture(const FrameCache& pictures,
+                      const std::vector<int>& frames,
+                      const std::stop_token& stop,
+                      const std::function<void(int frame, const cv::Mat& gray)>& look);
 
 }  // namespace gpo

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
-#include "engine/results/largest_coordinate.h"
 
 #include <algorithm>
 #include <array>
@@ -56,41 +55,15 @@ Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
   return matrix;
 }
 
-/// Lines with their numbers.
-class Lines {
- public:
-  Lines(const fs::path& file, std::string_view text) : file_(file), rest_(text) {}
+/// The next line that is neither empty nor a remark.
+std::optional<std::string_view> next_entry(TextLines& lines) {
+  auto line = lines.next();
+  while (line && (line->empty() || line->front() == '#')) line = lines.next();
+  return line;
+}
 
-  /// The next one without blanks at its ends; nothing at the end of the file.
-  std::optional<std::string_view> next() {
-    if (rest_.empty()) return std::nullopt;
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    const std::string_view line = trimmed(rest_.substr(0, end));
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    ++number_;
-    return line;
-  }
-  /// The next one that is neither empty nor a remark.
-  std::optional<std::string_view> next_entry() {
-    auto line = next();
-    while (line && (line->empty() || line->front() == '#')) line = next();
-    return line;
-  }
-  Place place() const { return {file_, fmt::format(":{}", number_)}; }
-
- private:
-  const fs::path& file_;
-  std::string_view rest_;
-  int number_ = 0;
-};
-
-std::string_view take_word(std::string_view& rest) {
-  constexpr std::string_view kBlanks = " \t";
-  const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
-  const std::string_view word = rest.substr(0, end);
-  rest.remove_prefix(end);
-  rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
-  return word;
+Place place_of(const fs::path& file, const TextLines& lines) {
+  return {file, fmt::format(":{}", lines.number())};
 }
 
 double take_number(std::string_view& rest, const Place& place, const char* columns) {
@@ -105,9 +78,9 @@ double take_number(std::string_view& rest, const Place& place, const char* colum
 std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view text) {
   constexpr const char* kColumns = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
   std::vector<ColmapImage> images;
-  Lines lines(file, text);
-  while (auto line = lines.next_entry()) {
-    const Place place = lines.place();
+  TextLines lines(text);
+  while (auto line = next_entry(lines)) {
+    const Place place = place_of(file, lines);
     take_number(*line, place, kColumns);
     std::array<double, 7> numbers{};
     for (double& number : numbers) number = take_number(*line, place, kColumns);
@@ -122,9 +95,9 @@ std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view t
 Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
   constexpr const char* kColumns = "POINT3D_ID X Y Z R G B ERROR TRACK[]";
   std::vector<Vector3d> points;
-  Lines lines(file, text);
-  while (auto line = lines.next_entry()) {
-    const Place place = lines.place();
+  TextLines lines(text);
+  while (auto line = next_entry(lines)) {
+    const Place place = place_of(file, lines);
     take_number(*line, place, kColumns);
     Vector3d point;
     for (double& number : point) number = take_number(*line, place, kColumns);

@@ -13,6 +13,9 @@
 
 namespace gpo {
 
+/// Beyond this, coordinates are no result.
+inline constexpr double kLargestCoordinate = 1e12;
+
 /// A picture that COLMAP has found a place for.
 struct ColmapImage {
   std::string name;  ///< below the folder of the pictures, "cam0/1.png"

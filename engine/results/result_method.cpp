@@ -4,26 +4,157 @@
 
 #include "engine/base/error.h"
 #include "engine/commands/answered.h"
-#include "engine/commands/completion.h"
 #include "engine/commands/own_method.h"
 #include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/plane_fit.h"
-#include "engine/results/found_frames.h"
-#include "engine/results/plane_in_view.h"
+#include "engine/initializers/common/sources.h"
+#include "engine/window/timestamps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+
+using Index = std::ptrdiff_t;
+using MaybeIndex = std::optional<Index>;
+
+/// Within half a frame.
+MaybeIndex nearest(const std::vector<std::int64_t>& times_ns,
+                   std::int64_t time_ns,
+                   std::int64_t most_ns) {
+  const auto after = std::ranges::lower_bound(times_ns, time_ns);
+  MaybeIndex best;
+  std::int64_t least = most_ns;
+  for (Index i = after - times_ns.begin() - 1; i <= after - times_ns.begin(); ++i) {
+    if (i < 0 || i >= std::ssize(times_ns)) continue;
+    const std::int64_t off = std::abs(times_ns[i] - time_ns);
+    if (off > least) continue;
+    least = off;
+    best = i;
+  }
+  return best;
+}
+
+std::vector<MaybeIndex> found_by_time(const ResultPoses& result, const Window& window) {
+  const std::int64_t most_ns = median_period_ns(window.timestamps_ns) / 2;
+  std::vector<MaybeIndex> found;
+  for (const std::int64_t time : window.timestamps_ns)
+    found.push_back(nearest(result.timestamps_ns, time, most_ns));
+  return found;
+}
+
+std::vector<MaybeIndex> found_by_number(const ResultPoses& result, const Window& window) {
+  std::vector<MaybeIndex> found;
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const Index number = window.start + i;
+    found.push_back(number < std::ssize(result.poses) ? MaybeIndex(number) : std::nullopt);
+  }
+  return found;
+}
+
+std::string_view file_name(std::string_view path) {
+  return path.substr(path.find_last_of('/') + 1);  // npos + 1 is 0
+}
+
+/// How much of the ends of two paths is the same, in characters.
+std::size_t same_end(std::string_view a, std::string_view b) {
+  const auto [at, none] = std::ranges::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+  return static_cast<std::size_t>(at - a.rbegin());
+}
+
+/// Of several pictures of the same name, in folders of their own, the one whose path is the
+/// frame's.
+MaybeIndex of_name(const ResultPoses& result, const std::string& path) {
+  MaybeIndex best;
+  bool sure = true;
+  std::size_t most = 0;
+  for (Index i = 0; i < std::ssize(result.names); ++i) {
+    if (file_name(result.names[i]) != file_name(path)) continue;
+    const std::size_t same = same_end(result.names[i], path);
+    if (best && same == most) sure = false;
+    if (best && same <= most) continue;
+    sure = true;
+    best = i;
+    most = same;
+  }
+  if (!sure)
+    throw InputError(
+        fmt::format("two of its pictures are named {}, and neither's folder is this recording's",
+                    file_name(path)));
+  return best;
+}
+
+/// The time stamp [ns] that a picture's name is.
+std::optional<std::int64_t> time_in_name(std::string_view name) {
+  name = file_name(name);
+  const auto time = parse_integer(name.substr(0, name.find_last_of('.')));
+  return time && *time >= 0 && *time < INT64_MAX / 2 ? time : std::nullopt;
+}
+
+MaybeIndex of_time_in_name(const ResultPoses& result, std::int64_t time_ns, std::int64_t most_ns) {
+  MaybeIndex best;
+  std::int64_t least = most_ns;
+  for (Index i = 0; i < std::ssize(result.names); ++i) {
+    const auto time = time_in_name(result.names[i]);
+    if (!time || std::abs(*time - time_ns) > least) continue;
+    least = std::abs(*time - time_ns);
+    best = i;
+  }
+  return best;
+}
+
+std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
+                                      const Window& window,
+                                      const Sources& sources) {
+  const bool named = std::ssize(sources.pictures) == window.frame_count();
+  const std::int64_t most_ns = median_period_ns(window.timestamps_ns) / 2;
+  std::vector<MaybeIndex> found;
+  for (int i = 0; i < window.frame_count(); ++i) {
+    MaybeIndex one;
+    if (named) one = of_name(result, sources.pictures[i].generic_string());
+    if (!one) one = of_time_in_name(result, window.timestamps_ns[i], most_ns);
+    found.push_back(one);
+  }
+  return found;
+}
+
+/// A result's cameras, one a frame of the window, nothing where it has none; in the result's world.
+/// By time: the nearest pose within half a frame; by number: of the same number in the recording;
+/// by name: of the same picture, or of one whose name is the frame's time stamp [ns]. Poses of the
+/// body become the camera's by the recording's T_BS. Throws InputError where that is not known, or
+/// where two pictures of the result have a frame's name.
+std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
+                                               PosedFrame frame,
+                                               const Window& window,
+                                               const Sources& sources) {
+  if (frame == PosedFrame::body && !sources.T_body_camera)
+    throw InputError(
+        "its poses are taken as the body's, and the recording does not say where the camera is on "
+        "it (T_BS); ,frame=camera says that they are the camera's");
+  const Pose T_posed_camera = frame == PosedFrame::body ? *sources.T_body_camera : Pose{};
+  const auto found = result.by == FoundBy::time     ? found_by_time(result, window)
+                     : result.by == FoundBy::number ? found_by_number(result, window)
+                                                    : found_by_name(result, window, sources);
+  std::vector<std::optional<Pose>> cameras;
+  cameras.reserve(found.size());
+  for (const MaybeIndex& index : found)
+    cameras.push_back(index ? std::optional(result.poses[*index] * T_posed_camera) : std::nullopt);
+  return cameras;
+}
 
 /// Fewer cameras, or all within less than half of the window, say nothing of it.
 constexpr int kLeastCovered = 3;
@@ -145,6 +276,19 @@ std::string identity_of(const ProgramResult& result) {
   return identity + (result.frame ? fmt::format(" {}", to_string(*result.frame)) : "");
 }
 
+constexpr double kNear_deg = 2;
+constexpr int kLeastPoints = 10;
+
+/// Directions of the reference frame's inliers, 3 x n, unit.
+Eigen::Matrix3Xd inlier_rays(const Window& window) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const std::vector<int> tracks = window.inlier_tracks(0);
+  Eigen::Matrix3Xd rays(3, std::ssize(tracks));
+  for (Eigen::Index k = 0; k < rays.cols(); ++k)
+    rays.col(k) = (K_inverse * window.points_px[0].col(tracks[k]).homogeneous()).normalized();
+  return rays;
+}
+
 }  // namespace
 
 ProgramResult parse_program_result(const std::string& text) {
@@ -177,6 +321,29 @@ Method result_method(const ProgramResult& result, const ResultTeller& told, int 
         return reader->initialize(window, sources);
       },
       identity_of(result));
+}
+
+std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
+                                   const Pose& reference,
+                                   const Window& window) {
+  const Eigen::Matrix3Xd rays = inlier_rays(window);
+  if (rays.cols() == 0) return std::nullopt;
+  const double near = std::cos(radians(kNear_deg));
+  const Eigen::Vector3d middle = rays.rowwise().sum().normalized();
+  const double widest = std::acos(std::min(1.0, (middle.transpose() * rays).minCoeff()));
+  const double in_cone = std::cos(std::min(widest + radians(kNear_deg), M_PI));
+  Eigen::Matrix3Xd seen(3, points.cols());
+  int count = 0;
+  for (const auto& point : points.colwise()) {
+    const Eigen::Vector3d P = to_camera(reference, point);
+    const double distance = P.norm();
+    if (!(P.z() > 0) || middle.dot(P) < in_cone * distance) continue;
+    if ((P.transpose() * rays).maxCoeff() >= near * distance) seen.col(count++) = P;
+  }
+  if (count < kLeastPoints) return std::nullopt;
+  const auto plane = fit_plane(seen.leftCols(count));
+  if (!plane) return std::nullopt;
+  return plane_in_camera(*plane, inverse(reference));
 }
 
 }  // namespace gpo

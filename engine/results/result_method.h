@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/plane.h"
+#include "engine/geometry/pose.h"
 #include "engine/initializers/methods.h"
 #include "engine/results/result_poses.h"
+#include "engine/window/window.h"
 
 #include <filesystem>
 #include <functional>
@@ -11,6 +14,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -33,5 +38,12 @@ using ResultTeller = std::function<void(const std::string& name, const std::stri
 /// cameras triangulate. A window that it does not cover is a failure that says why. Reads the
 /// files; throws InputError. `number`: of the user's own methods, for its color.
 Method result_method(const ProgramResult& result, const ResultTeller& told, int number);
+
+/// The plane through those of a map's points, 3 x n, that the reference camera sees within 2 deg of
+/// an inlier track of its frame, by RANSAC with a fixed seed; in the map's world. The map may hold
+/// more than this window and more than one plane. Nothing for fewer than 10 such points.
+std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
+                                   const Pose& reference,
+                                   const Window& window);
 
 }  // namespace gpo

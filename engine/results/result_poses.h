@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,5 +49,9 @@ bool has_points(const std::filesystem::path& folder);
 /// Reads points, 3 x n, in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
 /// the folder of a model. Throws InputError.
 Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
+
+/// The vertices' x, y and z of a PLY file, ascii or binary little-endian, 3 x n; faces and other
+/// properties are passed over. Throws InputError that names the line, or the vertex.
+Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace gpo

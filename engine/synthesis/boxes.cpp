@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/textures.h"
 
 #include <array>
 #include <cmath>
@@ -33,14 +32,11 @@ void draw_book(BoxFaces& faces, Random& random) {
   spine.setTo(cover);
   part(spine, 0.05, 0, 0.02, h).setTo(palette.back());
   part(spine, 0.93, 0, 0.02, h).setTo(palette.back());
-  draw_text(spine, title, {0.12, 0.75 * h}, 0.5 * h, palette.back(), Face::serif, 0.5);
+  draw_text(spine, title, {0.12, 0.75 * h}, {0.5 * h, palette.back(), Face::serif, 0.5});
   draw_text(spine,
             pick_word(random) + " press",
             {0.7, 0.68 * h},
-            0.3 * h,
-            palette.back(),
-            Face::sans,
-            0.2);
+            {0.3 * h, palette.back(), Face::sans, 0.2});
 
   cv::Mat& top = faces.top;
   const double tall = ratio_of(top);
@@ -51,9 +47,10 @@ void draw_book(BoxFaces& faces, Random& random) {
   } else {
     paint_shapes(picture, 40, palette, random);
   }
-  draw_text(top, title, {0.1, 0.2 * tall}, 0.1, palette.back(), Face::serif, 0.8);
-  draw_text(top, pick_words(3, random), {0.1, 0.28 * tall}, 0.04, palette.back(), Face::sans, 0.8);
-  draw_text(top, "A. " + pick_word(random), {0.1, 0.93 * tall}, 0.04, palette.back());
+  draw_text(top, title, {0.1, 0.2 * tall}, {0.1, palette.back(), Face::serif, 0.8});
+  draw_text(
+      top, pick_words(3, random), {0.1, 0.28 * tall}, {0.04, palette.back(), Face::sans, 0.8});
+  draw_text(top, "A. " + pick_word(random), {0.1, 0.93 * tall}, {0.04, palette.back()});
 }
 
 void draw_carton(BoxFaces& faces, Random& random) {
@@ -63,15 +60,15 @@ void draw_carton(BoxFaces& faces, Random& random) {
     const double h = ratio_of(side);
     paint_shapes(side, 46, palette, random);
     part(side, 0.1, 0.22 * h, 0.8, 0.3 * h).setTo(palette.front());
-    draw_text(side, title, {0.16, 0.42 * h}, 0.14 * h, palette.back(), Face::serif, 0.68);
+    draw_text(side, title, {0.16, 0.42 * h}, {0.14 * h, palette.back(), Face::serif, 0.68});
     draw_text(
-        side, "fine tea, 20 bags", {0.16, 0.49 * h}, 0.045 * h, palette.back(), Face::sans, 0.68);
+        side, "fine tea, 20 bags", {0.16, 0.49 * h}, {0.045 * h, palette.back(), Face::sans, 0.68});
     part(side, 0, 0, 1, 0.06 * h).setTo(palette[1]);
   }
   paint_mosaic(faces.top, 24, palette, random);
   const double h = ratio_of(faces.top);
   part(faces.top, 0.15, 0.35 * h, 0.7, 0.3 * h).setTo(palette.back());
-  draw_text(faces.top, title, {0.2, 0.57 * h}, 0.14 * h, palette.front(), Face::serif, 0.6);
+  draw_text(faces.top, title, {0.2, 0.57 * h}, {0.14 * h, palette.front(), Face::serif, 0.6});
 }
 
 /// The puzzle of 3 x 3 x 3 stones, scrambled.
@@ -174,12 +171,7 @@ void shade_side(cv::Mat& side) {
 
 }  // namespace
 
-std::vector<std::string> box_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kBoxKinds.size());
-  for (const BoxKind& kind : kBoxKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> box_kinds() { return keys_of(kBoxKinds); }
 
 BoxFaces draw_box(const std::string& kind, cv::Vec3d size_px, Random random) {
   BoxFaces faces;

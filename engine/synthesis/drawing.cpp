@@ -61,18 +61,15 @@ cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height) {
 void draw_text(cv::Mat& canvas,
                const std::string& text,
                cv::Point2d place,
-               double height,
-               const cv::Scalar& color,
-               Face face,
-               double max_width) {
+               const TextStyle& style) {
   // Capitals of the Hershey fonts are 21 units high.
-  const int font = font_of(face);
-  double scale = height * canvas.cols / 21;
+  const int font = font_of(style.face);
+  double scale = style.height * canvas.cols / 21;
   const double width = cv::getTextSize(text, font, scale, 1, nullptr).width;
-  scale *= std::min(1.0, max_width * canvas.cols / std::max(width, 1.0));
-  const int thickness = std::max(1, cvRound(scale * (face == Face::sans ? 1.6 : 2.6)));
+  scale *= std::min(1.0, style.max_width * canvas.cols / std::max(width, 1.0));
+  const int thickness = std::max(1, cvRound(scale * (style.face == Face::sans ? 1.6 : 2.6)));
   const cv::Point at(cvRound(place.x * canvas.cols), cvRound(place.y * canvas.cols));
-  cv::putText(canvas, text, at, font, scale, color, thickness, cv::LINE_AA);
+  cv::putText(canvas, text, at, font, scale, style.color, thickness, cv::LINE_AA);
 }
 
 std::string pick_word(Random& random) {
@@ -129,7 +126,7 @@ void draw_paragraph(
               .width /
           static_cast<double>(canvas.cols);
       if (x + width > end) break;
-      draw_text(canvas, word, {x, y}, height, color);
+      draw_text(canvas, word, {x, y}, {height, color});
       x += width + 0.55 * height;
     }
     y += (last ? 2.9 : 1.9) * height;

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/faces.h"
 
 #include "engine/base/parallel.h"
+#include "engine/synthesis/drawing.h"
 #include "engine/synthesis/random.h"
-#include "engine/synthesis/textures.h"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +49,12 @@ struct Laid {
   double tone;         ///< its own, 0 .. 1
   double edge;         ///< distance to its nearest edge [m]
 };
-Laid laid(double x, double y, double length, double height, double shift, std::uint64_t seed) {
+struct Courses {
+  double length, height;  ///< of a brick [m]
+  double shift;           ///< of a row from the one below, in lengths
+};
+Laid laid(double x, double y, const Courses& courses, std::uint64_t seed) {
+  const auto& [length, height, shift] = courses;
   const double row = std::floor(y / height);
   const double along = x / length + shift * row;
   const double column = std::floor(along);
@@ -69,7 +73,7 @@ float soft_line(double distance, double width) {
 
 /// Narrow staves of oak along x, each of its own tone.
 cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
-  const Laid stave = laid(x, y, 0.26, 0.036, 0.381966, seed);
+  const Laid stave = laid(x, y, {0.26, 0.036, 0.381966}, seed);
   const double bend = fractal_noise(x * 6 + 17 * stave.tone, y * 24 + 5 * stave.row, 2, seed + 1);
   const double grain = fractal_noise(x * 9 + 9 * stave.tone, y * 160, 2, seed + 2);
   const double t = 0.62 * stave.tone + 0.3 * (grain - 0.5) + 0.4 * (bend - 0.5) + 0.1;
@@ -86,7 +90,7 @@ cv::Vec3f plaster(double x, double y, std::uint64_t seed) {
 }
 
 cv::Vec3f bricks(double x, double y, std::uint64_t seed) {
-  const Laid brick = laid(x, y, 0.075, 0.025, 0.5, seed);
+  const Laid brick = laid(x, y, {0.075, 0.025, 0.5}, seed);
   const double rough = fractal_noise(x * 70, y * 70, 3, seed + 1);
   const double soot = fractal_noise(x * 9 + 30 * brick.tone, y * 9, 3, seed + 2);
   const double light = 0.62 + 0.5 * brick.tone + 0.5 * (rough - 0.5) + 0.5 * (soot - 0.5);
@@ -136,12 +140,7 @@ cv::Vec3f cover(const cv::Vec3f& under,
 
 }  // namespace
 
-std::vector<std::string> surface_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kSurfaceKinds.size());
-  for (const SurfaceKind& kind : kSurfaceKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> surface_kinds() { return keys_of(kSurfaceKinds); }
 
 Eigen::Vector2d texel_place(const PaintedFace& face, double col, double row, double per_meter) {
   return {(col + 0.5) / per_meter - face.size.x() / 2, face.size.y() / 2 - (row + 0.5) / per_meter};

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/textures.h"
 
 #include <algorithm>
 #include <array>
@@ -15,18 +14,16 @@ namespace {
 const cv::Scalar kPaper(228, 236, 240, 255);
 const cv::Scalar kInk(46, 40, 38, 255);
 
-void bar(
-    cv::Mat& canvas, double x, double y, double width, double height, const cv::Scalar& color) {
-  part(canvas, x, y, width, height).setTo(color);
+void bar(cv::Mat& canvas, const cv::Rect2d& at, const cv::Scalar& color) {
+  part(canvas, at.x, at.y, at.width, at.height).setTo(color);
 }
 
-void draw_barcode(
-    cv::Mat& canvas, double x, double y, double width, double height, Random& random) {
-  bar(canvas, x, y, width, height, rgb(0xffffff));
-  for (double at = x + 0.06 * width; at < x + 0.92 * width;) {
-    const double thick = width * random.uniform(0.015, 0.05);
-    bar(canvas, at, y + 0.1 * height, thick, 0.7 * height, rgb(0x141414));
-    at += thick + width * random.uniform(0.015, 0.05);
+void draw_barcode(cv::Mat& canvas, const cv::Rect2d& at, Random& random) {
+  bar(canvas, at, rgb(0xffffff));
+  for (double x = at.x + 0.06 * at.width; x < at.x + 0.92 * at.width;) {
+    const double thick = at.width * random.uniform(0.015, 0.05);
+    bar(canvas, {x, at.y + 0.1 * at.height, thick, 0.7 * at.height}, rgb(0x141414));
+    x += thick + at.width * random.uniform(0.015, 0.05);
   }
 }
 
@@ -38,35 +35,31 @@ void draw_magazine(cv::Mat& canvas, Random& random) {
   if (subject == 1) paint_flowers(canvas, random);
   if (subject == 2) paint_shapes(canvas, 70, palette, random);
   const cv::Scalar title = subject == 0 ? rgb(0xffffff) : palette.back();
-  bar(canvas, 0, 0, 1, 0.27, palette.front());
-  draw_text(canvas, pick_title(random), {0.06, 0.2}, 0.13, title, Face::serif, 0.88);
+  bar(canvas, {0, 0, 1, 0.27}, palette.front());
+  draw_text(canvas, pick_title(random), {0.06, 0.2}, {0.13, title, Face::serif, 0.88});
   draw_text(canvas,
             fmt::format("No. {}   {} {}", 10 + random.below(80), "JOURNAL OF PLACES", 2026),
             {0.06, 0.25},
-            0.022,
-            title,
-            Face::sans,
-            0.88);
-  bar(canvas, 0.06, 0.62 * h, 0.5, 0.25, palette[1]);
+            {0.022, title, Face::sans, 0.88});
+  bar(canvas, {0.06, 0.62 * h, 0.5, 0.25}, palette[1]);
   for (int i = 0; i < 3; ++i) {
     draw_text(canvas,
               pick_words(3, random),
               {0.09, 0.62 * h + 0.075 + 0.07 * i},
-              0.034,
-              palette.back(),
-              Face::bold,
-              0.44);
+              {0.034, palette.back(), Face::bold, 0.44});
   }
-  draw_barcode(canvas, 0.7, h - 0.2, 0.24, 0.14, random);
+  draw_barcode(canvas, {0.7, h - 0.2, 0.24, 0.14}, random);
 }
 
 void draw_letter(cv::Mat& canvas, Random& random) {
   const double h = ratio_of(canvas);
   const Palette& palette = pick_palette(random);
   canvas.setTo(kPaper);
-  draw_text(
-      canvas, pick_title(random) + " INSTITUTE", {0.1, 0.13}, 0.035, palette[0], Face::serif, 0.6);
-  bar(canvas, 0.1, 0.155, 0.8, 0.006, palette[2]);
+  draw_text(canvas,
+            pick_title(random) + " INSTITUTE",
+            {0.1, 0.13},
+            {0.035, palette[0], Face::serif, 0.6});
+  bar(canvas, {0.1, 0.155, 0.8, 0.006}, palette[2]);
   cv::circle(canvas,
              {canvas.cols * 84 / 100, canvas.cols / 11},
              canvas.cols / 22,
@@ -82,14 +75,11 @@ void draw_letter(cv::Mat& canvas, Random& random) {
   draw_paragraph(canvas, {0.1, 0.2, 0.8, 0.36 * h - 0.2}, 0.021, kInk, random);
   // A bar chart with a caption.
   const double floor = 0.66 * h;
-  bar(canvas, 0.1, floor, 0.8, 0.004, kInk);
+  bar(canvas, {0.1, floor, 0.8, 0.004}, kInk);
   for (int i = 0; i < 9; ++i) {
     const double tall = random.uniform(0.05, 0.24 * h);
     bar(canvas,
-        0.12 + 0.087 * i,
-        floor - tall,
-        0.055,
-        tall,
+        {0.12 + 0.087 * i, floor - tall, 0.055, tall},
         palette[static_cast<std::size_t>(i % 3)]);
   }
   draw_paragraph(canvas, {0.1, floor + 0.05, 0.8, h - floor - 0.13}, 0.021, kInk, random);
@@ -101,9 +91,11 @@ void draw_postcard(cv::Mat& canvas, Random& random) {
   const Palette& palette = pick_palette(random);
   cv::Mat picture = part(canvas, 0.04, 0.04, 0.92, h - 0.08);
   paint_mosaic(picture, 70, palette, random);
-  bar(canvas, 0.3, 0.4 * h, 0.4, 0.13, palette.back());
-  draw_text(
-      canvas, pick_title(random), {0.33, 0.4 * h + 0.1}, 0.07, palette.front(), Face::serif, 0.34);
+  bar(canvas, {0.3, 0.4 * h, 0.4, 0.13}, palette.back());
+  draw_text(canvas,
+            pick_title(random),
+            {0.33, 0.4 * h + 0.1},
+            {0.07, palette.front(), Face::serif, 0.34});
 }
 
 void draw_photo(cv::Mat& canvas, Random& random) {
@@ -166,7 +158,7 @@ void draw_card(cv::Mat& canvas, Random& random) {
   const int rank = random.below(5);
   for (int half = 0; half < 2; ++half) {
     draw_text(
-        canvas, ranks[static_cast<std::size_t>(rank)], {0.06, 0.2}, 0.13, color, Face::bold, 0.2);
+        canvas, ranks[static_cast<std::size_t>(rank)], {0.06, 0.2}, {0.13, color, Face::bold, 0.2});
     draw_pip(canvas, {0.13, 0.3}, 0.06, suit, color);
     if (rank > 0) {
       draw_pip(canvas, {0.32, 0.25 * h}, 0.1, suit, color);
@@ -209,7 +201,7 @@ void draw_map(cv::Mat& canvas, Random& random) {
   for (int i = 0; i < 9; ++i) {
     const double x = random.uniform(0.02, 0.8);
     const double y = random.uniform(0.1, 0.95) * h;
-    draw_text(canvas, pick_word(random), {x, y}, 0.022, rgb(0x4b4238), Face::bold);
+    draw_text(canvas, pick_word(random), {x, y}, {0.022, rgb(0x4b4238), Face::bold});
   }
   for (int i = 0; i < 7; ++i) {
     const int y = random.below(canvas.rows);
@@ -217,8 +209,8 @@ void draw_map(cv::Mat& canvas, Random& random) {
     cv::circle(canvas, at, canvas.cols / 55, rgb(0xb3202a), cv::FILLED, cv::LINE_AA);
     cv::circle(canvas, at, canvas.cols / 120, rgb(0xffffff), cv::FILLED, cv::LINE_AA);
   }
-  bar(canvas, 0.02, 0.02, 0.3, 0.075, rgb(0x1d3557));
-  draw_text(canvas, "CITY MAP", {0.04, 0.075}, 0.036, rgb(0xffffff), Face::bold, 0.26);
+  bar(canvas, {0.02, 0.02, 0.3, 0.075}, rgb(0x1d3557));
+  draw_text(canvas, "CITY MAP", {0.04, 0.075}, {0.036, rgb(0xffffff), Face::bold, 0.26});
 }
 
 void draw_mousepad(cv::Mat& canvas, Random& random) {
@@ -227,10 +219,7 @@ void draw_mousepad(cv::Mat& canvas, Random& random) {
   draw_text(canvas,
             pick_title(random),
             {0.66, ratio_of(canvas) - 0.06},
-            0.04,
-            rgb(0xf2e9d8),
-            Face::bold,
-            0.28);
+            {0.04, rgb(0xf2e9d8), Face::bold, 0.28});
 }
 
 void draw_notebook(cv::Mat& canvas, Random& random) {
@@ -238,11 +227,12 @@ void draw_notebook(cv::Mat& canvas, Random& random) {
   const Palette& palette = pick_palette(random);
   canvas.setTo(palette.front());
   add_grain(canvas, 4, random);
-  bar(canvas, 0.86, 0, 0.035, h, palette[2]);
-  bar(canvas, 0.16, 0.2 * h, 0.56, 0.3, palette.back());
-  draw_text(canvas, "Field notes", {0.2, 0.2 * h + 0.1}, 0.05, palette.front(), Face::serif, 0.48);
-  for (int i = 0; i < 3; ++i) bar(canvas, 0.2, 0.2 * h + 0.15 + 0.05 * i, 0.48, 0.005, kInk);
-  draw_text(canvas, pick_words(2, random), {0.22, 0.2 * h + 0.19}, 0.028, kInk);
+  bar(canvas, {0.86, 0, 0.035, h}, palette[2]);
+  bar(canvas, {0.16, 0.2 * h, 0.56, 0.3}, palette.back());
+  draw_text(
+      canvas, "Field notes", {0.2, 0.2 * h + 0.1}, {0.05, palette.front(), Face::serif, 0.48});
+  for (int i = 0; i < 3; ++i) bar(canvas, {0.2, 0.2 * h + 0.15 + 0.05 * i, 0.48, 0.005}, kInk);
+  draw_text(canvas, pick_words(2, random), {0.22, 0.2 * h + 0.19}, {0.028, kInk});
   cv::Mat sticker = part(canvas, 0.2, 0.62 * h, 0.4, 0.28 * h);
   paint_shapes(sticker, 22, pick_palette(random), random);
 }
@@ -252,13 +242,13 @@ void draw_rug(cv::Mat& canvas, Random& random) {
   const double h = ratio_of(canvas);
   const Palette& palette = pick_palette(random);
   canvas.setTo(palette.front());
-  bar(canvas, 0.03, 0.03, 0.94, h - 0.06, palette.back());
-  bar(canvas, 0.05, 0.05, 0.9, h - 0.1, palette[1]);
+  bar(canvas, {0.03, 0.03, 0.94, h - 0.06}, palette.back());
+  bar(canvas, {0.05, 0.05, 0.9, h - 0.1}, palette[1]);
   constexpr int kAcross = 18;
   for (int i = 0; i < kAcross; ++i) {
     const double x = 0.065 + i * 0.88 / kAcross;
     for (const double y : {0.065, h - 0.095}) {
-      bar(canvas, x, y, 0.03, 0.03, palette[static_cast<std::size_t>(i) % palette.size()]);
+      bar(canvas, {x, y, 0.03, 0.03}, palette[static_cast<std::size_t>(i) % palette.size()]);
     }
   }
   paint_mosaic(part(canvas, 0.12, 0.12, 0.76, h - 0.24), 90, palette, random);
@@ -281,12 +271,7 @@ constexpr std::array<PrintKind, 9> kPrintKinds = {{{"magazine", draw_magazine},
 
 }  // namespace
 
-std::vector<std::string> print_kinds() {
-  std::vector<std::string> keys;
-  keys.reserve(kPrintKinds.size());
-  for (const PrintKind& kind : kPrintKinds) keys.emplace_back(kind.key);
-  return keys;
-}
+std::vector<std::string> print_kinds() { return keys_of(kPrintKinds); }
 
 cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random) {
   cv::Mat canvas = blank_canvas(size_px, kPaper);

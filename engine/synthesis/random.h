@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -28,5 +30,12 @@ class Random {
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
 /// The same in space.
 double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed);
+
+/// The keys of a table of kinds.
+std::vector<std::string> keys_of(const auto& kinds) {
+  std::vector<std::string> keys;
+  for (const auto& kind : kinds) keys.emplace_back(kind.key);
+  return keys;
+}
 
 }  // namespace gpo

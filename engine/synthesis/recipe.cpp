@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
-#include "engine/synthesis/faces.h"
+#include "engine/synthesis/drawing.h"
 #include "engine/synthesis/strict_yaml.h"
-#include "engine/synthesis/textures.h"
 
 #include <cmath>
 #include <limits>

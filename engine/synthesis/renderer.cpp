@@ -3,8 +3,8 @@
 #include "engine/synthesis/renderer.h"
 
 #include "engine/base/parallel.h"
-#include "engine/synthesis/hits.h"
 #include "engine/synthesis/random.h"
+#include "engine/synthesis/scene.h"
 
 #include <algorithm>
 #include <cmath>

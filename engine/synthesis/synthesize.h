@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,5 +36,20 @@ void synthesize(const Recipe& recipe,
                 const std::filesystem::path& output,
                 const SynthesisProgress& progress = {},
                 int threads = 2);
+
+/// Where the recording of a recipe is kept: cache/STEM-HASH/STEM, so that it is called after its
+/// recipe, and an edited recipe has another place. Throws InputError where there is no such file.
+std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
+                                         const std::filesystem::path& cache);
+
+/// The folders of the recipes' recordings, in their order; makes those that are not there yet, some
+/// at a time. Where another process makes one of them, waits for it. `progress` counts the frames
+/// of all that are being made; it is never called by two threads at a time, and stops everything
+/// where it throws. Throws InputError; what is not finished is never left behind.
+std::vector<std::filesystem::path> synthesized_recordings(
+    std::span<const std::filesystem::path> recipes,
+    const std::filesystem::path& cache,
+    int threads,
+    const SynthesisProgress& progress = {});
 
 }  // namespace gpo

@@ -5,7 +5,7 @@
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/synthesis/synthesized.h"
+#include "engine/synthesis/synthesize.h"
 #include "tests/app/program.h"
 #include "tests/engine/initialize/simulated_frames.h"
 

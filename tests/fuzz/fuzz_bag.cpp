@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // All containers of bags, told apart by their first bytes.
-#include "engine/recording/layouts/bag_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 #include <iostream>

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What cameras and apps log beside and inside of videos. The first byte chooses what the rest is
 // read as.
-#include "engine/recording/loggers/camm.h"
+#include "engine/recording/layouts/told_view.h"
 #include "engine/recording/loggers/gpmf.h"
-#include "engine/recording/loggers/gpmf_view.h"
-#include "engine/recording/loggers/logger_files.h"
+#include "engine/recording/loggers/logs.h"
 #include "engine/recording/loggers/telemetry_track.h"
-#include "engine/recording/pictures/movie_boxes.h"
-#include "engine/recording/pictures/video_metadata.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/fuzzed_folder.h"
 

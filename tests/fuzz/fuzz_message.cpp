@@ -3,7 +3,6 @@
 // The first byte chooses the encoding and the type.
 #include "engine/recording/bags/bag_picture.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/layouts/camera_info.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/pictures/exif_view.h"
+#include "engine/recording/layouts/told_view.h"
 #include "engine/recording/pictures/picture_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 

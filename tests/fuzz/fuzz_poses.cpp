@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Other programs' results. The first byte chooses what the rest is read as.
 #include "engine/results/colmap_model.h"
-#include "engine/results/ply_points.h"
 #include "engine/results/result_poses.h"
 #include "tests/fuzz/fuzzed_file.h"
 

@@ -3,7 +3,7 @@
 // The first byte chooses what the rest is read as.
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/video_decoder.h"
 
-#include "engine/recording/pictures/video_file.h"
 #include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/test_folder.h"
 

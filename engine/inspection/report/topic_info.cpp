@@ -3,8 +3,8 @@
 #include "engine/inspection/report/topic_info.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/open_bag.h"
-#include "engine/recording/layouts/bag_reader.h"
+#include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/layouts/layouts.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

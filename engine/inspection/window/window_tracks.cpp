@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/window/kept.h"
-#include "engine/recording/pictures_ahead.h"
+#include "engine/recording/frame_cache.h"
 
 #include <chrono>
 #include <utility>

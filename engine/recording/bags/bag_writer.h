@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/messages.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +13,7 @@
 
 namespace gpo {
 
-/// What is written: a name and a type that message_bytes.h knows.
+/// What is written: a name and a type that `message_type` knows.
 struct WrittenTopic {
   std::string name;
   std::string type;
@@ -31,5 +32,27 @@ BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<Writt
 
 /// ROS 2 in MCAP, chunks of 4 MiB, compressed by zstd.
 BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
+
+// Messages as bytes, encoded either way: what messages.h reads.
+
+std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
+/// The rectified camera is the same one without distortion.
+std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
+/// Says that there is no orientation, and nothing of covariances.
+std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
+/// geometry_msgs/TransformStamped
+std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
+/// tf2_msgs/TFMessage
+std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
+
+/// What a bag says of a type, so that others can read it without knowing it.
+struct MessageType {
+  const char* name;        ///< "sensor_msgs/Image"
+  const char* ros1_sum;    ///< MD5 of the definition
+  std::string definition;  ///< its fields, and those of the types that it has
+};
+
+/// Of the types above. Throws std::out_of_range for another.
+MessageType message_type(const std::string& name, MessageEncoding encoding);
 
 }  // namespace gpo

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/message_bytes.h"
+#include "engine/recording/bags/bag_writer.h"
 
 #include <array>
 #include <cstring>

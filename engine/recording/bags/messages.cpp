@@ -2,17 +2,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/recording/bags/message_cursor.h"
+#include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <deque>
+#include <initializer_list>
+#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
+
+constexpr std::size_t kCdrHead = 4;
+
+/// Walks through a message, whichever way it is encoded: ROS 1 puts everything side by side,
+/// little-endian; CDR of ROS 2 begins with four bytes that tell the order of bytes, puts numbers at
+/// multiples of their size after those, and ends texts with a zero. As in a ByteCursor, what lies
+/// beyond the end is 0 or empty, and `ok` is false.
+class MessageCursor {
+ public:
+  /// Not `ok` where the encoding is neither of the two.
+  MessageCursor(std::string_view bytes, MessageEncoding encoding)
+      : bytes_(bytes), encoding_(encoding), known_(encoding != MessageEncoding::unknown) {
+    if (encoding != MessageEncoding::cdr) return;
+    const std::string_view head = bytes_.take(kCdrHead);
+    if (!bytes_.ok()) return;
+    // Plain CDR, the only one that ROS 2 writes; 0 is big-endian, 1 little-endian.
+    known_ = head[0] == 0 && (head[1] == 0 || head[1] == 1);
+    swapped_ = head[1] == 0;
+  }
+
+  template <class T>
+  T number() {
+    const bool cdr = encoding_ == MessageEncoding::cdr;
+    const std::size_t beyond = cdr ? (bytes_.place() - kCdrHead) % sizeof(T) : 0;
+    if (bytes_.ok() && beyond != 0) bytes_.take(sizeof(T) - beyond);
+    if (!swapped_) return bytes_.number<T>();
+    std::string stored(bytes_.take(sizeof(T)));
+    stored = std::string(stored.rbegin(), stored.rend());
+    return ByteCursor(stored).number<T>();
+  }
+  /// uint8[]: as many as the number before them says.
+  std::string_view bytes() { return bytes_.take(number<std::uint32_t>()); }
+  std::string text() {
+    std::string text(bytes());
+    if (!ros1() && text.ends_with('\0')) text.pop_back();
+    return text;
+  }
+  /// float64[], at most 1000 of them.
+  std::vector<double> doubles() {
+    const auto count = number<std::uint32_t>();
+    constexpr std::uint32_t kMost = 1000;
+    if (count > kMost) known_ = false;
+    return count == 0 || count > kMost ? std::vector<double>() : doubles(count);
+  }
+  std::vector<double> doubles(std::size_t count) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count && ok(); ++i) values.push_back(number<double>());
+    values.resize(count);
+    return values;
+  }
+  Eigen::Vector3d vector() { return Eigen::Map<const Eigen::Vector3d>(doubles(3).data()); }
+  MessageHeader header() {
+    if (ros1()) number<std::uint32_t>();  // seq
+    // ROS 2 has signed seconds.
+    const std::int64_t seconds =
+        ros1() ? std::int64_t{number<std::uint32_t>()} : number<std::int32_t>();
+    const std::int64_t stamp_ns = seconds * 1'000'000'000 + number<std::uint32_t>();
+    return {stamp_ns, text()};
+  }
+  bool ros1() const { return encoding_ == MessageEncoding::ros1; }
+  bool ok() const { return known_ && bytes_.ok(); }
+
+ private:
+  ByteCursor bytes_;
+  MessageEncoding encoding_;
+  bool known_;
+  bool swapped_ = false;
+};
 
 /// How the types of poses begin after their header.
 struct PoseType {
@@ -24,31 +97,71 @@ constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", f
                                                  {"geometry_msgs/TransformStamped", true},
                                                  {"nav_msgs/Odometry", true}}};
 
-template <class Message>
-std::optional<Message> if_whole(const MessageCursor& cursor, Message message) {
+/// A message that begins with a header; `fill` reads what follows it.
+template <class Message, class Fill>
+std::optional<Message> read_whole(std::string_view bytes, MessageEncoding encoding, Fill fill) {
+  MessageCursor cursor(bytes, encoding);
+  Message message;
+  message.header = cursor.header();
+  fill(cursor, message);
   return cursor.ok() ? std::optional(std::move(message)) : std::nullopt;
 }
 
-std::int64_t time_ns(MessageCursor& cursor) {
-  // ROS 2 has signed seconds.
-  const std::int64_t seconds =
-      cursor.ros1() ? std::int64_t{cursor.number<std::uint32_t>()} : cursor.number<std::int32_t>();
-  return seconds * 1'000'000'000 + cursor.number<std::uint32_t>();
-}
-
-MessageHeader header(MessageCursor& cursor) {
-  if (cursor.ros1()) cursor.number<std::uint32_t>();  // seq
-  const std::int64_t stamp_ns = time_ns(cursor);
-  return {stamp_ns, cursor.text()};
-}
-
-PoseMessage pose(MessageCursor& cursor, bool has_child) {
-  PoseMessage message;
-  message.header = header(cursor);
+void fill_pose(MessageCursor& cursor, PoseMessage& message, bool has_child) {
   if (has_child) message.child_frame_id = cursor.text();
   message.position = cursor.vector();
   for (double& value : message.quaternion_xyzw) value = cursor.number<double>();
-  return message;
+}
+
+constexpr std::uint32_t kLongestSide = 100'000;  // [px]
+
+/// ROS' names of models.
+struct Model {
+  const char* name;
+  Distortion distortion;
+  std::initializer_list<std::size_t> counts;  ///< of coefficients
+};
+const std::array<Model, 4> kModels = {
+    {{"plumb_bob", Distortion::radial_tangential, {4, 5}},
+     {"rational_polynomial", Distortion::radial_tangential, {8, 12, 14}},
+     {"equidistant", Distortion::equidistant, {4}},
+     {"fisheye", Distortion::equidistant, {4}}}};
+
+[[noreturn]] void fail(const std::string& name,
+                       const std::string& field,
+                       const std::string& found,
+                       const std::string& expected) {
+  throw InputError(fmt::format("{}: `{}`: found {}, expected {}", name, field, found, expected));
+}
+
+void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {
+  const auto zero = [](double k) { return k == 0; };
+  if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
+  const auto model = std::ranges::find_if(
+      kModels, [&](const Model& m) { return info.distortion_model == m.name; });
+  if (model == kModels.end()) {
+    fail(name,
+         "distortion_model",
+         "\"" + info.distortion_model + "\"",
+         "plumb_bob, rational_polynomial or equidistant");
+  }
+  if (std::ranges::find(model->counts, info.D.size()) == model->counts.end()) {
+    fail(name,
+         "D",
+         fmt::format("{} numbers", info.D.size()),
+         fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
+  }
+  if (!are_coefficients(info.D))
+    fail(name, "D", "a coefficient that no lens has", "numbers of the order of 1");
+  camera.distortion = model->distortion;
+  camera.coefficients = info.D;
+  // ROS writes five where four were calibrated.
+  if (info.D.size() == 5 && info.D.back() == 0) camera.coefficients.pop_back();
+}
+
+/// Once ROS' names of frames began with a slash.
+std::string plain(const std::string& frame) {
+  return frame.starts_with('/') ? frame.substr(1) : frame;
 }
 
 }  // namespace
@@ -68,55 +181,50 @@ bool is_pose_type(const std::string& type) {
 
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding) {
   MessageCursor cursor(bytes, encoding);
-  MessageHeader message = header(cursor);
-  return if_whole(cursor, std::move(message));
+  MessageHeader header = cursor.header();
+  return cursor.ok() ? std::optional(std::move(header)) : std::nullopt;
 }
 
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding) {
-  MessageCursor cursor(bytes, encoding);
-  ImageMessage message;
-  message.header = header(cursor);
-  message.height = cursor.number<std::uint32_t>();
-  message.width = cursor.number<std::uint32_t>();
-  message.encoding = cursor.text();
-  message.big_endian = cursor.number<std::uint8_t>() != 0;
-  message.step = cursor.number<std::uint32_t>();
-  message.data = cursor.bytes();
-  return if_whole(cursor, std::move(message));
+  return read_whole<ImageMessage>(
+      bytes, encoding, [](MessageCursor& cursor, ImageMessage& message) {
+        message.height = cursor.number<std::uint32_t>();
+        message.width = cursor.number<std::uint32_t>();
+        message.encoding = cursor.text();
+        message.big_endian = cursor.number<std::uint8_t>() != 0;
+        message.step = cursor.number<std::uint32_t>();
+        message.data = cursor.bytes();
+      });
 }
 
 std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
                                                             MessageEncoding encoding) {
-  MessageCursor cursor(bytes, encoding);
-  CompressedImageMessage message;
-  message.header = header(cursor);
-  message.format = cursor.text();
-  message.data = cursor.bytes();
-  return if_whole(cursor, std::move(message));
+  return read_whole<CompressedImageMessage>(
+      bytes, encoding, [](MessageCursor& cursor, CompressedImageMessage& message) {
+        message.format = cursor.text();
+        message.data = cursor.bytes();
+      });
 }
 
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,
                                                   MessageEncoding encoding) {
-  MessageCursor cursor(bytes, encoding);
-  CameraInfoMessage message;
-  message.header = header(cursor);
-  message.height = cursor.number<std::uint32_t>();
-  message.width = cursor.number<std::uint32_t>();
-  message.distortion_model = cursor.text();
-  message.D = cursor.doubles();
-  message.K = cursor.doubles(9);
-  return if_whole(cursor, std::move(message));
+  return read_whole<CameraInfoMessage>(
+      bytes, encoding, [](MessageCursor& cursor, CameraInfoMessage& message) {
+        message.height = cursor.number<std::uint32_t>();
+        message.width = cursor.number<std::uint32_t>();
+        message.distortion_model = cursor.text();
+        message.D = cursor.doubles();
+        message.K = cursor.doubles(9);
+      });
 }
 
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding) {
-  MessageCursor cursor(bytes, encoding);
-  ImuMessage message;
-  message.header = header(cursor);
-  cursor.doubles(4 + 9);  // orientation, its covariance
-  message.angular_velocity = cursor.vector();
-  cursor.doubles(9);
-  message.linear_acceleration = cursor.vector();
-  return if_whole(cursor, std::move(message));
+  return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, ImuMessage& message) {
+    cursor.doubles(4 + 9);  // orientation, its covariance
+    message.angular_velocity = cursor.vector();
+    cursor.doubles(9);
+    message.linear_acceleration = cursor.vector();
+  });
 }
 
 std::optional<PoseMessage> read_pose(std::string_view bytes,
@@ -125,9 +233,9 @@ std::optional<PoseMessage> read_pose(std::string_view bytes,
   const auto known =
       std::ranges::find_if(kPoseTypes, [&](const PoseType& one) { return type == one.type; });
   if (known == kPoseTypes.end()) return std::nullopt;
-  MessageCursor cursor(bytes, encoding);
-  PoseMessage message = pose(cursor, known->has_child);
-  return if_whole(cursor, std::move(message));
+  return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, PoseMessage& message) {
+    fill_pose(cursor, message, known->has_child);
+  });
 }
 
 std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
@@ -135,8 +243,79 @@ std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
   MessageCursor cursor(bytes, encoding);
   const auto count = cursor.number<std::uint32_t>();
   std::vector<PoseMessage> transforms;
-  for (std::uint32_t i = 0; i < count && cursor.ok(); ++i) transforms.push_back(pose(cursor, true));
-  return if_whole(cursor, std::move(transforms));
+  for (std::uint32_t i = 0; i < count && cursor.ok(); ++i) {
+    transforms.emplace_back().header = cursor.header();
+    fill_pose(cursor, transforms.back(), true);
+  }
+  return cursor.ok() ? std::optional(std::move(transforms)) : std::nullopt;
+}
+
+bool is_calibrated(const CameraInfoMessage& info) { return info.K[0] != 0; }
+
+Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
+  const auto& k = info.K;
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
+    fail(name, "K", "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+  if (!is_focal_length(k[0]) || !is_focal_length(k[4]))
+    fail(name, "K", "a focal length that no lens has", "fx, fy in pixels");
+  if (std::max(info.width, info.height) > kLongestSide)
+    fail(name, "width", "a size that no picture has", "pixels");
+  Camera camera;
+  camera.width = static_cast<int>(info.width);
+  camera.height = static_cast<int>(info.height);
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  if (!has_near_principal_point(camera))
+    fail(name, "K", "a principal point far outside of the picture", "cx, cy near its middle");
+  if (!std::isfinite(camera.cx) || !std::isfinite(camera.cy))
+    fail(name, "K", "no numbers", "cx, cy in pixels");
+  set_lens(camera, info, name);
+  return camera;
+}
+
+CameraInfoMessage camera_info_of(const Camera& camera) {
+  CameraInfoMessage info;
+  info.width = static_cast<std::uint32_t>(camera.width);
+  info.height = static_cast<std::uint32_t>(camera.height);
+  info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  info.D = camera.coefficients;
+  if (camera.distortion == Distortion::equidistant) {
+    info.distortion_model = "equidistant";
+    return info;
+  }
+  constexpr std::size_t kPlumbBob = 5;
+  info.D.resize(std::max(info.D.size(), kPlumbBob), 0);
+  info.distortion_model = info.D.size() == kPlumbBob ? "plumb_bob" : "rational_polynomial";
+  return info;
+}
+
+std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms,
+                                      const std::string& from,
+                                      const std::string& to) {
+  std::multimap<std::string, std::pair<std::string, Pose>> neighbors;
+  for (const PoseMessage& one : transforms) {
+    const auto T_parent_child = one.pose();
+    if (!T_parent_child) continue;
+    const std::string parent = plain(one.header.frame_id);
+    const std::string child = plain(one.child_frame_id);
+    neighbors.emplace(parent, std::pair(child, *T_parent_child));
+    neighbors.emplace(child, std::pair(parent, inverse(*T_parent_child)));
+  }
+  std::map<std::string, Pose> reached = {{plain(from), Pose{}}};  // T_from_frame
+  std::deque<std::string> open = {plain(from)};
+  while (!open.empty()) {
+    const std::string frame = open.front();
+    open.pop_front();
+    if (frame == plain(to)) return reached[frame];
+    const auto [first, last] = neighbors.equal_range(frame);
+    for (auto i = first; i != last; ++i) {
+      const auto& [next, T_frame_next] = i->second;
+      if (reached.emplace(next, reached[frame] * T_frame_next).second) open.push_back(next);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace gpo

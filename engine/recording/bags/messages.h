@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
 
@@ -91,5 +92,20 @@ std::optional<PoseMessage> read_pose(std::string_view bytes,
 /// tf2_msgs/TFMessage
 std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
                                                         MessageEncoding encoding);
+
+/// Whether somebody calibrated it: ROS' drivers send zeros otherwise.
+bool is_calibrated(const CameraInfoMessage& info);
+
+/// Throws InputError that begins with `name` where it is no camera that we know.
+Camera camera_of(const CameraInfoMessage& info, const std::string& name);
+
+/// What `camera_of` reads; without its header.
+CameraInfoMessage camera_info_of(const Camera& camera);
+
+/// T_from_to, x_from = R x_to + p, along transforms that are known, in either direction; nothing
+/// where they do not connect the two.
+std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms,
+                                      const std::string& from,
+                                      const std::string& to);
 
 }  // namespace gpo

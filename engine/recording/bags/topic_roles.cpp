@@ -3,7 +3,6 @@
 #include "engine/recording/bags/topic_roles.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/messages.h"
 
 #include <algorithm>
 #include <utility>
@@ -84,6 +83,114 @@ std::optional<int> found(const Bag& bag,
   return best;
 }
 
+/// Enough for a header, and for all of an Imu or a pose, if frames have names that people can read.
+constexpr std::uint64_t kMostSmallBytes = 2048;
+constexpr std::size_t kMostTransforms = 100'000;
+
+struct Picture {
+  MessageHeader header;
+  BagMessage message;
+};
+
+/// While the messages are gone through.
+struct Reading {
+  const Bag& bag;
+  BagContents contents{};
+  std::vector<Picture> pictures{};
+  bool some_without_stamp = false;
+};
+
+[[noreturn]] void refuse(const Bag& bag, const BagMessage& message) {
+  const BagTopic& topic = bag.topics[message.topic];
+  const auto number = std::count_if(bag.messages.data(), &message, [&](const BagMessage& other) {
+    return other.topic == message.topic;
+  });
+  throw InputError(fmt::format("{}: {}: message {} is cut or none, expected {}",
+                               bag.file.string(),
+                               topic.name,
+                               number,
+                               topic.type));
+}
+
+std::string first_bytes(const Reading& reading, const BagMessage& message) {
+  return reading.bag.read(message, kMostSmallBytes);
+}
+
+template <class T>
+T required(const Reading& reading, const BagMessage& message, std::optional<T> made) {
+  if (!made) refuse(reading.bag, message);
+  return *std::move(made);
+}
+
+/// The same of a message that begins with a header.
+template <class T>
+T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
+  T made = required(reading, message, std::move(read));
+  if (made.header.stamp_ns != 0) return made;
+  made.header.stamp_ns = message.recorded_ns;
+  reading.some_without_stamp |= message.recorded_ns != 0;
+  return made;
+}
+
+void read_picture_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+  const auto header = read_header(first_bytes(reading, message), topic.encoding);
+  reading.pictures.push_back(
+      stamped(reading, message, header ? std::optional(Picture{*header, message}) : std::nullopt));
+}
+
+void read_camera_info_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+  auto& first = reading.contents.camera_info;
+  if (first) return;
+  first =
+      required(reading, message, read_camera_info(first_bytes(reading, message), topic.encoding));
+}
+
+void read_imu_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+  reading.contents.imu.push_back(
+      stamped(reading, message, read_imu(first_bytes(reading, message), topic.encoding)));
+}
+
+/// Of a topic that tells of several things the first one.
+void read_truth_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+  auto& truth = reading.contents.truth;
+  PoseMessage pose = stamped(
+      reading, message, read_pose(first_bytes(reading, message), topic.encoding, topic.type));
+  if (truth.empty() || truth.front().child_frame_id == pose.child_frame_id)
+    truth.push_back(std::move(pose));
+}
+
+void read_transforms_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+  auto& all = reading.contents.transforms;
+  if (all.size() > kMostTransforms) return;
+  const std::string bytes = reading.bag.read(message, kWholeMessage);
+  const auto some = required(reading, message, read_transforms(bytes, topic.encoding));
+  all.insert(all.end(), some.begin(), some.end());
+}
+
+using Reader = void (*)(Reading& reading, const BagMessage& message, const BagTopic& topic);
+
+/// As `TopicRole` counts them.
+constexpr std::array<Reader, kTopicRoles> kReaders = {
+    read_picture_of, read_camera_info_of, read_imu_of, read_truth_of};
+
+bool is_static_transforms(const BagTopic& topic) {
+  return topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
+         topic.encoding != MessageEncoding::unknown;
+}
+
+/// Strictly ascending in time; says how many had a time that was there already.
+template <class T>
+void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
+  const auto time = [](const T& one) { return one.header.stamp_ns; };
+  std::ranges::stable_sort(all, {}, time);
+  const auto same_time = [&](const T& a, const T& b) { return time(a) == time(b); };
+  const auto again = std::unique(all.begin(), all.end(), same_time);  // clang 14 cannot do ranges'
+  if (again == all.end()) return;
+  notes.push_back(fmt::format(
+      "{} {} are left out: they have the time stamps of others", all.end() - again, things));
+  all.erase(again, all.end());
+}
+
 }  // namespace
 
 TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
@@ -137,6 +244,32 @@ std::string topics_text(const Bag& bag) {
   if (bag.topics.size() > kShown)
     texts.push_back(fmt::format("{} more", bag.topics.size() - kShown));
   return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
+  std::vector<Reader> readers(bag.topics.size(), nullptr);
+  for (std::size_t i = 0; i < readers.size(); ++i)
+    if (is_static_transforms(bag.topics[i])) readers[i] = read_transforms_of;
+  for (int i = 0; i < kTopicRoles; ++i)
+    if (const auto topic = roles.topics[i]) readers[*topic] = kReaders[i];
+  Reading reading{bag};
+  for (const BagMessage& message : bag.messages)
+    if (const Reader read = readers[message.topic])
+      read(reading, message, bag.topics[message.topic]);
+
+  BagContents& contents = reading.contents;
+  put_in_order(reading.pictures, "pictures", contents.notes);
+  put_in_order(contents.imu, "samples of the gyroscope", contents.notes);
+  put_in_order(contents.truth, "poses", contents.notes);
+  for (const Picture& picture : reading.pictures) {
+    contents.picture_times_ns.push_back(picture.header.stamp_ns);
+    contents.pictures.push_back(picture.message);
+  }
+  contents.camera_frame = reading.pictures.front().header.frame_id;
+  if (reading.some_without_stamp)
+    contents.notes.emplace_back(
+        "messages without a time stamp have the time at which they were recorded");
+  return std::move(reading.contents);
 }
 
 }  // namespace gpo

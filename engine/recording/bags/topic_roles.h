@@ -4,8 +4,10 @@
 
 #include "engine/base/choice.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/messages.h"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -44,5 +46,22 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
 /// "/imu (sensor_msgs/Imu, 200)", with commas between and only the first of very many.
 std::string topics_text(const Bag& bag);
+
+/// What a recording is made of, as the bag has it: by the time stamps in the messages' headers,
+/// strictly ascending. Where a header has none it is the time at which it was recorded.
+struct BagContents {
+  std::vector<std::int64_t> picture_times_ns;
+  std::vector<BagMessage> pictures;  ///< as many
+  std::string camera_frame;          ///< where the first picture was taken: its `frame_id`
+  std::optional<CameraInfoMessage> camera_info;  ///< the first
+  std::vector<ImuMessage> imu;
+  std::vector<PoseMessage> truth;
+  std::vector<PoseMessage> transforms;  ///< of /tf_static
+  std::vector<std::string> notes;       ///< what was left out
+};
+
+/// Goes through the messages of the topics that have a role, in the order of the file; of pictures
+/// it reads the first bytes. Throws InputError where a message is cut or not of its type.
+BagContents read_contents(const Bag& bag, const TopicRoles& roles);
 
 }  // namespace gpo

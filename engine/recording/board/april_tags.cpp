@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/april_tags.h"
-
+#include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/opencv_aruco.h"
 
 #include <algorithm>
@@ -84,11 +83,7 @@ void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
   const double bits = kCode + 2 * board.tags->border;
   const double plain = std::min(board.tags->border / bits, board.tags->spacing);
   const int half = std::clamp(static_cast<int>(0.7 * plain * side_of(corners)), 2, 7);
-  const Quad starts = corners;
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
-  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    if (cv::norm(corners[k] - starts[k]) > half) corners[k] = starts[k];
+  refine_corners(corners, gray, half, half);
 }
 
 bool is_inside(const Quad& quad, const cv::Mat& gray) {

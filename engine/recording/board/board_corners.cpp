@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/board/board_corners.h"
 
-#include "engine/recording/board/april_tags.h"
-#include "engine/recording/board/charuco.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -79,18 +76,6 @@ void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing)
   }
 }
 
-/// Sub-pixel corners in the full picture; one that runs away from its start stays there.
-void refine(std::vector<cv::Point2f>& corners, const cv::Mat& gray, double spacing) {
-  const double reach = kSubPixReach * spacing;
-  const int half = std::clamp(static_cast<int>(std::lround(reach)), 2, 7);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
-  const std::vector<cv::Point2f> starts = corners;
-  cv::cornerSubPix(gray, corners, {half, half}, {-1, -1}, enough);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (cv::norm(corners[i] - starts[i]) > reach) corners[i] = starts[i];
-  }
-}
-
 /// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
 Corners quarter_turn(const Corners& from, const Board& board) {
   const int n = board.columns;
@@ -160,13 +145,29 @@ Corners find_chessboard(const cv::Mat& gray, const Board& board) {
   if (found.empty()) return {};
   const double spacing = least_spacing(found, board);
   mend(found, board, spacing);
-  refine(found, gray, spacing);
+  const double reach = kSubPixReach * spacing;
+  refine_corners(found, gray, std::clamp(static_cast<int>(std::lround(reach)), 2, 7), reach);
   Corners corners;
   for (const auto& corner : found) corners.emplace_back(corner.x, corner.y);
   return ordered(std::move(corners), gray, board);
 }
 
 }  // namespace
+
+std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
+                                 const cv::Mat& gray,
+                                 int half_px,
+                                 double reach_px) {
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
+  const std::vector<cv::Point2f> starts = corners;
+  cv::cornerSubPix(gray, corners, {half_px, half_px}, {-1, -1}, enough);
+  std::vector<bool> kept(corners.size(), true);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    kept[i] = !(cv::norm(corners[i] - starts[i]) > reach_px);
+    if (!kept[i]) corners[i] = starts[i];
+  }
+  return kept;
+}
 
 Corners find_board(const cv::Mat& gray, const Board& board) {
   if (board.tags) return find_april_tags(gray, board);

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/charuco.h"
-
+#include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/opencv_aruco.h"
 
 #include <algorithm>
@@ -138,9 +137,7 @@ Eigen::Vector2d refined(const cv::Mat& gray, const ExpectedCorner& expected) {
   const int half = std::clamp(static_cast<int>(0.9 * expected.reach_px), 2, 7);
   if (!cv::Rect2f(cv::Point2f(), gray.size()).contains(expected.at)) return none;
   std::vector<cv::Point2f> corner = {expected.at};
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-3);
-  cv::cornerSubPix(gray, corner, {half, half}, {-1, -1}, enough);
-  if (cv::norm(corner[0] - expected.at) > half) return none;
+  if (!refine_corners(corner, gray, half, half)[0]) return none;
   return {corner[0].x, corner[0].y};
 }
 

@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/files/xml_file.h"
+#include "engine/files/yaml_entry.h"
 #include "engine/geometry/nearest_rotation.h"
 
 #include <algorithm>
@@ -38,8 +38,6 @@ constexpr Names kWidth = {"image_width", "image_Width", "imageWidth", "width"};
 constexpr Names kHeight = {"image_height", "image_Height", "imageHeight", "height"};
 constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
 
-constexpr double kMostFocalLength = 1e6;  // [px]
-constexpr double kMostCoefficient = 1e6;
 constexpr double kMostShift_s = 3600;
 /// From one picture in 100 s to a high-speed camera: the time stamps of as many pictures as are
 /// read are all different and fit into nanoseconds.
@@ -96,8 +94,7 @@ void set_coefficients(Camera& camera, const YamlEntry& entry) {
               count_of(values),
               "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
   }
-  const auto absurd = [](double k) { return std::abs(k) > kMostCoefficient; };
-  if (std::ranges::any_of(values, absurd)) {
+  if (!are_coefficients(values)) {
     yaml_fail(entry, "a coefficient that no lens has", "numbers of the order of 1");
   }
   camera.coefficients = values;
@@ -113,25 +110,24 @@ void set_resolution(Camera& camera, const YamlEntry& entry, double width, double
   camera.height = static_cast<int>(height);
 }
 
-void set_intrinsics(
-    Camera& camera, const YamlEntry& entry, double fx, double fy, double cx, double cy) {
+/// `k`: fx, fy, cx, cy.
+void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
+  const auto& [fx, fy, cx, cy] = k;
   if (fx <= 0 || fy <= 0) {
     yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
   }
-  if (fx > kMostFocalLength || fy > kMostFocalLength) {
+  if (!is_focal_length(fx) || !is_focal_length(fy)) {
     yaml_fail(entry, "a focal length that no lens has", "fx, fy in pixels");
-  }
-  const bool inside =
-      cx > -camera.width && cx < 2 * camera.width && cy > -camera.height && cy < 2 * camera.height;
-  if (camera.width > 0 && !inside) {
-    yaml_fail(entry,
-              "a principal point far outside of the picture",
-              "cx, cy in pixels, near the middle of it");
   }
   camera.fx = fx;
   camera.fy = fy;
   camera.cx = cx;
   camera.cy = cy;
+  if (!has_near_principal_point(camera)) {
+    yaml_fail(entry,
+              "a principal point far outside of the picture",
+              "cx, cy in pixels, near the middle of it");
+  }
 }
 
 /// Standard deviations as `calibrate` writes them; of coefficients that the file has.
@@ -145,7 +141,7 @@ void set_sigmas(Camera& camera, const YamlEntry& root) {
       yaml_fail(*entry, count_of(values), "one for each of the distortion coefficients");
     camera.sigmas.insert(camera.sigmas.end(), values.begin(), values.end());
   }
-  const auto no_sigma = [](double sigma) { return !(sigma >= 0 && sigma < kMostCoefficient); };
+  const auto no_sigma = [](double sigma) { return !(sigma >= 0 && sigma < kLargestCoefficient); };
   if (std::ranges::any_of(camera.sigmas, no_sigma))
     yaml_fail(*intrinsics, "a standard deviation that none can be", "numbers from 0 on");
 }
@@ -158,7 +154,7 @@ Camera euroc_camera(const YamlEntry& root) {
   set_resolution(camera, resolution, size[0], size[1]);
   const auto intrinsics = at(root, "intrinsics", "[fx, fy, cx, cy]");
   const auto k = numbers(intrinsics, 4, "4 (fx, fy, cx, cy)");
-  set_intrinsics(camera, intrinsics, k[0], k[1], k[2], k[3]);
+  set_intrinsics(camera, intrinsics, {k[0], k[1], k[2], k[3]});
   camera.distortion =
       distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
   const auto euroc_key = find(root, "distortion_coefficients");
@@ -194,7 +190,7 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   }
-  set_intrinsics(camera, matrix, k[0], k[4], k[2], k[5]);
+  set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
   const auto coefficients = find_any(root, kCoefficients);
   if (!coefficients) return camera;
   const auto fisheye = find(root, "fisheye_model");

@@ -3,8 +3,7 @@
 #include "engine/recording/companions/sidecar_files.h"
 
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/board/april_tags.h"
-#include "engine/recording/board/charuco.h"
+#include "engine/recording/board/board_corners.h"
 
 #include <algorithm>
 #include <array>

@@ -1,19 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/bag_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/bag_contents.h"
 #include "engine/recording/bags/bag_picture.h"
-#include "engine/recording/bags/containers/open_bag.h"
-#include "engine/recording/bags/frame_tree.h"
+#include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/messages.h"
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/imu_file.h"
+#include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/camera_info.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/pictures/picture_file.h"
 #include "engine/recording/pictures/picture_files.h"
 
@@ -206,11 +204,8 @@ fs::path bag_at(const fs::path& path) {
                                bags[1].filename().string()));
 }
 
-Recording read_bag(const fs::path& path,
-                   const std::optional<fs::path>& tracks,
-                   std::size_t cache_bytes,
-                   const TopicChoices& choices) {
-  const OpenedBag opened = open_with_roles(path, choices);
+Recording read_bag(const fs::path& path, const OpenOptions& options) {
+  const OpenedBag opened = open_with_roles(path, options.topics);
   const fs::path folder = folder_of(opened.bag->file);
   Recording recording;
   for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
@@ -219,10 +214,10 @@ Recording read_bag(const fs::path& path,
   const Calibration calibration = found.value_or(Calibration{});
   recording.camera = calibration.camera;
   recording.timestamps_ns = opened.contents.picture_times_ns;
-  recording.pictures = pictures_of(opened, recording.camera, cache_bytes);
+  recording.pictures = pictures_of(opened, recording.camera, options.cache_bytes);
   if (!found) guess_camera(recording);
   recording.picture_files = {opened.bag->file};
-  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
+  if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
   add_gyroscope(recording, opened, calibration, folder);
   add_truth(recording, opened, folder);
   return recording;

@@ -1,16 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/euroc_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/imu_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/pictures/picture_files.h"
 
 #include <algorithm>
@@ -22,22 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The pictures of cam0: those that data.csv lists, or where there is none those in data, named by
-/// their time stamps.
+/// Pictures that a table lists, or where there is none those of a folder, named by their time
+/// stamps.
 struct PictureList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;
-  std::optional<CsvTable> table;  ///< data.csv
+  std::optional<CsvTable> table;
 };
 
-PictureList listed_pictures(const fs::path& cam) {
+/// `folder` is where the table's names begin.
+PictureList listed_pictures(CsvTable table, TimeUnit unit, const fs::path& folder) {
   PictureList list;
-  list.table = read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least);
-  list.timestamps_ns = csv_time_stamps(*list.table, TimeUnit::nanoseconds);
-  list.files.reserve(list.table->rows.size());
-  for (const auto& row : list.table->rows) {
-    list.files.push_back(cam / "data" / csv_cell(*list.table, row, 1));
-  }
+  list.timestamps_ns = csv_time_stamps(table, unit);
+  list.files.reserve(table.rows.size());
+  for (const auto& row : table.rows) list.files.push_back(folder / csv_cell(table, row, 1));
+  list.table = std::move(table);
   return list;
 }
 
@@ -62,22 +58,24 @@ PictureList read_picture_list(const fs::path& folder) {
     auto named = named_pictures(cam);
     if (!named.files.empty()) return named;
   }
-  return listed_pictures(cam);
+  return listed_pictures(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
+                         TimeUnit::nanoseconds,
+                         cam / "data");
 }
 
-void add_pictures(Recording& recording,
-                  PictureList list,
-                  bool may_be_missing,
-                  std::size_t cache_bytes) {
-  for (std::size_t i = 0; i < list.files.size(); ++i) {
-    if (is_file(list.files[i])) continue;
-    if (may_be_missing) return;
+/// With the tracks that are asked for; with these pictures may be missing.
+void add_pictures(Recording& recording, PictureList list, const OpenOptions& options) {
+  recording.timestamps_ns = std::move(list.timestamps_ns);
+  const auto missing = std::ranges::find_if_not(list.files, is_file);
+  if (missing == list.files.end()) {
+    add_picture_files(recording, std::move(list.files), options.cache_bytes);
+  } else if (!options.tracks) {
     csv_fail(*list.table,
-             list.table->rows[i].line,
+             list.table->rows[missing - list.files.begin()].line,
              "the name of a missing picture",
-             "the file " + list.files[i].string());
+             "the file " + missing->string());
   }
-  add_picture_files(recording, std::move(list.files), cache_bytes);
+  if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
 }
 
 /// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
@@ -160,25 +158,35 @@ bool euroc_lacks_pictures(const fs::path& folder) {
   return std::ranges::none_of(list.files, is_file);
 }
 
-Recording read_euroc(const fs::path& folder,
-                     const std::optional<fs::path>& tracks,
-                     std::size_t cache_bytes) {
+Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   Recording recording;
   const fs::path calibration_file = calibration_of(folder);
   const auto calibration = read_calibration(calibration_file);
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
-  PictureList list = read_picture_list(folder);
-  recording.timestamps_ns = list.timestamps_ns;
-  add_pictures(recording, std::move(list), tracks.has_value(), cache_bytes);
-  if (tracks) recording.tracks = read_tracks(*tracks, recording.frame_count());
-
+  add_pictures(recording, read_picture_list(folder), options);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
     recording.notes.push_back("no T_BS in " + calibration_file.filename().string() +
                               ": the camera's axes are taken as the body's");
   }
+  return recording;
+}
+
+std::optional<fs::path> find_tum(const fs::path& folder) {
+  return is_file(folder / "rgb.txt") ? std::optional(folder) : std::nullopt;
+}
+
+Recording read_tum(const fs::path& folder, const OpenOptions& options) {
+  Recording recording;
+  PictureList list = listed_pictures(
+      read_csv(folder / "rgb.txt", {"timestamp", ""}, CsvColumns::exactly, Separator::blanks),
+      TimeUnit::seconds,
+      folder);
+  recording.camera = read_calibration(calibration_in(folder)).camera;
+  add_pictures(recording, std::move(list), options);
+  recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }
 

@@ -3,12 +3,9 @@
 #include "engine/recording/layouts/layouts.h"
 
 #include "engine/files/folder.h"
-#include "engine/recording/layouts/bag_reader.h"
-#include "engine/recording/layouts/euroc_reader.h"
-#include "engine/recording/layouts/pictures_reader.h"
-#include "engine/recording/layouts/tum_reader.h"
 
 #include <array>
+#include <exception>
 
 namespace gpo {
 namespace {
@@ -25,6 +22,18 @@ std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
 }
 
+void count_frames(const Layout& layout, const fs::path& found, Glance& result) {
+  try {
+    const Recording recording = layout.read(found, {.tracks = {}, .cache_bytes = 0});
+    result.frames = recording.frame_count();
+    if (result.frames == 0) return;
+    const auto& times_ns = recording.timestamps_ns;
+    result.seconds = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front());
+  } catch (const std::exception&) {
+    // It says why when it is opened.
+  }
+}
+
 }  // namespace
 
 std::span<const Layout> layouts() {
@@ -32,9 +41,28 @@ std::span<const Layout> layouts() {
       {{"EuRoC", "cam0/data.csv (EuRoC)", "", find_euroc, has_euroc_pictures, read_euroc},
        {"TUM RGB-D", "rgb.txt (TUM RGB-D)", "rgb.txt", find_tum, always, read_tum},
        {"pictures", "a video or numbered pictures", "", find_pictures, always, read_pictures},
-       {"ROS bag", "a bag of ROS (bag, db3, mcap)", "", find_bag, always, nullptr, read_bag},
+       {"ROS bag", "a bag of ROS (bag, db3, mcap)", "", find_bag, always, read_bag, true},
        {"tracks", "tracks.csv", "tracks.csv", any_folder, never, read_pictures}});
   return kLayouts;
+}
+
+Glance glance(const fs::path& path) {
+  Glance result;
+  std::error_code none;
+  for (const Layout& layout : layouts()) {
+    try {
+      const auto found = layout.find(path);
+      // Any folder would do for tracks alone.
+      const bool tracks_alone = &layout == &layouts().back();
+      if (!found || (tracks_alone && !fs::exists(path / layout.file, none))) continue;
+      result.layout = layout.title;
+      count_frames(layout, *found, result);
+      return result;
+    } catch (const std::exception&) {
+      continue;
+    }
+  }
+  return result;
 }
 
 }  // namespace gpo

@@ -2,27 +2,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/topic_roles.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/recording.h"
 
-#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-namespace gpo {
+#include <Eigen/Core>
 
-struct OpenOptions {
-  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
-  std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
-  /// Where what was found in the pictures is kept for the next time; empty: nowhere.
-  std::filesystem::path cache_folder{};
-  TopicChoices topics{};  ///< of a bag
-};
+namespace gpo {
 
 /// Opens a folder or a file; finds out which layout it is. Pictures are not decoded yet, but each
 /// is known to exist. Throws InputError.
 std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
                                                 const OpenOptions& options = {});
+
+/// A stretch of time in which neither the gyroscope's rates vary nor the pictures move: what the
+/// gyroscope says there is its bias.
+struct Rest {
+  std::int64_t first_ns = 0;  ///< camera's clock
+  std::int64_t last_ns = 0;
+  Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
+  double sigma_rad_s = 0;  ///< each axis: by its noise, and by what the pictures may hide
+};
+
+/// The longest one of at least 0.75 s. Looks at pictures (or tracks) only where the gyroscope seems
+/// to rest. Throws InputError where a picture cannot be read.
+std::optional<Rest> find_rest(const Recording& recording);
 
 }  // namespace gpo

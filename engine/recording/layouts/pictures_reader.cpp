@@ -1,19 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/pictures_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/bag_reader.h"
+#include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/told_view.h"
-#include "engine/recording/layouts/tracks_reader.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/pictures/picture_files.h"
-#include "engine/recording/pictures/video_file.h"
+#include "engine/recording/pictures/video_decoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,42 +74,45 @@ std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   return times;
 }
 
+/// What else may tell the frames' times.
+struct OtherTimes {
+  const std::optional<Log>& log;
+  const std::vector<std::int64_t>& video_ns;
+  const Calibration& calibration;
+  const std::string& calibration_name;
+};
+
+void check_count(const fs::path& file,
+                 std::size_t found,
+                 const char* things,
+                 std::optional<int> count) {
+  if (!count || static_cast<int>(found) == *count) return;
+  throw InputError(fmt::format(
+      "{}: found {} {}, expected {}, one a picture", file.string(), found, things, *count));
+}
+
 /// Times of the frames: the file's, else the log's, else the video's, else regular ones.
-void set_times(Recording& recording,
-               const fs::path& folder,
-               std::optional<int> count,
-               const std::optional<Log>& log,
-               const std::vector<std::int64_t>& video_times,
-               const std::optional<double>& rate_hz,
-               const std::string& calibration_name) {
+std::vector<std::int64_t> frame_times(Recording& recording,
+                                      const fs::path& folder,
+                                      std::optional<int> count,
+                                      const OtherTimes& other) {
   const fs::path file = folder / "frame_timestamps.txt";
   if (auto stored = stored_times(file)) {
-    if (count && static_cast<int>(stored->size()) != *count) {
-      throw InputError(file.string() + ": found " + std::to_string(stored->size()) +
-                       " time stamps, expected " + std::to_string(*count) + ", one a picture");
-    }
-    recording.timestamps_ns = *std::move(stored);
-    return;
+    check_count(file, stored->size(), "time stamps", count);
+    return *std::move(stored);
   }
-  if (log && !log->frame_times_ns.empty()) {
-    if (count && std::ssize(log->frame_times_ns) != *count) {
-      throw InputError(log->frames_file.string() + ": found " +
-                       std::to_string(log->frame_times_ns.size()) + " frames, expected " +
-                       std::to_string(*count) + ", one a picture");
-    }
-    recording.timestamps_ns = log->frame_times_ns;
-    return;
+  if (other.log && !other.log->frame_times_ns.empty()) {
+    check_count(other.log->frames_file, other.log->frame_times_ns.size(), "frames", count);
+    return other.log->frame_times_ns;
   }
-  if (!video_times.empty()) {
-    recording.timestamps_ns = video_times;
-    return;
+  if (!other.video_ns.empty()) return other.video_ns;
+  const auto& rate_hz = other.calibration.rate_hz;
+  if (!rate_hz) {
+    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " +
+                              other.calibration_name + ": 30 frames a second are assumed");
   }
   const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
-  recording.timestamps_ns = regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
-  if (!rate_hz) {
-    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " + calibration_name +
-                              ": 30 frames a second are assumed");
-  }
+  return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
 }
 
 /// A gyroscope's table, where its maker knows nothing of the camera.
@@ -193,9 +194,8 @@ std::shared_ptr<const FrameCache> open_pictures(const fs::path& path,
   Recording recording;  // not calibrated: of any size
   if (const auto video = video_at(path)) {
     if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).pictures;
-    throw InputError(
-        path.string() +
-        ": found a file that is no video, expected a folder or mp4, avi, mov, mkv, bag, db3, mcap");
+    throw InputError(path.string() + ": found a file that is no video, expected a folder or " +
+                     recording_endings());
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
     if (!is_folder(folder)) continue;
@@ -207,9 +207,8 @@ std::shared_ptr<const FrameCache> open_pictures(const fs::path& path,
   throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
 }
 
-Recording read_pictures(const fs::path& path,
-                        const std::optional<fs::path>& tracks,
-                        std::size_t cache_bytes) {
+Recording read_pictures(const fs::path& path, const OpenOptions& options) {
+  const auto& tracks = options.tracks;
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   const auto video = video_at(path);
   std::optional<Log> log = log_beside(folder, video);
@@ -222,11 +221,11 @@ Recording read_pictures(const fs::path& path,
   recording.T_body_camera = calibration.T_body_camera;
   VideoFile opened;
   if (video) {
-    opened = open_video(*video, recording.camera, cache_bytes);
+    opened = open_video(*video, recording.camera, options.cache_bytes);
     recording.pictures = opened.pictures;
     recording.picture_files = {*video};
   } else if (auto files = pictures_in(folder); !files.empty()) {
-    add_picture_files(recording, std::move(files), cache_bytes);
+    add_picture_files(recording, std::move(files), options.cache_bytes);
   }
   if (!found) {
     const auto& files = recording.picture_files;
@@ -237,7 +236,8 @@ Recording read_pictures(const fs::path& path,
   check_size_is_known(recording.camera, calibration_file);
   const auto count = recording.pictures ? std::optional(recording.pictures->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
-  set_times(recording, folder, count, log, opened.timestamps_ns, calibration.rate_hz, name);
+  recording.timestamps_ns =
+      frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
   if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
     read_tracks(*tracks, recording.frame_count());  // names the line
   }

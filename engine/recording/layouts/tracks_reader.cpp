@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/tracks_reader.h"
-
 #include "engine/files/csv_table.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/window/tracks.h"
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace gpo {
 
@@ -31,5 +32,15 @@ void write_recording(const Recording& recording,
                      RecordingFormat format,
                      const std::filesystem::path& output,
                      const std::function<void(int done, int of)>& progress = {});
+
+/// Writes a recording as an EuRoC folder that opens as the same recording: pictures as PNG (without
+/// loss, but of 8 bits), calibration, gyroscope, tracks, board, plane, and `truth` as the poses of
+/// the body at the frames' times, not interpolated where a frame has none. Written whole or not at
+/// all. Throws InputError: pictures that cannot be decoded, a folder that is not empty, a full
+/// disk.
+void write_euroc(const Recording& recording,
+                 const std::optional<GroundTruth>& truth,
+                 const std::filesystem::path& folder,
+                 const std::function<void(int done, int of)>& progress = {});
 
 }  // namespace gpo

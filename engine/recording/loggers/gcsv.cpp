@@ -3,8 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/loggers/logger_files.h"
-#include "engine/recording/loggers/signed_axes.h"
+#include "engine/recording/loggers/logs.h"
 
 #include <algorithm>
 #include <cctype>
@@ -40,13 +39,6 @@ struct GcsvFile {
   int head_lines = 0;
 };
 
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  const std::string_view line = trimmed(text.substr(0, end));
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
-}
-
 /// "t,gx,gy,gz,...", the rates under whatever letter.
 bool names_columns(const CsvTable& table, std::string_view line) {
   const CsvRow row{0, line};
@@ -63,35 +55,31 @@ GcsvFile open_gcsv(const std::filesystem::path& file) {
   GcsvFile gcsv;
   gcsv.table.file = file;
   gcsv.table.text = std::make_shared<const std::string>(read_file(file));
-  std::string_view text = *gcsv.table.text;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  const std::string_view first = take_line(text);
+  TextLines lines(*gcsv.table.text);
+  const std::string_view first = lines.next().value_or("");
   if (!first.starts_with("GYROFLOW IMU LOG") && !first.starts_with("CAMERA IMU LOG"))
     csv_fail(gcsv.table, 1, "another first line", "GYROFLOW IMU LOG");
-  int line = 1;
   for (bool in_head = true; in_head;) {
-    ++line;
-    if (text.empty() || line > kMostHeadLines)
-      csv_fail(gcsv.table, line, "no table", "a line t,gx,gy,gz");
-    const std::string_view row = take_line(text);
-    in_head = !names_columns(gcsv.table, row);
-    const std::size_t comma = row.find(',');
+    const auto row = lines.next();
+    const int line = lines.number() + (row ? 0 : 1);
+    if (!row || line > kMostHeadLines) csv_fail(gcsv.table, line, "no table", "a line t,gx,gy,gz");
+    in_head = !names_columns(gcsv.table, *row);
+    const std::size_t comma = row->find(',');
     if (!in_head || comma == std::string_view::npos) continue;
-    gcsv.head[lower_case(trimmed(row.substr(0, comma)))] = {
-        std::string(trimmed(row.substr(comma + 1))), line};
+    gcsv.head[lower_case(trimmed(row->substr(0, comma)))] = {
+        std::string(trimmed(row->substr(comma + 1))), line};
   }
-  gcsv.head_lines = line;
-  while (!text.empty()) {
-    ++line;
-    const std::string_view row = take_line(text);
-    if (row.empty()) continue;
-    if (std::ranges::count(row, ',') < 3)
+  gcsv.head_lines = lines.number();
+  while (const auto row = lines.next()) {
+    const int line = lines.number();
+    if (row->empty()) continue;
+    if (std::ranges::count(*row, ',') < 3)
       csv_fail(gcsv.table, line, "fewer than 4 columns", "t,gx,gy,gz");
     if (gcsv.table.rows.size() == kMostRows)
       csv_fail(gcsv.table, line, "one more row", fmt::format("at most {}", kMostRows));
-    gcsv.table.rows.push_back({line, row});
+    gcsv.table.rows.push_back({line, *row});
   }
-  if (gcsv.table.rows.empty()) csv_fail(gcsv.table, line, "no rows", "t,gx,gy,gz");
+  if (gcsv.table.rows.empty()) csv_fail(gcsv.table, lines.number(), "no rows", "t,gx,gy,gz");
   return gcsv;
 }
 

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/loggers/gpmf.h"
 
-#include "engine/recording/loggers/gpmf_items.h"
-#include "engine/recording/loggers/signed_axes.h"
+#include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
+#include "engine/recording/loggers/log.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -17,6 +20,43 @@ namespace gpo {
 namespace {
 
 using Bytes = std::string_view;
+
+/// A key of letters, digits and blanks as it stands, anything else as its bytes.
+std::string printable(Bytes key) {
+  const bool plain = std::ranges::all_of(key, [](char c) { return c >= ' ' && c <= '~'; });
+  return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
+}
+
+/// "SOURCE: KEY: found FOUND, expected EXPECTED".
+[[noreturn]] void gpmf_fail(const std::string& source,
+                            const GpmfItem& item,
+                            const std::string& found,
+                            const std::string& expected) {
+  throw InputError(
+      fmt::format("{}: {}: found {}, expected {}", source, printable(item.key), found, expected));
+}
+
+/// Of a number [bytes]; 0: it is none.
+int gpmf_size(char type) {
+  switch (type) {
+    case 'b':
+    case 'B':
+      return 1;
+    case 's':
+    case 'S':
+      return 2;
+    case 'l':
+    case 'L':
+    case 'f':
+      return 4;
+    case 'd':
+    case 'j':
+    case 'J':
+      return 8;
+    default:
+      return 0;
+  }
+}
 
 /// A stream's items by their keys.
 struct Stream {
@@ -172,6 +212,83 @@ bool add_device(GpmfPayload& payload,
   return has_gyroscope;
 }
 
+/// time = at_first + step * sample, by least squares.
+struct Line {
+  double at_first = 0, step = 0;
+  double operator()(double sample) const { return at_first + step * sample; }
+};
+
+std::optional<Line> fitted(const std::vector<Eigen::Vector2d>& sample_and_time) {
+  const auto n = static_cast<double>(sample_and_time.size());
+  if (sample_and_time.size() < 2) return std::nullopt;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto& one : sample_and_time) mean += one / n;
+  double squares = 0, products = 0;
+  for (const auto& one : sample_and_time) {
+    squares += (one.x() - mean.x()) * (one.x() - mean.x());
+    products += (one.x() - mean.x()) * (one.y() - mean.y());
+  }
+  if (!(squares > 0) || !(products > 0)) return std::nullopt;
+  const double step = products / squares;
+  return Line{mean.y() - step * mean.x(), step};
+}
+
+/// Of the stamps that payloads have [us]; nothing where fewer than two have one.
+template <class StampOf>
+std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const StampOf& stamp_of) {
+  std::vector<Eigen::Vector2d> points;
+  for (const GpmfPayload& payload : payloads) {
+    const GpmfStamp* stamp = stamp_of(payload);
+    if (stamp == nullptr || !stamp->camera_us) continue;
+    points.emplace_back(static_cast<double>(stamp->first_sample), *stamp->camera_us);
+  }
+  return fitted(points);
+}
+
+/// In seconds from the first frame.
+std::optional<Line> sample_line(const std::vector<GpmfPayload>& payloads,
+                                const std::vector<double>& payload_times_s) {
+  const auto with_rates = [](const GpmfPayload& p) {
+    return p.rates_rad_s.empty() ? nullptr : &p.gyroscope;
+  };
+  const auto exposures = [](const GpmfPayload& p) { return p.exposures ? &*p.exposures : nullptr; };
+  const auto rates_us = camera_line(payloads, with_rates);
+  const auto frames_us = camera_line(payloads, exposures);
+  if (rates_us && frames_us)
+    return Line{1e-6 * (rates_us->at_first - frames_us->at_first), 1e-6 * rates_us->step};
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < payloads.size(); ++i) {
+    if (payloads[i].rates_rad_s.empty()) continue;
+    const auto first = static_cast<double>(payloads[i].gyroscope.first_sample);
+    points.emplace_back(first, payload_times_s[i]);
+    if (payloads.size() > 1) continue;
+    points.emplace_back(first + static_cast<double>(payloads[i].rates_rad_s.size()),
+                        payload_times_s[i + 1]);
+  }
+  return fitted(points);
+}
+
+double number_at(const GpmfItem& item, std::size_t index) {
+  const int size = gpmf_size(item.type);
+  const std::uint64_t bits = big_endian(item.data, index * static_cast<std::size_t>(size), size);
+  switch (item.type) {
+    case 'b':
+      return static_cast<std::int8_t>(bits);
+    case 's':
+      return static_cast<std::int16_t>(bits);
+    case 'l':
+      return static_cast<std::int32_t>(bits);
+    case 'j':
+      return static_cast<double>(static_cast<std::int64_t>(bits));
+    case 'f':
+      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    case 'd':
+      return std::bit_cast<double>(bits);
+    default:
+      return static_cast<double>(bits);
+  }
+}
+
 }  // namespace
 
 GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counted) {
@@ -182,6 +299,58 @@ GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counte
     if (add_device(payload, *device, source, counted)) break;
   }
   return payload;
+}
+
+std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
+                                        const std::vector<double>& payload_times_s) {
+  constexpr double kMost_s = 4e9;
+  const auto line = sample_line(payloads, payload_times_s);
+  std::vector<std::int64_t> times;
+  if (!line) return times;
+  for (const GpmfPayload& payload : payloads) {
+    for (std::size_t k = 0; k < payload.rates_rad_s.size(); ++k) {
+      const double time_s =
+          (*line)(static_cast<double>(payload.gyroscope.first_sample) + static_cast<double>(k));
+      if (!(std::abs(time_s) < kMost_s)) return {};
+      times.push_back(std::llround(1e9 * time_s));
+    }
+  }
+  return times;
+}
+
+std::optional<GpmfItem> GpmfItems::next() {
+  constexpr std::size_t kHead = 8;
+  if (rest_.size() < kHead || rest_.starts_with(Bytes("\0\0\0\0", 4))) return std::nullopt;
+  GpmfItem item{rest_.substr(0, 4),
+                rest_[4],
+                static_cast<int>(big_endian(rest_, 5, 1)),
+                static_cast<int>(big_endian(rest_, 6, 2)),
+                {}};
+  const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
+  const std::size_t left = rest_.size() - kHead;
+  if (length > left) {
+    gpmf_fail(source_, item, fmt::format("{} bytes (cut)", left), std::to_string(length));
+  }
+  item.data = rest_.substr(kHead, length);
+  rest_.remove_prefix(std::min(rest_.size(), kHead + (length + 3) / 4 * 4));
+  return item;
+}
+
+std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source) {
+  const int size = gpmf_size(item.type);
+  if (size == 0 || item.size % size != 0)
+    gpmf_fail(source, item, "no numbers that are known", "numbers");
+  std::vector<double> numbers(item.data.size() / static_cast<std::size_t>(size));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = number_at(item, i);
+    if (!std::isfinite(numbers[i]))
+      gpmf_fail(source, item, "a number that is not finite", "numbers");
+  }
+  return numbers;
+}
+
+std::string gpmf_text(const GpmfItem& item) {
+  return std::string(item.data.substr(0, item.data.find('\0')));
 }
 
 }  // namespace gpo

@@ -46,4 +46,32 @@ GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCo
 std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
                                         const std::vector<double>& payload_times_s);
 
+/// A value in GPMF with its key; all numbers are big endian.
+struct GpmfItem {
+  std::string_view key;  ///< four letters
+  char type = 0;         ///< a letter; 0: items inside
+  int size = 0;          ///< of a sample [bytes]
+  int count = 0;         ///< of samples
+  std::string_view data;
+};
+
+/// Takes items off the front of what holds them.
+class GpmfItems {
+ public:
+  GpmfItems(std::string_view bytes, const std::string& source) : rest_(bytes), source_(source) {}
+
+  /// Nothing at the end, which may be padded by zeros. Throws InputError, which names `source`.
+  std::optional<GpmfItem> next();
+
+ private:
+  std::string_view rest_;
+  const std::string& source_;
+};
+
+/// All of its numbers, finite. Throws InputError.
+std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source);
+
+/// Without the zeros at its end.
+std::string gpmf_text(const GpmfItem& item);
+
 }  // namespace gpo

@@ -11,9 +11,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace gpo {
 
@@ -36,6 +38,21 @@ struct Log {
 /// rear camera: camera -> phone. The sensor's x runs from the top of the phone to its bottom.
 inline Eigen::Matrix3d rear_camera_in_phone() {
   return (Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished();
+}
+
+/// The rotation that three axes by name stand for, an upper-case letter for an axis, a lower-case
+/// one for its opposite: row i of "YxZ" is e_y, -e_x, e_z. Nothing where the text is none, or
+/// mirrors.
+inline std::optional<Eigen::Matrix3d> signed_axes(std::string_view text) {
+  constexpr std::string_view kAxes = "XYZxyz";
+  if (text.size() != 3) return std::nullopt;
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t axis = kAxes.find(text[i]);
+    if (axis == std::string_view::npos) return std::nullopt;
+    rows(i, static_cast<int>(axis % 3)) = axis < 3 ? 1 : -1;
+  }
+  return rows.determinant() > 0.5 ? std::optional(rows) : std::nullopt;
 }
 
 }  // namespace gpo

@@ -4,9 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/loggers/camm.h"
 #include "engine/recording/loggers/gpmf.h"
-#include "engine/recording/loggers/logger_files.h"
 #include "engine/recording/loggers/telemetry_track.h"
 
 #include <array>

@@ -3,7 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/loggers/logger_files.h"
+#include "engine/recording/loggers/logs.h"
 
 #include <algorithm>
 #include <array>

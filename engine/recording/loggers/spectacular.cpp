@@ -5,7 +5,7 @@
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
-#include "engine/recording/loggers/logger_files.h"
+#include "engine/recording/loggers/logs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,5 +30,16 @@ cv::Mat gray_if_gray(const cv::Mat& bgr);
 
 /// CV_8UC3; brighter than `bits` allow is white.
 cv::Mat to_8_bits(const cv::Mat& picture, int bits);
+
+/// What the header of a picture says that it will be, before any memory is taken for it.
+struct PictureHeader {
+  std::int64_t width = 0;   ///< [px]
+  std::int64_t height = 0;  ///< [px]
+  int bits = 8;             ///< a channel, where the format is TIFF, which knows more than 16
+};
+
+/// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nothing for other bytes and headers
+/// that are cut.
+std::optional<PictureHeader> read_picture_header(std::string_view bytes);
 
 }  // namespace gpo

@@ -4,11 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/files/text_file.h"
+#include "engine/recording/file_kinds.h"
 #include "engine/recording/pictures/picture_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
@@ -72,13 +71,6 @@ void add_picture_files(Recording& recording,
     return to_8_bits(picture, bits);
   };
   recording.pictures = std::make_shared<const FrameCache>(count, decode, cache_bytes);
-}
-
-bool is_picture_name(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
-  constexpr std::array<const char*, 10> kEndings = {
-      ".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm", ".tif", ".tiff", ".webp", ".pnm"};
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
 std::vector<std::filesystem::path> numbered_pictures(const std::filesystem::path& folder) {

@@ -23,9 +23,6 @@ void add_picture_files(Recording& recording,
                        std::vector<std::filesystem::path> files,
                        std::size_t cache_bytes);
 
-/// Whether the file's name ends like that of a picture (png, jpg, ...).
-bool is_picture_name(const std::filesystem::path& file);
-
 /// Numbered pictures of a folder in the order of their numbers: 2.png before 10.png.
 std::vector<std::filesystem::path> numbered_pictures(const std::filesystem::path& folder);
 

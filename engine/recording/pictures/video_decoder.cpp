@@ -3,34 +3,34 @@
 #include "engine/recording/pictures/video_decoder.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/pictures/ffmpeg_versions.h"
+#include "engine/files/folder.h"
 #include "engine/recording/pictures/libav.h"
+#include "engine/recording/pictures/picture_files.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 extern "C" {
 #include <libavutil/display.h>
 }
-#include <fmt/format.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
-/// Containers of one file; playlists, which FFmpeg knows too, would open further files and
-/// addresses.
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
 
-using Format = std::unique_ptr<AVFormatContext, libav::Closer<avformat_close_input>>;
 using libav::Codec;
+using libav::Format;
 using libav::Frame;
 using libav::Packet;
 using libav::Scaler;
@@ -48,6 +48,28 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
+/// Whether the container promises clearly more than it holds. With a variable frame rate it may
+/// declare a count made up from the duration, so the time must be short as well.
+bool is_cut(const VideoIndex& index) {
+  const double missing = index.declared_count - static_cast<double>(index.times.size());
+  if (missing <= std::max(2.0, index.declared_count / 100)) return false;
+  if (index.times.empty() || index.rate_hz <= 0) return true;
+  const double duration_s =
+      static_cast<double>(index.times.back() - index.times.front()) * index.unit_s;
+  return index.declared_count - (duration_s * index.rate_hz + 1) > missing / 2;
+}
+
+/// From the first frame on.
+std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
+  std::vector<std::int64_t> times;
+  times.reserve(index.times.size());
+  for (const std::int64_t time : index.times) {
+    times.push_back(
+        std::llround(static_cast<double>(time - index.times.front()) * index.unit_s * 1e9));
+  }
+  return times;
+}
+
 }  // namespace
 
 /// A container that is being read, its video stream and its decoder.
@@ -59,23 +81,14 @@ struct VideoDecoder::Input {
   Frame frame{av_frame_alloc()};
   Scaler scaler;
 
-  explicit Input(const fs::path& file) {
-    AVFormatContext* opened = nullptr;
-    AVDictionary* options = nullptr;
-    av_dict_set(&options, "format_whitelist", kContainers, 0);
-    // Without the protocol's name a path with a colon would be taken for an address.
-    const std::string address = "file:" + file.string();
-    const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
-    av_dict_free(&options);
-    if (error < 0) fail_to_open(file);
-    format.reset(opened);
-    if (avformat_find_stream_info(opened, nullptr) < 0) fail_to_open(file);
+  explicit Input(const fs::path& file) : format(libav::open_input(file, kContainers)) {
+    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);
     const AVCodec* decoder = nullptr;
-    const int best = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
-    stream = opened->streams[best];
-    for (unsigned i = 0; i < opened->nb_streams; ++i) {
-      if (opened->streams[i] != stream) opened->streams[i]->discard = AVDISCARD_ALL;
+    stream = format->streams[best];
+    for (unsigned i = 0; i < format->nb_streams; ++i) {
+      if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
     }
     codec.reset(avcodec_alloc_context3(decoder));
     codec->thread_count = 0;
@@ -184,34 +197,40 @@ VideoDecoder::VideoDecoder(fs::path file)
   PacketTimes times;
   while (input_->read_packet()) times.add(*input_->packet, parameters.video_delay > 0);
   times.finish();
-  timed_ = times.exact;
   index_.times = std::move(times.all);
   index_.key_times = std::move(times.keys);
-  input_.reset();
-  if (timed_) return;
+  restart();
+  if (times.exact) return;
+  numbering_ = Numbering::by_count;
   index_.times.clear();
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
   for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
     index_.times.push_back(std::llround(frame * period));
   }
-  input_.reset();
-  last_ = -1;
+  restart();
 }
 
 VideoDecoder::~VideoDecoder() = default;
 
-/// Decodes the frame after the last one; its number, or -1 at the end.
+void VideoDecoder::restart() {
+  input_.reset();
+  state_ = State::begin;
+}
+
+/// Decodes the next frame; its number, or -1 at the end.
 int VideoDecoder::next_frame() {
-  if (!input_) {
-    input_ = std::make_unique<Input>(file_);
-    last_ = -1;
-  }
+  if (!input_) input_ = std::make_unique<Input>(file_);
   while (input_->decode_frame()) {
-    if (!timed_) return ++last_;
-    const auto& times = index_.times;
-    const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
-    if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
-    return last_ = static_cast<int>(at - times.begin());
+    if (numbering_ == Numbering::by_count) {
+      last_ = state_ == State::begin ? 0 : last_ + 1;
+    } else {
+      const auto& times = index_.times;
+      const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
+      if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
+      last_ = static_cast<int>(at - times.begin());
+    }
+    state_ = State::decoding;
+    return last_;
   }
   return -1;
 }
@@ -221,34 +240,41 @@ int VideoDecoder::next_frame() {
 int VideoDecoder::go_to(int frame) {
   const auto& keys = index_.key_times;
   const std::int64_t time = index_.times[frame];
+  const bool timed = numbering_ == Numbering::by_time;
   auto key = std::ranges::upper_bound(keys, time);
   if (key != keys.begin()) --key;
-  if (input_ && last_ >= 0 && frame > last_) {
-    const bool key_between = timed_ && key != keys.end() && *key > index_.times[last_];
+  if (state_ == State::decoding && frame > last_) {
+    const bool key_between = timed && key != keys.end() && *key > index_.times[last_];
     if (!key_between || frame - last_ <= kStepsWorthDecoding) return last_ + 1;
   }
   kept_.clear();
-  last_ = -1;
-  const bool seekable = timed_ && key != keys.end() && *key <= time;
-  if (!seekable || !input_ || !input_->seek(*key)) input_ = std::make_unique<Input>(file_);
+  const bool seekable = timed && key != keys.end() && *key <= time;
+  if (seekable && input_ && input_->seek(*key)) {
+    state_ = State::sought;
+  } else {
+    restart();
+  }
   if (!seekable) return 0;
   return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
 }
 
 cv::Mat VideoDecoder::decode(int frame) {
   if (const auto kept = kept_.find(frame); kept != kept_.end()) return kept->second;
-  const bool backward = last_ > frame;
+  const bool backward = state_ == State::decoding && last_ > frame;
   const int whole = go_to(frame);
   const int first_kept = backward ? std::max(whole, frame - kKept) : frame;
-  for (int tries = 0;;) {
-    const bool landed = last_ < 0;
+  while (true) {
+    const bool sought = state_ == State::sought;
     const int decoded = next_frame();
-    if (landed && decoded > frame && tries++ == 0) {
-      input_ = std::make_unique<Input>(file_);  // it led too far: from the beginning
-      last_ = -1;
+    if (sought && decoded > frame) {
+      restart();  // it led too far
       continue;
     }
-    if (decoded < 0 || decoded > frame) fail(frame);
+    if (decoded < 0 || decoded > frame) {
+      restart();
+      throw InputError(fmt::format(
+          "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+    }
     if (decoded < first_kept) continue;
     cv::Mat picture = input_->picture(file_);
     if (decoded == frame) return picture;
@@ -256,11 +282,36 @@ cv::Mat VideoDecoder::decode(int frame) {
   }
 }
 
-void VideoDecoder::fail(int frame) {
-  input_.reset();
-  last_ = -1;
-  throw InputError(fmt::format(
-      "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
+  if (!is_file(file)) throw InputError(file.string() + ": no such file");
+  const auto decoder = std::make_shared<VideoDecoder>(file);
+  const VideoIndex& index = decoder->index();
+  if (index.times.empty() || is_cut(index)) {
+    throw InputError(file.string() + ": found " + std::to_string(index.times.size()) +
+                     " frames that can be decoded (the file seems cut), expected " +
+                     std::to_string(std::max(1L, std::lround(index.declared_count))));
+  }
+  check_size(file, index.size, camera);
+  camera.width = index.size.width;
+  camera.height = index.size.height;
+  const auto one_at_a_time = std::make_shared<std::mutex>();
+  const auto decode = [decoder, one_at_a_time, file, camera](int frame) {
+    cv::Mat picture;
+    {
+      const std::scoped_lock lock(*one_at_a_time);
+      picture = decoder->decode(frame);
+    }
+    check_size(file, picture.size(), camera);
+    return picture;
+  };
+  // What the decoder keeps is part of the limit.
+  const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
+  const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
+  const int count = static_cast<int>(index.times.size());
+  return {timestamps_ns(index),
+          std::make_shared<const FrameCache>(count, decode, left),
+          static_cast<double>(index.times.front()) * index.unit_s,
+          index.quarter_turns};
 }
 
 }  // namespace gpo

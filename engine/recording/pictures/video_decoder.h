@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/camera.h"
+#include "engine/recording/frame_cache.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -44,16 +48,38 @@ class VideoDecoder {
 
  private:
   struct Input;
+  /// What the next frame will be.
+  enum class State {
+    begin,    ///< the first one; the file is opened for it
+    sought,   ///< one about a key frame, which is known once it is decoded
+    decoding  ///< the one after `last_`
+  };
+  /// By what the number of a frame is known: its time, or the frames before it.
+  enum class Numbering { by_time, by_count };
+
   int next_frame();
   int go_to(int frame);
-  [[noreturn]] void fail(int frame);
+  void restart();
 
   std::filesystem::path file_;
   std::unique_ptr<Input> input_;
   VideoIndex index_;
-  bool timed_ = true;  ///< a frame is known by its time, otherwise by its count from the beginning
-  int last_ = -1;      ///< frame that was decoded last; -1: none yet
+  Numbering numbering_ = Numbering::by_time;
+  State state_ = State::begin;
+  int last_ = 0;  ///< the frame that was decoded last
   std::map<int, cv::Mat> kept_;
 };
+
+struct VideoFile {
+  std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, the first is 0
+  std::shared_ptr<const FrameCache> pictures;
+  double first_frame_s = 0;  ///< when the container has it
+  int quarter_turns = 0;     ///< of the pictures, clockwise, from how they lie in the file
+};
+
+/// Opens a video without decoding it; times are the container's, also of a variable frame rate. The
+/// camera's size is the video's where the calibration does not tell it. Throws InputError where it
+/// cannot be opened, is cut, or has another size than the camera.
+VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
 
 }  // namespace gpo

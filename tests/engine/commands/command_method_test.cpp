@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/commands/command_method.h"
 
-#include "engine/commands/window_json.h"
 #include "engine/files/json_text.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"

@@ -3,7 +3,6 @@
 #include "engine/experiment/summary.h"
 
 #include "engine/experiment/figures.h"
-#include "engine/experiment/summary_json.h"
 #include "engine/experiment/tables.h"
 #include "tests/engine/experiment/made_rows.h"
 

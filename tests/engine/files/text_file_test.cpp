@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 
+#include "engine/files/byte_cursor.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
@@ -73,6 +74,36 @@ TEST(ParseSize, TakesTwoWholeNumbersAndNothingElse) {
                            "640x4294967776"}) {
     EXPECT_EQ(parse_size(text), std::nullopt) << text;
   }
+}
+
+TEST(TextLines, TakesLinesBehindTheByteOrderMark) {
+  TextLines lines("\xEF\xBB\xBF a b\r\n\nlast");
+  EXPECT_EQ(lines.next(), "a b");
+  EXPECT_EQ(lines.next(), "");
+  EXPECT_TRUE(lines.ended());
+  EXPECT_EQ(lines.rest(), "last");
+  EXPECT_EQ(lines.next(), "last");
+  EXPECT_FALSE(lines.ended());
+  EXPECT_EQ(lines.number(), 3);
+  EXPECT_EQ(lines.next(), std::nullopt);
+  EXPECT_EQ(lines.number(), 3);
+}
+
+TEST(TakeWord, TakesTheBlanksBehindIt) {
+  std::string_view rest = "one \t two";
+  EXPECT_EQ(take_word(rest), "one");
+  EXPECT_EQ(take_word(rest), "two");
+  EXPECT_TRUE(rest.empty());
+  EXPECT_EQ(take_word(rest), "");
+}
+
+TEST(ByteOrder, ReadsWholeNumbersOnly) {
+  const std::string_view bytes("\x01\x02\xFF", 3);
+  EXPECT_EQ(big_endian(bytes, 0, 2), 0x0102U);
+  EXPECT_EQ(little_endian(bytes, 0, 2), 0x0201U);
+  EXPECT_EQ(big_endian(bytes, 2, 1), 0xFFU);
+  EXPECT_EQ(big_endian(bytes, 2, 2), 0U);
+  EXPECT_EQ(big_endian(bytes, UINT64_MAX, 1), 0U);
 }
 
 }  // namespace

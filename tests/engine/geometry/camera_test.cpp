@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/camera.h"
 
+#include "engine/base/error.h"
+
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -195,6 +197,22 @@ TEST(Camera, MovesUndistortedPixelsAsItsParametersDo) {
       }
     }
   }
+}
+
+TEST(Camera, KnowsWhatNoCameraHas) {
+  Camera camera = equidistant();
+  EXPECT_NO_THROW(check_camera(camera));
+  EXPECT_TRUE(has_near_principal_point(camera));
+  camera.cx = 2.0 * camera.width;
+  EXPECT_FALSE(has_near_principal_point(camera));
+  camera.width = camera.height = 0;
+  EXPECT_TRUE(has_near_principal_point(camera));
+  camera.fx = 0;
+  EXPECT_THROW(check_camera(camera), InputError);
+  EXPECT_FALSE(is_focal_length(0));
+  EXPECT_FALSE(is_focal_length(std::nan("")));
+  EXPECT_FALSE(is_focal_length(2e6));
+  EXPECT_FALSE(are_coefficients({0.1, std::nan("")}));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/pictures_ahead.h"
-
 #include "engine/base/error.h"
+#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
 #include <condition_variable>

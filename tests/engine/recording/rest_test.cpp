@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/rest.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <cmath>
 #include <memory>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/results/result_method.h"
 
-#include "engine/results/plane_in_view.h"
 #include "tests/engine/results/written_results.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/synthesized.h"
-
 #include "engine/base/error.h"
+#include "engine/synthesis/synthesize.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <algorithm>

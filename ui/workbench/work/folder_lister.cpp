@@ -3,7 +3,7 @@
 #include "ui/workbench/work/folder_lister.h"
 
 #include "engine/experiment/results_file.h"
-#include "engine/recording/layouts/glance.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/synthesis/recipe.h"
 #include "ui/workbench/session/session_file.h"
 

@@ -5,9 +5,18 @@
 #include "engine/base/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
 
+#include <bzlib.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <lz4frame.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
+#include <zstd.h>
 
 namespace gpo {
 namespace {
@@ -33,6 +42,97 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
                   chunk.place,
                   sum,
                   chunk.crc32));
+}
+
+constexpr std::size_t kStep = std::size_t{1} << 18;
+
+/// What one step of a library's decoder did.
+struct Step {
+  std::size_t read = 0;
+  std::size_t written = 0;
+  bool ended = false;  ///< the stream; there is nothing after it
+  bool broken = false;
+};
+
+/// Calls `step(input, output)` until the stream ends, breaks or stands still.
+template <class Decoder>
+Decompressed run(std::string_view stored, std::size_t most_bytes, Decoder&& step) {
+  Decompressed result;
+  std::string part(kStep, '\0');
+  while (result.bytes.size() <= most_bytes) {
+    const Step done = step(stored, part);
+    if (done.broken) return result;
+    result.bytes.append(part, 0, done.written);
+    stored.remove_prefix(done.read);
+    if (done.ended) {
+      result.whole = result.bytes.size() <= most_bytes;
+      return result;
+    }
+    if (done.read == 0 && done.written == 0) return result;
+  }
+  return result;
+}
+
+Decompressed from_none(std::string_view stored, std::size_t most_bytes) {
+  return {std::string(stored.substr(0, most_bytes)), stored.size() <= most_bytes};
+}
+
+Decompressed from_bz2(std::string_view stored, std::size_t most_bytes) {
+  bz_stream stream{};
+  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return {};
+  const std::unique_ptr<bz_stream, int (*)(bz_stream*)> end(&stream, BZ2_bzDecompressEnd);
+  return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
+    const auto all = static_cast<unsigned>(std::min(input.size(), kStep));
+    stream.next_in = const_cast<char*>(input.data());  // the library's, only read
+    stream.avail_in = all;
+    stream.next_out = output.data();
+    stream.avail_out = static_cast<unsigned>(output.size());
+    const int code = BZ2_bzDecompress(&stream);
+    return Step{all - stream.avail_in,
+                output.size() - stream.avail_out,
+                code == BZ_STREAM_END,
+                code != BZ_OK && code != BZ_STREAM_END};
+  });
+}
+
+Decompressed from_lz4(std::string_view stored, std::size_t most_bytes) {
+  LZ4F_dctx* context = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) return {};
+  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> end(
+      context, LZ4F_freeDecompressionContext);
+  return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
+    Step done{input.size(), output.size()};
+    const std::size_t hint =
+        LZ4F_decompress(context, output.data(), &done.written, input.data(), &done.read, nullptr);
+    done.broken = LZ4F_isError(hint) != 0;
+    done.ended = hint == 0;
+    return done;
+  });
+}
+
+Decompressed from_zstd(std::string_view stored, std::size_t most_bytes) {
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                             ZSTD_freeDStream);
+  if (!stream) return {};
+  return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
+    ZSTD_inBuffer in{input.data(), input.size(), 0};
+    ZSTD_outBuffer out{output.data(), output.size(), 0};
+    const std::size_t hint = ZSTD_decompressStream(stream.get(), &out, &in);
+    return Step{in.pos, out.pos, hint == 0 && in.pos == in.size, ZSTD_isError(hint) != 0};
+  });
+}
+
+struct Method {
+  const char* name;
+  Decompressed (*decompress)(std::string_view stored, std::size_t most_bytes);
+};
+
+/// As `Compression` counts them.
+constexpr std::array<Method, 4> kMethods = {
+    {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
+
+[[noreturn]] void fail(const std::filesystem::path& path) {
+  throw InputError(path.string() + ": cannot be read: " + std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -96,6 +196,60 @@ std::string ChunkReader::read(std::uint32_t number,
   }
   const auto bytes = kept(number);
   return place < bytes->size() ? bytes->substr(place, count) : std::string();
+}
+
+std::optional<Compression> compression_named(std::string_view name) {
+  if (name.empty()) return Compression::none;  // MCAP's way to say it
+  for (std::size_t i = 0; i < kMethods.size(); ++i) {
+    if (name == kMethods[i].name) return static_cast<Compression>(i);
+  }
+  return std::nullopt;
+}
+
+Decompressed decompress(std::string_view stored, Compression compression, std::size_t most_bytes) {
+  return kMethods[static_cast<std::size_t>(compression)].decompress(stored, most_bytes);
+}
+
+// Without O_NONBLOCK opening a pipe would wait for who writes to it.
+FileBytes::FileBytes(const std::filesystem::path& path)
+    : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (descriptor_ < 0) fail(path);
+  struct stat about {};
+  const bool known = fstat(descriptor_, &about) == 0;
+  if (known && S_ISREG(about.st_mode)) {
+    size_ = static_cast<std::uint64_t>(about.st_size);
+    // Opening jumps from message to message: what lies between is not wanted.
+    posix_fadvise(descriptor_, 0, 0, POSIX_FADV_RANDOM);
+    return;
+  }
+  close(descriptor_);
+  if (!known) fail(path);
+  throw InputError(path.string() + ": found no regular file, expected a bag");
+}
+
+FileBytes::~FileBytes() { close(descriptor_); }
+
+std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
+  if (place >= size_) return {};
+  std::string bytes(std::min(count, size_ - place), '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = pread(
+        descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path_);
+    if (got == 0) break;  // it has become shorter
+    done += static_cast<std::size_t>(got);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+std::string cut_note(const FileBytes& file, std::uint64_t place) {
+  return fmt::format(
+      "the bag is cut or broken in what begins at byte {} of {}: it is read up to there",
+      place,
+      file.size());
 }
 
 }  // namespace gpo

@@ -2,17 +2,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/containers/compression.h"
-#include "engine/recording/bags/containers/file_bytes.h"
-
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gpo {
+
+/// A file of which parts are read, by several threads at once.
+class FileBytes {
+ public:
+  /// Throws InputError where it cannot be read, or is no regular file.
+  explicit FileBytes(const std::filesystem::path& path);
+  ~FileBytes();
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  /// So many bytes, fewer where the file ends before. Throws InputError.
+  std::string read(std::uint64_t place, std::uint64_t count) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_ = 0;
+};
+
+/// What people are told of a file that is read up to a place only.
+std::string cut_note(const FileBytes& file, std::uint64_t place);
+
+/// How the chunks of bags are compressed.
+enum class Compression { none, bz2, lz4, zstd };
+
+/// By the name that bags have for it; nothing for others.
+std::optional<Compression> compression_named(std::string_view name);
+
+struct Decompressed {
+  std::string bytes;   ///< up to where the stored ones are cut or broken
+  bool whole = false;  ///< to their end
+};
+
+/// Stops where there is more than `most_bytes`: few bytes can stand for very many.
+Decompressed decompress(std::string_view stored, Compression compression, std::size_t most_bytes);
 
 /// A stretch of a bag in which messages lie.
 struct Chunk {

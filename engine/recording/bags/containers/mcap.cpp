@@ -1,14 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/mcap.h"
-
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/containers/chunk_reader.h"
-#include "engine/recording/bags/containers/mcap_record.h"
-#include "engine/recording/bags/containers/topic_list.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -24,6 +22,42 @@ constexpr std::uint64_t kFooterBytes = 20;
 constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two times
+
+/// A record in a file; its content need not be there to its end.
+struct McapRecord {
+  McapOp op{};
+  std::uint64_t place = 0;  ///< of its content
+  std::uint64_t size = 0;   ///< of its content
+
+  std::uint64_t end() const { return place + size; }
+};
+
+/// The one that begins at `place`; nothing where the file ends before its content, or the content
+/// is larger than any file.
+std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 62;
+  const std::string head = file.read(place, kMcapRecordHead);
+  ByteCursor cursor(head);
+  McapRecord record;
+  record.op = static_cast<McapOp>(cursor.number<std::uint8_t>());
+  record.size = cursor.number<std::uint64_t>();
+  record.place = place + kMcapRecordHead;
+  if (!cursor.ok() || record.size > kMostBytes) return std::nullopt;
+  return record;
+}
+
+/// False where the last one is cut; it is not handed on.
+bool for_each_mcap_record(std::string_view records,
+                          const std::function<void(McapOp op, std::string_view content)>& look) {
+  ByteCursor cursor(records);
+  while (cursor.more()) {
+    const auto op = static_cast<McapOp>(cursor.number<std::uint8_t>());
+    const std::string_view content = cursor.text<std::uint64_t>();
+    if (!cursor.ok()) return false;
+    look(op, content);
+  }
+  return true;
+}
 
 /// What the summary says of a chunk.
 struct ChunkEntry {

@@ -1,15 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/ros1_bag.h"
-
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/containers/chunk_reader.h"
-#include "engine/recording/bags/containers/ros1_record.h"
-#include "engine/recording/bags/containers/topic_list.h"
 
 #include <algorithm>
-#include <limits>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +17,80 @@ namespace ros1 {
 namespace {
 
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
+
+/// Enough for the fields of any record that this program needs, and for most messages after them.
+constexpr std::uint64_t kFirstLook = 512;
+/// Callers and topics have names, no more.
+constexpr std::uint32_t kMostFieldBytes = 1 << 20;
+
+template <class T>
+T number_in(std::optional<std::string_view> field) {
+  if (!field || field->size() != sizeof(T)) return 0;
+  return ByteCursor(*field).number<T>();
+}
+
+/// The first of fields, each with its length before it, that has this name.
+std::optional<std::string_view> ros1_field(std::string_view fields, std::string_view name) {
+  ByteCursor cursor(fields);
+  while (cursor.more()) {
+    const std::string_view field = cursor.text();
+    if (field.starts_with(name) && field.substr(name.size()).starts_with('='))
+      return field.substr(name.size() + 1);
+  }
+  return std::nullopt;
+}
+
+/// Seconds and nanoseconds, of 4 bytes each.
+std::int64_t ros1_time_ns(std::uint32_t seconds, std::uint32_t nanoseconds) {
+  return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
+}
+
+/// A record: fields with names, then data, which need not be there to its end.
+struct Ros1Record {
+  std::string fields;
+  std::uint64_t data_place = 0;
+  std::uint32_t data_size = 0;
+
+  std::uint64_t end() const { return data_place + data_size; }
+  /// What "name=" is followed by; nothing where there is no such field.
+  std::optional<std::string_view> field(std::string_view name) const {
+    return ros1_field(fields, name);
+  }
+  // 0 where there is none.
+  std::uint32_t number(std::string_view name) const {
+    return number_in<std::uint32_t>(field(name));
+  }
+  std::uint64_t position(std::string_view name) const {
+    return number_in<std::uint64_t>(field(name));
+  }
+  std::int64_t time_ns(std::string_view name) const {
+    const std::uint64_t both = position(name);
+    return ros1_time_ns(static_cast<std::uint32_t>(both), static_cast<std::uint32_t>(both >> 32));
+  }
+  bool is(Ros1Op op) const {
+    const auto value = field("op");
+    return value && value->size() == 1 && static_cast<Ros1Op>(value->front()) == op;
+  }
+};
+
+/// So many bytes from a place on, fewer where there are no more.
+using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
+
+/// The one that begins at `place`; nothing where its fields are cut or no fields.
+std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place) {
+  std::string bytes = read(place, kFirstLook);
+  const auto length = ByteCursor(bytes).number<std::uint32_t>();
+  if (length == 0 || length > kMostFieldBytes) return std::nullopt;
+  const std::uint64_t head = std::uint64_t{length} + 8;
+  if (head > bytes.size() && bytes.size() == kFirstLook) bytes = read(place, head);
+  ByteCursor cursor(bytes);
+  Ros1Record record;
+  record.fields = cursor.text();
+  record.data_size = cursor.number<std::uint32_t>();
+  record.data_place = place + head;
+  if (!cursor.ok()) return std::nullopt;
+  return record;
+}
 
 /// While its index is made.
 struct Opening {

@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/sqlite_bag.h"
-
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/containers/file_bytes.h"
-#include "engine/recording/bags/containers/topic_list.h"
+#include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <memory>

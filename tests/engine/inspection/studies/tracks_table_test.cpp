@@ -3,7 +3,7 @@
 #include "engine/inspection/studies/tracks_table.h"
 
 #include "engine/initializers/gpo.h"
-#include "engine/recording/layouts/tracks_reader.h"
+#include "engine/recording/layouts/layouts.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -3,8 +3,6 @@
 #include "engine/recording/bags/messages.h"
 
 #include "engine/recording/bags/bag_picture.h"
-#include "engine/recording/bags/frame_tree.h"
-#include "engine/recording/layouts/camera_info.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "engine/recording/bags/bag_writer.h"
-#include "engine/recording/bags/message_bytes.h"
-#include "engine/recording/layouts/camera_info.h"
+#include "engine/recording/bags/messages.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/euroc_writer.h"
-
 #include "engine/base/error.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/test_folder.h"

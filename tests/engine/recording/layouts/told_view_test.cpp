@@ -6,8 +6,7 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/gpmf_view.h"
-#include "engine/recording/pictures/movie_boxes.h"
+#include "engine/recording/loggers/telemetry_track.h"
 #include "tests/engine/recording/loggers/telemetry_video.h"
 #include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/test_folder.h"

@@ -4,8 +4,6 @@
 #include "engine/recording/loggers/logs.h"
 
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/logger_files.h"
-#include "engine/recording/loggers/signed_axes.h"
 #include "tests/engine/recording/pictures/made_video.h"
 #include "tests/engine/test_folder.h"
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // GoPro's GPMF and Camera Motion Metadata, alone and inside of videos.
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/camm.h"
 #include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
+#include "engine/recording/loggers/telemetry_track.h"
 #include "engine/window/timestamps.h"
 #include "tests/engine/recording/loggers/telemetry_video.h"
 #include "tests/engine/recording/pictures/made_video.h"

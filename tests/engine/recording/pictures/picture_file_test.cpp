@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/pictures/picture_file.h"
 
-#include "engine/recording/pictures/picture_header.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/topic_list.h"
+#include "engine/recording/bags/containers/bag.h"
+
+#include "engine/base/error.h"
+#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <numeric>
@@ -8,7 +11,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 void TopicList::add(std::int64_t id,
                     std::string_view name,
                     std::string_view type,
@@ -69,6 +71,21 @@ void TopicList::finish() {
   std::ranges::sort(bag_.messages, {}, [](const BagMessage& message) {
     return std::pair(message.chunk, message.place);
   });
+}
+
+Bag open_bag(const std::filesystem::path& file) {
+  const auto bytes = std::make_shared<const FileBytes>(file);
+  const std::string begin = bytes->read(0, 16);
+  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
+  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
+  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
+  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG")) {
+    throw InputError(file.string() +
+                     ": found a bag of an old format, expected version 2.0 (rosbag fix makes one)");
+  }
+  throw InputError(
+      file.string() +
+      ": found no bag, expected one of ROS 1 (version 2.0), MCAP or SQLite's database");
 }
 
 }  // namespace gpo

@@ -1,0 +1,349 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/bags/bag_writer.h"
+
+#include "engine/base/error.h"
+#include "engine/recording/bags/containers/bag.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <zlib.h>
+#include <zstd.h>
+
+namespace gpo {
+namespace {
+
+/// A number as bags have it, little-endian.
+template <class T>
+std::string stored(T value) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  return {bytes.data(), bytes.size()};
+}
+
+/// A text with its length before it.
+template <class Length = std::uint32_t>
+std::string stored_text(std::string_view text) {
+  return stored(static_cast<Length>(text.size())).append(text);
+}
+
+/// A file that is written from its beginning to its end, and knows where it is.
+class ByteStream {
+ public:
+  explicit ByteStream(const std::filesystem::path& file)
+      : file_(file), stream_(file, std::ios::binary) {}
+
+  std::uint64_t place() const { return place_; }
+  void write(std::string_view bytes) {
+    stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    place_ += bytes.size();
+  }
+  /// Writes over what is there already.
+  void write_at(std::uint64_t place, std::string_view bytes) {
+    stream_.seekp(static_cast<std::streamoff>(place));
+    stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream_.seekp(static_cast<std::streamoff>(place_));
+  }
+  /// Throws InputError where anything could not be written.
+  void finish() {
+    stream_.close();
+    if (!stream_) throw InputError(file_.string() + ": cannot be written");
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::uint64_t place_ = 0;
+};
+
+template <class Writer>
+BagWriter bag_writer(MessageEncoding encoding, std::shared_ptr<Writer> writer) {
+  return {
+      encoding,
+      [writer](int topic, auto ns, const std::string& bytes) { writer->write(topic, ns, bytes); },
+      [writer] { writer->finish(); }};
+}
+
+}  // namespace
+
+namespace ros1 {
+namespace {
+
+constexpr std::size_t kChunkBytes = 768 << 10;
+constexpr std::uint32_t kHeaderBytes = 4096;  ///< of the bag's header with what fills it up
+
+std::string field(std::string_view name, std::string_view value) {
+  return stored_text(std::string(name) + "=" + std::string(value));
+}
+
+std::string op(Ros1Op op) { return field("op", std::string(1, static_cast<char>(op))); }
+
+std::string record(const std::string& fields, const std::string& data) {
+  return stored_text(fields) + stored_text(data);
+}
+
+std::string time_bytes(std::int64_t ns) {
+  return stored(static_cast<std::uint32_t>(ns / 1'000'000'000)) +
+         stored(static_cast<std::uint32_t>(ns % 1'000'000'000));
+}
+
+/// The messages of a chunk by their connection.
+struct Entries {
+  std::uint32_t count = 0;
+  std::string bytes;  ///< time and place of each
+};
+
+/// A chunk that is written, for the end of the file.
+struct Info {
+  std::uint64_t place;
+  std::int64_t first_ns;
+  std::int64_t last_ns;
+  std::map<int, std::uint32_t> counts;  ///< of messages, by connection
+};
+
+class Ros1Writer {
+ public:
+  Ros1Writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics)
+      : stream_(file), topics_(topics) {
+    stream_.write(kRos1Magic);
+    stream_.write(header(0));
+  }
+
+  void write(int topic, std::int64_t ns, const std::string& bytes) {
+    if (chunk_.empty()) first_ns_ = last_ns_ = ns;
+    first_ns_ = std::min(first_ns_, ns);
+    last_ns_ = std::max(last_ns_, ns);
+    if (entries_[topic].count == 0) chunk_ += connection(topic);
+    Entries& entries = entries_[topic];
+    ++entries.count;
+    entries.bytes += time_bytes(ns) + stored(static_cast<std::uint32_t>(chunk_.size()));
+    chunk_ += record(op(Ros1Op::message) + field("conn", stored<std::uint32_t>(topic)) +
+                         field("time", time_bytes(ns)),
+                     bytes);
+    if (chunk_.size() >= kChunkBytes) write_chunk();
+  }
+
+  void finish() {
+    if (!chunk_.empty()) write_chunk();
+    const std::uint64_t index = stream_.place();
+    for (std::size_t i = 0; i < topics_.size(); ++i) stream_.write(connection(static_cast<int>(i)));
+    for (const Info& info : infos_) write_info(info);
+    stream_.write_at(kRos1Magic.size(), header(index));
+    stream_.finish();
+  }
+
+ private:
+  std::string header(std::uint64_t index) const {
+    const std::string fields =
+        op(Ros1Op::bag_header) + field("index_pos", stored(index)) +
+        field("conn_count", stored(static_cast<std::uint32_t>(topics_.size()))) +
+        field("chunk_count", stored(static_cast<std::uint32_t>(infos_.size())));
+    return record(fields, std::string(kHeaderBytes - 8 - fields.size(), ' '));
+  }
+
+  std::string connection(int topic) const {
+    const auto& [name, type] = topics_[topic];
+    const MessageType about = message_type(type, MessageEncoding::ros1);
+    return record(
+        op(Ros1Op::connection) + field("conn", stored<std::uint32_t>(topic)) + field("topic", name),
+        field("topic", name) + field("type", type) + field("md5sum", about.ros1_sum) +
+            field("message_definition", about.definition));
+  }
+
+  void write_chunk() {
+    Info info{stream_.place(), first_ns_, last_ns_, {}};
+    stream_.write(record(op(Ros1Op::chunk) + field("compression", "none") +
+                             field("size", stored(static_cast<std::uint32_t>(chunk_.size()))),
+                         chunk_));
+    for (const auto& [topic, entries] : entries_) {
+      info.counts[topic] = entries.count;
+      stream_.write(record(op(Ros1Op::index) + field("ver", stored(std::uint32_t{1})) +
+                               field("conn", stored<std::uint32_t>(topic)) +
+                               field("count", stored(entries.count)),
+                           entries.bytes));
+    }
+    infos_.push_back(std::move(info));
+    chunk_.clear();
+    entries_.clear();
+  }
+
+  void write_info(const Info& info) {
+    std::string counts;
+    for (const auto& [topic, count] : info.counts)
+      counts += stored<std::uint32_t>(topic) + stored(count);
+    stream_.write(record(op(Ros1Op::chunk_info) + field("ver", stored(std::uint32_t{1})) +
+                             field("chunk_pos", stored(info.place)) +
+                             field("start_time", time_bytes(info.first_ns)) +
+                             field("end_time", time_bytes(info.last_ns)) +
+                             field("count", stored(static_cast<std::uint32_t>(info.counts.size()))),
+                         counts));
+  }
+
+  ByteStream stream_;
+  std::vector<WrittenTopic> topics_;
+  std::string chunk_;
+  std::map<int, Entries> entries_;  ///< of the chunk
+  std::int64_t first_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::vector<Info> infos_;
+};
+
+}  // namespace
+}  // namespace ros1
+
+namespace mcap {
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
+
+std::uint32_t crc32_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::string record(McapOp op, const std::string& content) {
+  std::string bytes(1, static_cast<char>(op));
+  bytes += stored_text<std::uint64_t>(content);
+  return bytes;
+}
+
+/// ROS 2 has three words where ROS 1 has two: "sensor_msgs/msg/Image".
+std::string ros2_name(const std::string& type) {
+  const std::string_view all = type;
+  const auto slash = all.find('/');
+  return fmt::format("{}/msg{}", all.substr(0, slash), all.substr(slash));
+}
+
+std::string compressed(const std::string& bytes) {
+  std::string made(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(made.data(), made.size(), bytes.data(), bytes.size(), ZSTD_CLEVEL_DEFAULT);
+  if (ZSTD_isError(size) != 0) throw InputError("zstd: cannot compress");
+  made.resize(size);
+  return made;
+}
+
+class McapWriter {
+ public:
+  McapWriter(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics)
+      : stream_(file), definitions_(definitions(topics)), counts_(topics.size(), 0) {
+    stream_.write(kMcapMagic);
+    stream_.write(record(McapOp::header, stored_text("ros2") + stored_text("gpo-inspector")));
+    stream_.write(definitions_);
+  }
+
+  void write(int topic, std::int64_t ns, const std::string& bytes) {
+    const std::uint64_t time = std::max<std::int64_t>(ns, 0);  // the format has none before 1970
+    first_ = counted_ == 0 ? time : std::min(first_, time);
+    last_ = std::max(last_, time);
+    chunk_first_ = chunk_.empty() ? time : std::min(chunk_first_, time);
+    chunk_last_ = chunk_.empty() ? time : std::max(chunk_last_, time);
+    index_[topic] += stored(time) + stored<std::uint64_t>(chunk_.size());
+    chunk_ += record(McapOp::message,
+                     stored<std::uint16_t>(topic) + stored<std::uint32_t>(counts_[topic]) +
+                         stored(time) + stored(time) + bytes);
+    ++counts_[topic];
+    ++counted_;
+    if (chunk_.size() >= kChunkBytes) write_chunk();
+  }
+
+  void finish() {
+    if (!chunk_.empty()) write_chunk();
+    stream_.write(record(McapOp::data_end, stored(std::uint32_t{0})));
+    const std::uint64_t start = stream_.place();
+    std::string summary = definitions_ + statistics() + chunk_indices_;
+    // The sum is of all up to itself, also of the footer's beginning.
+    constexpr std::uint64_t kFooterBytes = 20;
+    summary += static_cast<char>(McapOp::footer);
+    summary += stored(kFooterBytes) + stored(start) + stored(std::uint64_t{0});
+    stream_.write(summary);
+    stream_.write(stored(crc32_of(summary)));
+    stream_.write(kMcapMagic);
+    stream_.finish();
+  }
+
+ private:
+  /// A schema and a channel for each topic; the schemas' numbers begin at 1.
+  static std::string definitions(const std::vector<WrittenTopic>& topics) {
+    std::string bytes;
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      const MessageType about = message_type(topics[i].type, MessageEncoding::cdr);
+      bytes += record(McapOp::schema,
+                      stored<std::uint16_t>(i + 1) + stored_text(ros2_name(topics[i].type)) +
+                          stored_text("ros2msg") + stored_text(about.definition));
+      bytes += record(McapOp::channel,
+                      stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
+                          stored_text(topics[i].name) + stored_text("cdr") + stored_text(""));
+    }
+    return bytes;
+  }
+
+  std::string statistics() const {
+    std::string counts;
+    for (std::size_t i = 0; i < counts_.size(); ++i)
+      counts += stored<std::uint16_t>(i) + stored(counts_[i]);
+    return record(McapOp::statistics,
+                  stored(counted_) + stored<std::uint16_t>(counts_.size()) +
+                      stored<std::uint32_t>(counts_.size()) + stored(std::uint32_t{0}) +
+                      stored(std::uint32_t{0}) + stored(chunks_) + stored(first_) + stored(last_) +
+                      stored_text(counts));
+  }
+
+  void write_chunk() {
+    const std::string small = compressed(chunk_);
+    const std::uint64_t place = stream_.place();
+    const std::string times = stored(chunk_first_) + stored(chunk_last_);
+    stream_.write(record(McapOp::chunk,
+                         times + stored<std::uint64_t>(chunk_.size()) + stored(crc32_of(chunk_)) +
+                             stored_text("zstd") + stored_text<std::uint64_t>(small)));
+    const std::uint64_t end = stream_.place();
+    std::string offsets;
+    for (const auto& [topic, entries] : index_) {
+      offsets += stored<std::uint16_t>(topic) + stored(stream_.place());
+      stream_.write(
+          record(McapOp::message_index, stored<std::uint16_t>(topic) + stored_text(entries)));
+    }
+    chunk_indices_ +=
+        record(McapOp::chunk_index,
+               times + stored(place) + stored(end - place) + stored_text(offsets) +
+                   stored(stream_.place() - end) + stored_text("zstd") +
+                   stored<std::uint64_t>(small.size()) + stored<std::uint64_t>(chunk_.size()));
+    ++chunks_;
+    chunk_.clear();
+    index_.clear();
+  }
+
+  ByteStream stream_;
+  std::string definitions_;
+  std::vector<std::uint64_t> counts_;  ///< of messages, by topic
+  std::uint64_t counted_ = 0;
+  std::uint64_t first_ = 0;
+  std::uint64_t last_ = 0;
+  std::uint32_t chunks_ = 0;
+  std::string chunk_;
+  std::map<int, std::string> index_;  ///< of the chunk
+  std::uint64_t chunk_first_ = 0;
+  std::uint64_t chunk_last_ = 0;
+  std::string chunk_indices_;
+};
+
+}  // namespace
+}  // namespace mcap
+
+BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
+  return bag_writer(MessageEncoding::ros1, std::make_shared<ros1::Ros1Writer>(file, topics));
+}
+
+BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
+  return bag_writer(MessageEncoding::cdr, std::make_shared<mcap::McapWriter>(file, topics));
+}
+
+}  // namespace gpo
