@@ -102,12 +102,12 @@ void write_figure(const fs::path& folder,
                   const Figure& figure,
                   const std::optional<double>& width_mm) {
   constexpr double kPrint_dpi = 300;
-  const Drawing drawing = width_mm ? printed_figure(figure, *width_mm)
-                                   : figure_drawing(figure, default_figure_size(figure));
-  const double px_per_unit = width_mm ? drawing.unit_mm / 25.4 * kPrint_dpi : 1;
-  write_picture(folder / (figure.name + ".png"), picture_of(drawing, px_per_unit));
-  write_file(folder / (figure.name + ".svg"), figure_svg(figure, drawing));
-  write_file(folder / (figure.name + ".pdf"), pdf_of(drawing));
+  const FigureSheet sheet = width_mm ? printed_sheet(figure, *width_mm)
+                                     : screen_sheet(figure, default_figure_size(figure));
+  const double px_per_unit = width_mm ? sheet.unit_mm / 25.4 * kPrint_dpi : 1;
+  write_picture(folder / (figure.name + ".png"), figure_picture(figure, sheet, px_per_unit));
+  write_file(folder / (figure.name + ".svg"), figure_svg(figure, sheet));
+  write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }
 
 /// Everything that is made of the finished windows.

@@ -251,8 +251,8 @@ TEST(Evaluate, FiguresForPrintAreAsWideAsAsked) {
       "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
       folder.string()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("width=\"85mm\""));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), HasSubstr("/MediaBox [0 0 240.94"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("width=\"240.94"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), HasSubstr("/MediaBox [ 0 0 240.94"));
 }
 
 TEST(Evaluate, EveryShardOfOneStartComputesSomething) {

@@ -104,10 +104,10 @@ TEST_F(PanesTest, ComputesResidualsAndChartsOnceAnInspection) {
   open(made_inspection({.estimate_error = 1}));
   state_.panes.drawer = find_drawer("residuals");
   draw();
-  const std::size_t drawn = views_->charts.at("rms over frames").revision();
+  const std::size_t drawn = views_->charts.at("rms over frames").texture().revision();
   apply(state_, GoToFrame{20});
   draw();
-  EXPECT_EQ(views_->charts.at("rms over frames").revision(), drawn)
+  EXPECT_EQ(views_->charts.at("rms over frames").texture().revision(), drawn)
       << "the cursor is drawn over it";
   EXPECT_EQ(views_->residuals.of, state_.inspection);
 }

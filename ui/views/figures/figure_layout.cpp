@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/figures/figure_layout.h"
 
-#include "ui/views/figures/glyphs.h"
+#include "ui/look/palette.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,39 +14,7 @@ namespace {
 
 // At scale 1.
 constexpr double kFreeHeight = 205;  ///< of the axes, where the height is free
-constexpr double kMargin = 10, kBesideSample = 8, kBetweenKeys = 26;
-
-/// Rows of samples with their names, centered, from `y` down. Returns where they end.
-double place_legend(FigureLayout& layout,
-                    const std::vector<CurveStyle>& styles,
-                    bool few,
-                    double y) {
-  const double s = layout.scale, size = layout.type.legend, row = 1.7 * size;
-  std::vector<LegendKey> keys;
-  keys.reserve(styles.size() + 1);
-  for (const CurveStyle& style : styles) keys.push_back({&style, style.name});
-  if (few) keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
-  const auto width_of_key = [&](const LegendKey& key) {
-    return (kSampleLength + kBesideSample + kBetweenKeys) * s + width_of(key.text, size);
-  };
-  const double room = layout.width - 2 * kMargin * s + kBetweenKeys * s;
-  for (std::size_t first = 0; first < keys.size();) {
-    std::size_t end = first;
-    double total = 0;
-    while (end < keys.size() && (end == first || total + width_of_key(keys[end]) <= room))
-      total += width_of_key(keys[end++]);
-    double x = (layout.width - total + kBetweenKeys * s) / 2;
-    for (; first < end; ++first) {
-      keys[first].at = {x, y + row / 2};
-      x += width_of_key(keys[first]);
-    }
-    y += row;
-  }
-  layout.keys = std::move(keys);
-  return y;
-}
-
-}  // namespace
+constexpr double kMargin = 10;
 
 bool has_few_windows(const Figure& figure) {
   for (const Chart& chart : figure.charts)
@@ -56,20 +24,42 @@ bool has_few_windows(const Figure& figure) {
   return false;
 }
 
+}  // namespace
+
+ChartLook paper_look(const FigureSheet& sheet) {
+  const double s = sheet.scale;
+  const FigureType& type = sheet.type;
+  return {.ground = 0xFFFFFF,
+          .text = palette::kInk,
+          .tick_text = palette::kInk,
+          .dim = palette::kPaperAxis,
+          .axis = palette::kPaperAxis,
+          .grid = palette::kPaperGrid,
+          .scale = s,
+          .text_size = type.axis_title,
+          .tick_size = type.tick,
+          .x_spacing = 3.6 * type.tick,
+          .y_spacing = 2.2 * type.tick,
+          .legend = {40 * s, 8 * s, 26 * s, 1.7 * type.legend, type.legend}};
+}
+
 FigureLayout lay_out(const Figure& figure,
                      const std::vector<CurveStyle>& styles,
                      const FigureSheet& sheet) {
   const double s = sheet.scale;
   const FigureType& type = sheet.type;
-  FigureLayout layout{sheet.width, 0, s, type, {}, {}, {}, 0, 0, {}};
+  FigureLayout layout;
+  layout.width = sheet.width;
   const double room = sheet.width - 2 * kMargin * s;
   layout.title = wrapped(figure.title, type.title, true, room);
   layout.note = wrapped(figure.note, type.note, false, room);
   const double lines = kLineSpacing * type.title * static_cast<double>(layout.title.size());
   layout.title_y = kMargin * s + kLineSpacing * type.title / 2;
   const double top = kMargin * s + lines;
-  // What is below the charts is laid out from 0 on, and moved when their height is known.
-  const double legend_height = place_legend(layout, styles, has_few_windows(figure), 0);
+  for (const CurveStyle& style : styles) layout.keys.push_back({&style, style.name});
+  if (has_few_windows(figure))
+    layout.keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
+  const double legend_height = place_keys(layout.keys, paper_look(sheet).legend, room, 0.5);
   const double note_height = kLineSpacing * type.note * static_cast<double>(layout.note.size());
   const double below = legend_height + note_height + (layout.note.empty() ? 1 : 1.6) * kMargin * s;
   const auto charts = static_cast<int>(figure.charts.size());
@@ -89,7 +79,7 @@ FigureLayout lay_out(const Figure& figure,
                              std::round(height));
   }
   const double end = top + rows * (head + height + foot);
-  for (LegendKey& key : layout.keys) key.at.y() += end;
+  for (LegendKey& key : layout.keys) key.at += Eigen::Vector2d(kMargin * s, end);
   layout.note_y = end + legend_height + 0.6 * kMargin * s + kLineSpacing * type.note / 2;
   layout.height = sheet.height.value_or(std::ceil(end + below));
   return layout;

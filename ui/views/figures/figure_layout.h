@@ -3,13 +3,12 @@
 #pragma once
 
 #include "engine/experiment/figure.h"
-#include "ui/views/charts/curve_style.h"
+#include "ui/views/charts/chart_drawing.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -22,37 +21,30 @@ struct FigureType {
 /// What a figure is to be fitted into [units].
 struct FigureSheet {
   double width = 0;
-  std::optional<double> height;  ///< nothing: what its parts take
-  double scale = 1;              ///< of lines, markers and gaps
-  int columns = 1;               ///< of charts
-  FigureType type{};
-};
-
-/// A sample in the legend: of a curve, or what hollow points are.
-struct LegendKey {
-  const CurveStyle* style = nullptr;  ///< null: of hollow points
-  std::string text;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside
+  std::optional<double> height = {};  ///< nullopt: what its parts take
+  double scale = 1;                   ///< of lines, markers and gaps
+  int columns = 1;                    ///< of charts
+  FigureType type = {};
+  double unit_mm = 25.4 / 96;  ///< on paper; by default a unit is a pixel of 96 dpi
 };
 
 /// Where the parts of a figure are, y down [units].
 struct FigureLayout {
-  double width = 0, height = 0, scale = 1;
-  FigureType type{};
+  double width = 0, height = 0;
   std::vector<cv::Rect2d> axes;  ///< one a chart
   std::vector<std::string> title, note;
   double title_y = 0, note_y = 0;  ///< of the first line
   std::vector<LegendKey> keys;
 };
 
-constexpr double kSampleLength = 40, kLineSpacing = 1.35;
+constexpr double kLineSpacing = 1.35;
+
+/// Colors and sizes of charts on white paper.
+ChartLook paper_look(const FigureSheet& sheet);
 
 /// `styles` are pointed to.
 FigureLayout lay_out(const Figure& figure,
                      const std::vector<CurveStyle>& styles,
                      const FigureSheet& sheet);
-
-/// Whether points of the figure stand for fewer than `kFewWindows`.
-bool has_few_windows(const Figure& figure);
 
 }  // namespace gpo

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/experiment/figure.h"
-#include "ui/views/figures/drawing.h"
+#include "ui/views/figures/figure_layout.h"
 
 #include <string>
 
@@ -11,23 +11,31 @@
 
 namespace gpo {
 
-/// Wide enough for its charts side by side.
+/// Wide enough for the figure's charts side by side [px].
 cv::Size default_figure_size(const Figure& figure);
 
-/// The figure on white: its charts side by side, one legend and the note below. Curves with markers
-/// and dashes besides colors, hollow where few windows stand behind a point; bands between
-/// quartiles translucent, outlined where they are many; bounds dotted; where there is nothing to
-/// draw it says so. A unit is a pixel.
-Drawing figure_drawing(const Figure& figure, cv::Size size);
+/// A sheet of pixels: charts side by side, one legend and the note below.
+FigureSheet screen_sheet(const Figure& figure, cv::Size size);
 
-/// The same for a page: so wide, as high as it takes, its charts side by side or one below the
-/// other, with type of 7 pt and more.
-Drawing printed_figure(const Figure& figure, double width_mm);
+/// A sheet for a page, as high as the figure takes: charts side by side or one below the other,
+/// type of 7 pt and more.
+FigureSheet printed_sheet(const Figure& figure, double width_mm);
 
-/// `figure_drawing` in pixels, CV_8UC3, BGR.
+// The figure on white. Curves differ in markers and dashes besides colors and are hollow at points
+// of few windows; bands between quartiles are translucent, or outlined where they are many; bounds
+// are dotted. The same figure gives the same bytes.
+
+/// Pixels, CV_8UC3, BGR.
+cv::Mat figure_picture(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
+
+/// SVG with text as outlines, so that it needs no font; the names of what is shown are in its title
+/// and description.
+std::string figure_svg(const Figure& figure, const FigureSheet& sheet);
+
+/// A page of PDF with text that can be selected, and its fonts.
+std::string figure_pdf(const Figure& figure, const FigureSheet& sheet);
+
+/// Draws the figure on a `screen_sheet`.
 cv::Mat draw_figure(const Figure& figure, cv::Size size);
-
-/// As SVG, with the names of what is shown in title and description.
-std::string figure_svg(const Figure& figure, const Drawing& drawing);
 
 }  // namespace gpo

@@ -6,19 +6,6 @@ namespace gpo {
 
 using Eigen::Vector2d;
 
-std::vector<Vector2d> points_along(std::span<const Vector2d> line, double spacing) {
-  std::vector<Vector2d> points;
-  double next = 0;  // from the start of the segment
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vector2d step = line[i] - line[i - 1];
-    const double length = step.norm();
-    for (; next <= length && length > 0; next += spacing)
-      points.push_back(line[i - 1] + next / length * step);
-    next -= length;
-  }
-  return points;
-}
-
 std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d> line,
                                                         std::span<const double> pattern) {
   std::vector<std::pair<Vector2d, Vector2d>> dashes;

@@ -10,9 +10,6 @@
 
 namespace gpo {
 
-/// Points every `spacing` along a polyline, from its start on.
-std::vector<Eigen::Vector2d> points_along(std::span<const Eigen::Vector2d> line, double spacing);
-
 /// The pieces of a polyline that lie under a pattern of lengths, drawn and left out in turn, over
 /// and over. Bends within a piece are kept: two points a straight piece.
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> dashes_along(

@@ -3,7 +3,6 @@
 #include "ui/views/charts/chart_view.h"
 
 #include "tests/ui/gl_test.h"
-#include "ui/context/framebuffer.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 
@@ -19,7 +18,6 @@ namespace {
 
 constexpr std::uint32_t kRed = 0xFF0000;
 constexpr int kWidth = 400, kHeight = 200;
-constexpr double kTop = 24;
 
 class ChartViewTest : public DrawingTest {};
 
@@ -43,27 +41,22 @@ Eigen::Vector2d middle_of_red(const cv::Mat& picture) {
   return sum / std::max(1, count);
 }
 
-TEST_F(ChartViewTest, APointIsDrawnWhereTheMappingSays) {
-  OffscreenContext context(kWidth, kHeight);
-  context.bind();
-  ChartView view;
+ChartRequest request_of(const Chart& chart) { return {chart, {kWidth, kHeight}, 1, true}; }
+
+TEST(WindowChart, APointIsDrawnWhereTheMappingSays) {
   for (const bool logarithmic : {false, true}) {
     // The gaps stretch the x axis, and the y axis is known from the first point alone.
-    const Chart chart = chart_of({2, 7, 9}, {NAN, 30, NAN}, logarithmic);
-    const unsigned texture = view.render(chart, kWidth, kHeight, 1, kTop);
-    const cv::Mat picture = read_texture(texture, kWidth, kHeight);
-    keep(logarithmic ? "chart-log" : "chart", picture);
-    EXPECT_LT((middle_of_red(picture) - view.mapping().px(7, 30)).norm(), 0.8);
+    const ChartPicture drawn =
+        draw_window_chart(request_of(chart_of({2, 7, 9}, {NAN, 30, NAN}, logarithmic)));
+    keep(logarithmic ? "chart-log" : "chart", drawn.bgr);
+    EXPECT_LT((middle_of_red(drawn.bgr) - drawn.mapping.px(7, 30)).norm(), 0.8);
   }
 }
 
-TEST_F(ChartViewTest, TheMappingCanBeTurnedRound) {
-  OffscreenContext context(kWidth, kHeight);
-  context.bind();
-  ChartView view;
+TEST(WindowChart, TheMappingCanBeTurnedRound) {
   for (const bool logarithmic : {false, true}) {
-    view.render(chart_of({1, 5}, {0.1, 20}, logarithmic), kWidth, kHeight, 1, kTop);
-    const ChartMapping& to = view.mapping();
+    const ChartMapping to =
+        draw_window_chart(request_of(chart_of({1, 5}, {0.1, 20}, logarithmic))).mapping;
     const Eigen::Vector2d at = to.px(3, 0.7);
     EXPECT_NEAR(to.x_value(at.x()), 3, 1e-9);
     EXPECT_NEAR(to.y_value(at.y()), 0.7, 1e-9);
@@ -74,52 +67,67 @@ TEST_F(ChartViewTest, TheMappingCanBeTurnedRound) {
 }
 
 /// Three that lie upon one another, the second but at some places; a fourth that only crosses.
-TEST_F(ChartViewTest, EqualCurvesAreToldApart) {
-  OffscreenContext context(kWidth, kHeight);
-  context.bind();
-  ChartView view;
+TEST(WindowChart, EqualCurvesAreToldApart) {
   Chart chart = chart_of({1, 2, 3, 4, 5}, {1, 4, 3, 3, 5});
   constexpr std::uint32_t kGreen = 0x00FF00, kBlue = 0x0000FF, kYellow = 0xFFFF00;
   chart.curves.push_back({"pba", kGreen, false, {2, 3, 4, 5}, {4, 3, 3, 5}, {}, {}});
   chart.curves.push_back({"ba", kBlue, false, {1, 2, 3, 4, 5}, {1, 4, 3, 3, 5}, {}, {}});
   chart.curves.push_back({"pnp", kYellow, false, {1, 5}, {5, 1}, {}, {}});
-  const cv::Mat picture =
-      read_texture(view.render(chart, kWidth, kHeight, 1, kTop), kWidth, kHeight);
+  ChartRequest request = request_of(chart);
+  request.legend = false;
+  const auto [picture, to] = draw_window_chart(request);
   keep("chart-equal", picture);
   // Half of the line is the lowest one's, a quarter is each of the others'.
-  const auto at_3 = static_cast<int>(view.mapping().px(3, 3).x());
-  const cv::Mat right = picture.colRange(at_3, kWidth);
+  const cv::Mat right = picture.colRange(static_cast<int>(to.px(3, 3).x()), kWidth);
   const double alone = count_pixels(right, kYellow, 40);
   for (const std::uint32_t rgb : {kRed, kGreen, kBlue})
     EXPECT_GT(count_pixels(right, rgb, 40), 0.2 * alone) << std::hex << rgb;
 }
 
-TEST_F(ChartViewTest, WhatIsUnchangedIsNotRenderedAgain) {
+TEST(WindowChart, PointsOfFewWindowsAreHollow) {
+  Chart chart = chart_of({1, 2, 3}, {3, 3, 3});
+  for (const int count : {9, 1}) {
+    chart.curves[0].counts = {9, count, 9};
+    const auto [picture, to] = draw_window_chart(request_of(chart));
+    const Eigen::Vector2d at = to.px(2, 3);
+    const cv::Vec3b middle =
+        picture.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x()));
+    EXPECT_EQ(middle == cv::Vec3b(0, 0, 255), count == 9);
+  }
+}
+
+TEST(WindowChart, IsDrawnInBothThemesAndAnyScale) {
+  ChartRequest request = request_of(chart_of({1, 2, 3}, {1, 3, 2}));
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    request.theme = theme;
+    const cv::Mat picture = draw_window_chart(request).bgr;
+    EXPECT_GT(count_pixels(picture, color_of(Role::panel, theme), 0), kWidth * kHeight / 2);
+    EXPECT_GT(count_pixels(picture, color_of(Role::text, theme), 20), 20);
+  }
+  const double left = draw_window_chart(request).mapping.left;
+  request.scale = 2;
+  EXPECT_EQ(draw_window_chart(request).mapping.left, 2 * left);
+}
+
+TEST_F(ChartViewTest, DrawsOnlyWhatHasChanged) {
   OffscreenContext context(kWidth, kHeight);
   context.bind();
   ChartView view;
-  const auto render = [&](const Chart& chart, int width) {
-    EXPECT_NE(view.render(chart, width, kHeight, 1, kTop), 0U);
-    return view.revision();
+  const auto revision = [&](const ChartRequest& request) {
+    view.update(request);
+    return view.texture().revision();
   };
-  const Chart with_gap = chart_of({1, 2, 3}, {1, NAN, 2});
-  const std::size_t first = render(with_gap, kWidth);
-  EXPECT_EQ(render(with_gap, kWidth), first) << "a gap is no change";
-  EXPECT_EQ(render(chart_of({1, 2, 3}, {1, 1.5, 2}), kWidth), first + 1);
-  EXPECT_EQ(render(chart_of({1, 2, 3}, {1, 1.5, 2}), kWidth / 2), first + 2);
-  EXPECT_EQ(view.render(with_gap, 0, kHeight, 1, kTop), 0U);
-}
-
-TEST_F(ChartViewTest, EachOfTwoKeepsItsOwnPicture) {
-  OffscreenContext context(kWidth, kHeight);
-  context.bind();
-  ChartView left, right;
-  const Chart low = chart_of({1, 2, 3}, {NAN, 1, 2}), high = chart_of({1, 2, 3}, {5, 1, NAN});
-  const cv::Mat alone =
-      read_texture(left.render(low, kWidth, kHeight, 1, kTop), kWidth, kHeight).clone();
-  right.render(high, kWidth, kHeight, 1, kTop);
-  const cv::Mat still = read_texture(left.render(low, kWidth, kHeight, 1, kTop), kWidth, kHeight);
-  EXPECT_TRUE(same_bytes(alone, still));
+  ChartRequest request = request_of(chart_of({1, 2, 3}, {1, NAN, 2}));
+  const std::size_t first = revision(request);
+  EXPECT_EQ(revision(request), first) << "a gap is no change";
+  request.chart = chart_of({1, 2, 3}, {1, 1.5, 2});
+  EXPECT_EQ(revision(request), first + 1);
+  request.size.width /= 2;
+  EXPECT_EQ(revision(request), first + 2);
+  request.chart.title = "another title";
+  EXPECT_EQ(revision(request), first + 3);
+  request.theme = Theme::light;
+  EXPECT_EQ(revision(request), first + 4);
 }
 
 /// With Dear ImGui around it: titles, legend, and where the values are on the screen.

@@ -5,7 +5,6 @@
 #include "tests/ui/gl_test.h"
 #include "ui/look/palette.h"
 #include "ui/views/charts/curve_style.h"
-#include "ui/views/figures/glyphs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +19,6 @@ namespace gpo {
 namespace {
 
 using ::testing::HasSubstr;
-
-class FigureView : public DrawingTest {};
 
 constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442;
 const cv::Size kSmall(500, 480);
@@ -104,7 +101,7 @@ std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
   return pixels;
 }
 
-TEST_F(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
+TEST(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
   const Figure figure = paper_figure();
   const cv::Mat picture = draw_figure(figure, {1500, 480});
   cv::imwrite(figure_file("figure.png").string(), picture);
@@ -118,15 +115,15 @@ TEST_F(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
     }
 }
 
-TEST_F(FigureView, SameFigureGivesTheSameBytes) {
+TEST(FigureView, SameFigureGivesTheSameBytes) {
   const Figure figure = paper_figure();
   EXPECT_TRUE(same_bytes(draw_figure(figure, {900, 400}), draw_figure(figure, {900, 400})));
-  const Drawing drawing = figure_drawing(figure, {900, 400});
-  EXPECT_EQ(figure_svg(figure, drawing), figure_svg(figure, figure_drawing(figure, {900, 400})));
-  EXPECT_EQ(pdf_of(drawing), pdf_of(figure_drawing(figure, {900, 400})));
+  const FigureSheet sheet = screen_sheet(figure, {900, 400});
+  EXPECT_EQ(figure_svg(figure, sheet), figure_svg(figure, sheet));
+  EXPECT_EQ(figure_pdf(figure, sheet), figure_pdf(figure, sheet));
 }
 
-TEST_F(FigureView, BandLiesBetweenTheQuartiles) {
+TEST(FigureView, BandLiesBetweenTheQuartiles) {
   const cv::Mat picture = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
   cv::imwrite(figure_file("figure_band.png").string(), picture);
   const cv::Mat area = plot_area(picture);
@@ -143,7 +140,7 @@ TEST_F(FigureView, BandLiesBetweenTheQuartiles) {
   EXPECT_FALSE(tinted(at(3.12)));
 }
 
-TEST_F(FigureView, NanLeavesAGap) {
+TEST(FigureView, NanLeavesAGap) {
   const double nan = std::nan("");
   const cv::Mat picture =
       draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
@@ -157,14 +154,14 @@ TEST_F(FigureView, NanLeavesAGap) {
   EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
 }
 
-TEST_F(FigureView, OnePointBetweenGapsIsDrawn) {
+TEST(FigureView, OnePointBetweenGapsIsDrawn) {
   const double nan = std::nan("");
   const cv::Mat picture = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
   cv::imwrite(figure_file("figure_points.png").string(), picture);
   EXPECT_GT(green_by_column(picture, 5)[2], 20);
 }
 
-TEST_F(FigureView, BoundIsDotted) {
+TEST(FigureView, BoundIsDotted) {
   const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
   const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
   cv::imwrite(figure_file("figure_bound.png").string(), dotted);
@@ -173,14 +170,14 @@ TEST_F(FigureView, BoundIsDotted) {
   EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
 }
 
-TEST_F(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
+TEST(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
   Figure figure = small_figure({1, 0, -1, 10, 100});
   figure.charts[0].logarithmic = true;
   const cv::Mat picture = draw_figure(figure, kSmall);
   EXPECT_GT(colored(plot_area(picture), kGreen), 30);
 }
 
-TEST_F(FigureView, EmptyFiguresSaySo) {
+TEST(FigureView, EmptyFiguresSaySo) {
   Figure nothing{"none", "a title", {}};
   cv::imwrite(figure_file("figure_none.png").string(), draw_figure(nothing, kSmall));
   const Figure no_values = small_figure({std::nan(""), std::nan("")});
@@ -188,13 +185,13 @@ TEST_F(FigureView, EmptyFiguresSaySo) {
   cv::imwrite(figure_file("figure_no_values.png").string(), said);
   const cv::Mat middle = plot_area(said)(cv::Rect(100, 100, 180, 130));
   EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
-  figure_svg(nothing, figure_drawing(nothing, kSmall));
-  pdf_of(figure_drawing(no_values, kSmall));
+  figure_svg(nothing, screen_sheet(nothing, kSmall));
+  figure_pdf(no_values, screen_sheet(no_values, kSmall));
 }
 
-TEST_F(FigureView, SvgParsesAndNamesWhatItShows) {
+TEST(FigureView, SvgParsesAndNamesWhatItShows) {
   const Figure figure = paper_figure();
-  const std::string svg = figure_svg(figure, figure_drawing(figure, {1500, 480}));
+  const std::string svg = figure_svg(figure, screen_sheet(figure, {1500, 480}));
   std::ofstream(figure_file("figure.svg")) << svg;
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
@@ -207,124 +204,84 @@ TEST_F(FigureView, SvgParsesAndNamesWhatItShows) {
     EXPECT_THAT(text, HasSubstr(chart.y_label));
     for (const Curve& curve : chart.curves) EXPECT_THAT(text, HasSubstr(curve.name));
   }
-  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 1500 480\""));
-  // Text as text: a page's search finds it.
-  EXPECT_THAT(svg, HasSubstr(">PnP + BA</text>"));
-  EXPECT_THAT(svg, HasSubstr(">window length [frames]</text>"));
+  // In points: 1500 x 480 pixels of 96 dpi.
+  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 1125 360\""));
 }
 
-/// Of the marker's outlines in a drawing, how many are of a color.
-int fills_of(const Drawing& drawing, std::uint32_t rgb) {
-  return static_cast<int>(std::ranges::count_if(drawing.items, [&](const auto& item) {
-    const Fill* fill = std::get_if<Fill>(&item);
-    return fill != nullptr && fill->ink.rgb == rgb && fill->ink.opacity == 1;
-  }));
+/// How often an SVG fills or strokes with this style, in the spelling of any version of Cairo.
+int styles_of(std::string svg, const std::string& style) {
+  std::erase_if(svg, [](char c) { return c == ' ' || c == '"' || c == ';'; });
+  std::ranges::replace(svg, '=', ':');
+  int found = 0;
+  for (std::size_t at = svg.find(style); at != std::string::npos; at = svg.find(style, at + 1))
+    ++found;
+  return found;
 }
 
-TEST(FigureDrawing, TypeForPrintHasSevenPoints) {
+TEST(FigureView, PrintedTypeHasSevenPointsAndStaysOnThePage) {
+  Figure figure = paper_figure();
+  figure.note =
+      "Dotted: a bound that takes more than one line to explain, even on a wide page, "
+      "and of which this is the explanation";
   for (const double width_mm : {85.0, 175.0}) {
-    Figure figure = paper_figure();
-    figure.note =
-        "Dotted: a bound that takes more than one line to explain, even on a wide page, "
-        "and of which this is the explanation";
-    const Drawing drawing = printed_figure(figure, width_mm);
-    EXPECT_NEAR(drawing.width * drawing.unit_mm, width_mm, 1e-9);
-    int texts = 0;
-    for (const auto& item : drawing.items) {
-      const Text* text = std::get_if<Text>(&item);
-      if (text == nullptr) continue;
-      ++texts;
-      EXPECT_GE(text->size * drawing.unit_mm / 25.4 * 72, 7 - 1e-9) << text->text;
-      if (text->upwards) continue;
-      const double width = width_of(text->text, text->size, text->bold);
-      const double begin = text->at.x() - (text->anchor == Anchor::begin    ? 0
-                                           : text->anchor == Anchor::middle ? width / 2
-                                                                            : width);
-      EXPECT_GE(begin, 0) << text->text;
-      EXPECT_LE(begin + width, drawing.width) << text->text;
-    }
-    EXPECT_GE(texts, 30);
-    cv::imwrite(figure_file(width_mm < 100 ? "figure_85mm.png" : "figure_175mm.png").string(),
-                picture_of(drawing, drawing.unit_mm / 25.4 * 300));
-    std::ofstream(figure_file(width_mm < 100 ? "figure_85mm.pdf" : "figure_175mm.pdf"))
-        << pdf_of(drawing);
+    const FigureSheet sheet = printed_sheet(figure, width_mm);
+    EXPECT_NEAR(sheet.width * sheet.unit_mm, width_mm, 1e-9);
+    const FigureType& type = sheet.type;
+    for (const double size :
+         {type.title, type.chart_title, type.axis_title, type.tick, type.legend, type.note})
+      EXPECT_GE(size * sheet.unit_mm / 25.4 * 72, 7 - 1e-9);
+    const std::string name = width_mm < 100 ? "figure_85mm" : "figure_175mm";
+    const cv::Mat picture = figure_picture(figure, sheet, sheet.unit_mm / 25.4 * 300);
+    cv::imwrite(figure_file(name + ".png").string(), picture);
+    std::ofstream(figure_file(name + ".pdf")) << figure_pdf(figure, sheet);
+    const cv::Rect inside(2, 2, picture.cols - 4, picture.rows - 4);
+    cv::Mat edge = picture.clone();
+    edge(inside).setTo(cv::Scalar::all(255));
+    EXPECT_EQ(cv::countNonZero(edge.reshape(1) != 255), 0) << "nothing is cut off at " << width_mm;
   }
 }
 
-TEST(FigureDrawing, APageOfPdfHasTheFiguresSize) {
-  const std::string pdf = pdf_of(printed_figure(paper_figure(), 175));
+TEST(FigureView, PageOfPdfHasTheFiguresSizeAndItsFonts) {
+  const Figure figure = paper_figure();
+  const std::string pdf = figure_pdf(figure, printed_sheet(figure, 175));
   EXPECT_THAT(pdf, ::testing::StartsWith("%PDF-1.4\n"));
   EXPECT_THAT(pdf, ::testing::EndsWith("%%EOF\n"));
-  EXPECT_THAT(pdf, HasSubstr("/MediaBox [0 0 496.06"));
-  // The table of its objects points at them.
-  for (int object = 1; object <= 4; ++object) {
-    const std::size_t table = pdf.find("xref\n") + 10 + 20 * static_cast<std::size_t>(object);
-    const std::size_t at = std::stoul(pdf.substr(table, 10));
-    EXPECT_EQ(pdf.substr(at, 7), std::to_string(object) + " 0 obj");
-  }
+  EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 496.06"));
+  // Text can be selected: its fonts are embedded.
+  EXPECT_THAT(pdf, HasSubstr("+Inter-Regular"));
+  EXPECT_THAT(pdf, HasSubstr("+Inter-SemiBold"));
 }
 
-TEST(FigureDrawing, PointsOfFewWindowsAreHollowAndHaveNoBand) {
+TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
   Figure figure = small_figure({1, 1, 1, 1, 1}, true);
-  figure.charts[0].curves[0].counts = {9, 9, 4, 3, 1};
-  const Drawing drawing = figure_drawing(figure, kSmall);
-  // Two on the curve, one in the legend, which explains them.
-  EXPECT_EQ(fills_of(drawing, 0xFFFFFF), 3);
-  EXPECT_THAT(figure_svg(figure, drawing), HasSubstr(">fewer than 4 windows</text>"));
-  for (const auto& item : drawing.items) {
-    const Fill* fill = std::get_if<Fill>(&item);
-    if (fill == nullptr || fill->ink.opacity == 1) continue;
-    EXPECT_EQ(fill->outline.size(), 6U);  // of three points
-  }
+  const auto svg_of = [&] { return figure_svg(figure, screen_sheet(figure, kSmall)); };
+  const auto keys_of = [&] {
+    const std::vector<CurveStyle> styles = curve_styles(figure);
+    return lay_out(figure, styles, screen_sheet(figure, kSmall)).keys;
+  };
+  const std::string white = "fill:rgb(100%,100%,100%)";
   figure.charts[0].curves[0].counts = {9, 9, 4, 4, 4};
-  EXPECT_EQ(fills_of(figure_drawing(figure, kSmall), 0xFFFFFF), 0);
+  const int sheets = styles_of(svg_of(), white);
+  EXPECT_EQ(keys_of().back().text, "GPO");
+  figure.charts[0].curves[0].counts = {9, 9, 4, 3, 1};
+  // Two on the curve, one in the legend, which explains them.
+  EXPECT_EQ(styles_of(svg_of(), white), sheets + 3);
+  EXPECT_EQ(keys_of().back().text, "fewer than 4 windows");
+  const cv::Mat picture = draw_figure(figure, kSmall);
+  const cv::Mat area = plot_area(picture);
+  constexpr std::uint32_t kBand = 0xD1ECE3;
+  EXPECT_GT(colored(area.colRange(0, area.cols / 2), kBand), 1000);
+  EXPECT_EQ(colored(area.colRange(area.cols / 2 + 5, area.cols), kBand), 0);
 }
 
-TEST(FigureDrawing, ManyBandsAreOutlined) {
+TEST(FigureView, ManyBandsAreOutlined) {
   const auto outlines = [](std::size_t curves) {
     Figure figure = paper_figure();
     for (Chart& chart : figure.charts) chart.curves.resize(curves);
-    const Drawing drawing = figure_drawing(figure, {1500, 480});
-    return std::ranges::count_if(drawing.items, [](const auto& item) {
-      const Stroke* stroke = std::get_if<Stroke>(&item);
-      return stroke != nullptr && stroke->ink.opacity < 1;
-    });
+    return styles_of(figure_svg(figure, screen_sheet(figure, {1500, 480})), "stroke-opacity:0.6");
   };
   EXPECT_EQ(outlines(3), 0);
   EXPECT_EQ(outlines(6), 3 * 6 * 2);
-}
-
-TEST(Glyphs, AreAsWideAsTheyAreDrawn) {
-  for (const bool bold : {false, true})
-    for (const char* text : {"Plane normal error", "\u03c3 [\u00b0]", "H"}) {
-      double left = 1e9, right = -1e9;
-      for (const OutlinePiece& piece : outlines_of({text, {0, 0}, 100, bold, Anchor::begin})) {
-        left = std::min(left, piece.points[2].x());
-        right = std::max(right, piece.points[2].x());
-      }
-      EXPECT_NEAR(left, 0, 12) << text;
-      EXPECT_NEAR(right, width_of(text, 100, bold), 12) << text;
-    }
-  EXPECT_TRUE(outlines_of({" ", {0, 0}, 100}).empty());
-  double top = 1e9, bottom = -1e9;
-  for (const OutlinePiece& piece : outlines_of({"H", {0, 50}, 100})) {
-    top = std::min(top, piece.points[2].y());
-    bottom = std::max(bottom, piece.points[2].y());
-  }
-  EXPECT_NEAR((top + bottom) / 2, 50, 0.5);
-}
-
-TEST(Glyphs, WrapWordsIntoTheRoom) {
-  const std::string text = "median and quartiles over the windows that all of them solved";
-  const std::vector<std::string> lines = wrapped(text, 10, false, 120);
-  EXPECT_GT(lines.size(), 2U);
-  std::string again;
-  for (const std::string& line : lines) {
-    EXPECT_LE(width_of(line, 10), 120) << line;
-    again += (again.empty() ? "" : " ") + line;
-  }
-  EXPECT_EQ(again, text);
-  EXPECT_TRUE(wrapped("", 10, false, 120).empty());
 }
 
 TEST(CurveStyles, OfOneMethodDifferInDashesAndLookUnlike) {

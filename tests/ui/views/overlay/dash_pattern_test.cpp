@@ -15,10 +15,6 @@ using ::testing::Pair;
 // Right by 5, then up by 5.
 const std::vector<Vector2d> kBent = {{0, 0}, {5, 0}, {5, 5}};
 
-TEST(DashPattern, PointsGoAroundBends) {
-  EXPECT_THAT(points_along(kBent, 4), ElementsAre(Vector2d(0, 0), Vector2d(4, 0), Vector2d(5, 3)));
-}
-
 TEST(DashPattern, DashesBendWithTheLine) {
   const std::vector<double> pattern = {3, 1};
   EXPECT_THAT(dashes_along(kBent, pattern),
@@ -36,7 +32,6 @@ TEST(DashPattern, RoundingNeverStopsIt) {
 
 TEST(DashPattern, OnePointHasNoLength) {
   const std::vector<Vector2d> point = {{1, 1}, {1, 1}};
-  EXPECT_THAT(points_along(point, 2), IsEmpty());
   EXPECT_THAT(dashes_along(point, std::vector<double>{3, 1}), IsEmpty());
 }
 

@@ -1,0 +1,76 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <cairo.h>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// Points of a line or corners of a polygon, y down.
+using Polyline = std::vector<Eigen::Vector2d>;
+
+/// A color, 0xRRGGBB, and its opacity, 0 to 1.
+struct Ink {
+  std::uint32_t rgb = 0;
+  double opacity = 1;
+};
+
+struct Pen {
+  double width = 1;
+  Ink ink;
+  std::vector<double> dashes = {};  ///< lengths of dashes and gaps in turn; empty: solid
+  double phase = 0;                 ///< where in the pattern a line begins
+  bool round = false;               ///< ends of dashes; a dash of length 0 becomes a dot
+};
+
+void fill_polygon(cairo_t& cairo, const Polyline& outline, const Ink& ink);
+void stroke_line(cairo_t& cairo, const Polyline& line, const Pen& pen);
+/// A horizontal or vertical line; in pictures moved to whole pixels, so that it is sharp.
+void stroke_straight(cairo_t& cairo,
+                     const Eigen::Vector2d& from,
+                     const Eigen::Vector2d& to,
+                     const Pen& pen);
+
+enum class Anchor { begin, middle, end };
+
+/// A line of text in the program's own font. `at`: anchor along the text, middle of the capitals
+/// across it.
+struct Text {
+  std::string text;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double size = 14;  ///< of the em
+  std::uint32_t rgb = 0;
+  Anchor anchor = Anchor::middle;
+  bool bold = false;
+  bool upwards = false;  ///< rotated by 90 degrees about `at`
+};
+
+/// PDF gets text that can be selected, with its font; SVG and pictures get outlines.
+void draw_text(cairo_t& cairo, const Text& text);
+
+/// Returns the width of a text [units of `size`].
+double width_of(const std::string& text, double size, bool bold = false);
+
+/// Breaks a text into lines not wider than `room`, except where a single word is.
+std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double room);
+
+using CairoDraw = std::function<void(cairo_t& cairo)>;
+
+/// Draws on a surface, which it takes over, with `scale` device units a unit. Throws
+/// std::runtime_error with Cairo's message if it fails.
+void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
+
+/// Returns the picture that `draw` makes, CV_8UC3, BGR; the same bytes at every call.
+cv::Mat drawn_picture(cv::Size size,
+                      double px_per_unit,
+                      std::uint32_t ground,
+                      const CairoDraw& draw);
+
+}  // namespace gpo

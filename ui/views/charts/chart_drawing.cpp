@@ -1,0 +1,325 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/chart_drawing.h"
+
+#include "engine/experiment/figure.h"
+#include "ui/views/charts/axis_ticks.h"
+#include "ui/views/charts/marker_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+
+/// More bands over each other are drawn as outlines.
+constexpr int kMostFilledBands = 3;
+constexpr double kOutlinedOpacity = 0.05, kOutlineOpacity = 0.6, kOutlineWidth = 0.8;
+constexpr double kHollowShare = 0.55;  ///< of a hollow marker's size
+constexpr double kTick = 5, kTickGap = 4;
+constexpr double kDashPeriod = 32;  ///< of curves over others
+
+struct Extent {
+  double low = INFINITY, high = -INFINITY;
+
+  void extend(std::span<const double> values, bool logarithmic) {
+    for (const double value : values) {
+      if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  bool empty() const { return low > high; }
+};
+
+Extent x_extent(const Chart& chart) {
+  Extent extent;
+  for (const Curve& curve : chart.curves) extent.extend(curve.x, false);
+  return extent;
+}
+
+Extent y_extent(const Chart& chart) {
+  Extent extent;
+  for (const Curve& curve : chart.curves)
+    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
+      extent.extend(*values, chart.logarithmic);
+  return extent;
+}
+
+int most_ticks(double length, double spacing) {
+  return std::max(3, static_cast<int>(length / spacing));
+}
+
+/// Room for markers at both ends.
+AxisTicks x_ticks(const Chart& chart, double length, double spacing) {
+  const Extent extent = x_extent(chart);
+  const double room = 0.03 * (extent.high - extent.low);
+  return linear_ticks(extent.low - room, extent.high + room, most_ticks(length, spacing));
+}
+
+/// Errors are drawn from zero on.
+AxisTicks y_ticks(const Chart& chart, double length, double spacing) {
+  const Extent extent = y_extent(chart);
+  const int most = most_ticks(length, spacing);
+  if (chart.logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
+  const double low = std::min(0.0, extent.low);
+  const double room = 0.05 * (extent.high - low);
+  return linear_ticks(low < 0 ? low - room : 0, extent.high + room, most);
+}
+
+bool is_few(const Curve& curve, std::size_t i) {
+  return !curve.counts.empty() && curve.counts[i] < kFewWindows;
+}
+
+/// Without the quartiles of few windows.
+Chart with_quartiles_of_many(Chart chart) {
+  for (Curve& curve : chart.curves)
+    for (auto* side : {&curve.lower, &curve.upper})
+      for (std::size_t i = 0; i < side->size(); ++i)
+        if (is_few(curve, i)) (*side)[i] = std::nan("");
+  return chart;
+}
+
+struct Plot {
+  cairo_t& cairo;
+  const Chart& chart;
+  const std::vector<CurveStyle>& styles;
+  const ChartLook& look;
+  ChartMapping to;
+
+  const CurveStyle& style_of(const Curve& curve) const {
+    return *std::ranges::find(styles, curve.name, &CurveStyle::name);
+  }
+  bool good(double x, double y) const {
+    return std::isfinite(x) && std::isfinite(y) && (!to.logarithmic || y > 0);
+  }
+  Polyline px(const Curve& curve, const std::vector<double>& y, std::pair<int, int> range) const {
+    Polyline line;
+    for (int i = range.first; i < range.second; ++i) line.push_back(to.px(curve.x[i], y[i]));
+    return line;
+  }
+};
+
+/// The ranges [first, end) of indices without gaps in which `good(i)` holds.
+template <class Good>
+std::vector<std::pair<int, int>> runs(std::size_t count, const Good& good) {
+  std::vector<std::pair<int, int>> found;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    if (!good(i)) continue;
+    if (found.empty() || found.back().second != i) found.emplace_back(i, i);
+    found.back().second = i + 1;
+  }
+  return found;
+}
+
+void draw_band(const Plot& plot, const Curve& curve, bool filled) {
+  if (curve.lower.empty()) return;
+  const std::uint32_t rgb = plot.style_of(curve).rgb;
+  const double s = plot.look.scale;
+  const auto good = [&](int i) {
+    return plot.good(curve.x[i], curve.lower[i]) && plot.good(curve.x[i], curve.upper[i]);
+  };
+  for (const auto& run : runs(curve.x.size(), good)) {
+    Polyline below = plot.px(curve, curve.lower, run), above = plot.px(curve, curve.upper, run);
+    if (below.size() == 1) {
+      stroke_line(plot.cairo, {below[0], above[0]}, {s, {rgb}});
+      continue;
+    }
+    if (!filled)
+      for (const Polyline& side : {below, above})
+        stroke_line(plot.cairo, side, {kOutlineWidth * s, {rgb, kOutlineOpacity}});
+    below.insert(below.end(), above.rbegin(), above.rend());
+    fill_polygon(plot.cairo, below, {rgb, filled ? kBandOpacity : kOutlinedOpacity});
+  }
+}
+
+Pen pen_of(const CurveStyle& style, double s) {
+  if (style.dotted) return {kDotSize_px * s, {style.rgb}, {0, kDotSpacing_px * s}, 0, true};
+  Pen pen{kCurveWidth_px * s, {style.rgb}, style.dashes};
+  for (double& length : pen.dashes) length *= s;
+  return pen;
+}
+
+/// Whether the one would hide the other: they have places in common, and agree at all of these.
+bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
+  int common = 0;
+  for (const Vector2d& point : a) {
+    bool there = false, near = false;  // a curve that steps has two points at one place
+    for (const Vector2d& other : b) {
+      if (other.x() != point.x()) continue;
+      there = true;
+      near = near || std::abs(other.y() - point.y()) <= tolerance;
+    }
+    if (there && !near) return false;
+    common += there ? 1 : 0;
+  }
+  return common > 1;
+}
+
+double length_of(const Polyline& line) {
+  double length = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
+/// Dashes for a line over those drawn before, which show the ones that it would hide in its gaps.
+/// The pattern begins where the lowest one does, so that those of several lines are in step.
+void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& drawn, double s) {
+  const auto hides = [&](const Polyline& other) { return coincide(line, other, pen.width); };
+  const auto lowest = std::ranges::find_if(drawn, hides);
+  if (lowest == drawn.end()) return;
+  const auto hidden = static_cast<int>(std::ranges::count_if(drawn, hides));
+  const double period = kDashPeriod * s;
+  const double dash = std::ldexp(period, -hidden);  // half as long as that of the one below
+  Polyline before;
+  std::ranges::copy_if(*lowest, std::back_inserter(before), [&](const Vector2d& point) {
+    return point.x() < line.front().x();
+  });
+  before.push_back(line.front());
+  pen.dashes = {dash, period - dash};
+  pen.phase = length_of(before);
+}
+
+struct Marker {
+  int shape = 0;  ///< of `marker_shape`
+  double size = kMarkerSize_px;
+  std::uint32_t rgb = 0;
+  bool hollow = false;
+};
+
+void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const ChartLook& look) {
+  const double size = marker.size * look.scale;
+  fill_polygon(cairo, marker_shape(marker.shape, at, size), {marker.rgb});
+  if (marker.hollow)
+    fill_polygon(cairo, marker_shape(marker.shape, at, kHollowShare * size), {look.ground});
+}
+
+/// `drawn`: the lines so far, to which this curve's are added.
+void draw_curve(const Plot& plot, const Curve& curve, std::vector<Polyline>& drawn) {
+  const CurveStyle& style = plot.style_of(curve);
+  const auto good = [&](int i) { return plot.good(curve.x[i], curve.y[i]); };
+  for (const auto& run : runs(curve.x.size(), good)) {
+    const Polyline line = plot.px(curve, curve.y, run);
+    Pen pen = pen_of(style, plot.look.scale);
+    if (plot.look.dashes_coinciding && !style.dotted) {
+      dash_over(pen, line, drawn, plot.look.scale);
+      drawn.push_back(line);
+    }
+    if (line.size() > 1) stroke_line(plot.cairo, line, pen);
+    if (!style.marker) continue;
+    for (int i = run.first; i < run.second; ++i)
+      draw_marker(plot.cairo,
+                  {*style.marker, style.marker_px, style.rgb, is_few(curve, i)},
+                  line[i - run.first],
+                  plot.look);
+  }
+}
+
+void draw_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ticks) {
+  const auto& [cairo, chart, styles, look, to] = plot;
+  const double left = to.left, right = left + to.width, bottom = to.bottom,
+               top = bottom + to.height;
+  const double s = look.scale, tick = kTick * s, size = look.tick_size;
+  for (std::size_t i = 0; i < x_ticks.values.size(); ++i) {
+    const double x = to.x_px(x_ticks.values[i]);
+    stroke_straight(cairo, {x, top}, {x, bottom}, {s, {look.grid}});
+    stroke_straight(cairo, {x, bottom}, {x, bottom + tick}, {s, {look.axis}});
+    draw_text(
+        cairo,
+        {x_ticks.labels[i], {x, bottom + tick + kTickGap * s + size / 2}, size, look.tick_text});
+  }
+  for (std::size_t i = 0; i < y_ticks.values.size(); ++i) {
+    const double y = to.y_px(y_ticks.values[i]);
+    stroke_straight(cairo, {left, y}, {right, y}, {s, {look.grid}});
+    stroke_straight(cairo, {left - tick, y}, {left, y}, {s, {look.axis}});
+    const Vector2d beside(left - tick - kTickGap * s, y);
+    draw_text(cairo, {y_ticks.labels[i], beside, size, look.tick_text, Anchor::end});
+  }
+  stroke_straight(cairo, {left, top}, {left, bottom}, {s, {look.axis}});
+  stroke_straight(cairo, {left, bottom}, {right, bottom}, {s, {look.axis}});
+}
+
+}  // namespace
+
+bool has_values(const Chart& chart) { return !x_extent(chart).empty() && !y_extent(chart).empty(); }
+
+ChartMapping draw_chart(cairo_t& cairo,
+                        const Chart& whole,
+                        const std::vector<CurveStyle>& styles,
+                        const cv::Rect2d& axes,
+                        const ChartLook& look) {
+  const Chart chart = with_quartiles_of_many(whole);
+  Plot plot{cairo, chart, styles, look, {}};
+  ChartMapping& to = plot.to;
+  to.left = axes.x;
+  to.bottom = axes.y + axes.height;
+  to.width = axes.width;
+  to.height = -axes.height;
+  if (!has_values(chart)) {
+    draw_axes(plot, {}, {});
+    const Vector2d middle(axes.x + axes.width / 2, axes.y + axes.height / 2);
+    draw_text(cairo, {"no values", middle, look.text_size, look.dim});
+    return to;
+  }
+  const AxisTicks x = x_ticks(chart, axes.width, look.x_spacing);
+  const AxisTicks y = y_ticks(chart, axes.height, look.y_spacing);
+  to.logarithmic = chart.logarithmic;
+  std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);
+  draw_axes(plot, x, y);
+  const auto bands =
+      std::ranges::count_if(chart.curves, [](const Curve& c) { return !c.lower.empty(); });
+  for (const Curve& curve : chart.curves) draw_band(plot, curve, bands <= kMostFilledBands);
+  std::vector<Polyline> drawn;
+  for (const bool bounds : {true, false})
+    for (const Curve& curve : chart.curves)
+      if (curve.dotted == bounds) draw_curve(plot, curve, drawn);
+  return to;
+}
+
+double width_of(const std::vector<LegendKey>& keys, const LegendLook& look) {
+  double width = keys.empty() ? 0 : -look.between;
+  for (const LegendKey& key : keys)
+    width += look.sample + look.beside + width_of(key.text, look.text_size) + look.between;
+  return width;
+}
+
+double place_keys(std::vector<LegendKey>& keys, const LegendLook& look, double room, double align) {
+  double y = 0;
+  for (auto first = keys.begin(); first != keys.end(); y += look.row) {
+    std::vector<LegendKey> row = {*first};
+    auto end = std::next(first);
+    for (; end != keys.end(); ++end) {
+      row.push_back(*end);
+      if (width_of(row, look) <= room) continue;
+      row.pop_back();
+      break;
+    }
+    double x = align * (room - width_of(row, look));
+    for (; first != end; ++first) {
+      first->at = {x, y + look.row / 2};
+      x += width_of({*first}, look) + look.between;
+    }
+  }
+  return y;
+}
+
+void draw_key(cairo_t& cairo, const LegendKey& key, const ChartLook& look) {
+  const Vector2d end = key.at + Vector2d(look.legend.sample, 0);
+  Marker marker{.rgb = look.dim, .hollow = true};
+  if (key.style != nullptr) {
+    stroke_line(cairo, {key.at, end}, pen_of(*key.style, look.scale));
+    marker = {key.style->marker.value_or(0), key.style->marker_px, key.style->rgb};
+  }
+  if (key.style == nullptr || key.style->marker)
+    draw_marker(cairo, marker, (key.at + end) / 2, look);
+  const Vector2d beside = end + Vector2d(look.legend.beside, 0);
+  draw_text(cairo, {key.text, beside, look.legend.text_size, look.text, Anchor::begin});
+}
+
+}  // namespace gpo

@@ -1,0 +1,63 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/base/chart.h"
+#include "ui/views/charts/cairo_drawing.h"
+#include "ui/views/charts/chart_mapping.h"
+#include "ui/views/charts/curve_style.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// Sizes of a legend [units].
+struct LegendLook {
+  double sample = 40, beside = 8,
+         between = 26;  ///< widths: a sample, the gaps after it and its text
+  double row = 25.5, text_size = 15;
+};
+
+/// Differences between charts in the window and on paper [units].
+struct ChartLook {
+  std::uint32_t ground, text, tick_text, dim, axis, grid;
+  double scale = 1;                       ///< of lines, markers and gaps
+  double text_size = 15, tick_size = 14;  ///< of the em
+  double x_spacing = 50, y_spacing = 31;  ///< at least that much between ticks
+  bool dashes_coinciding = false;         ///< a curve over an equal one is dashed to show it
+  LegendLook legend = {};
+};
+
+/// Whether the chart has a value that can be drawn; on a logarithmic axis these are positive.
+bool has_values(const Chart& chart);
+
+/// Draws grid, bands, curves, axes and ticks with their labels, without titles; `axes` is the
+/// rectangle between the axes' ends, `styles` has one entry a name. Returns the places of values.
+ChartMapping draw_chart(cairo_t& cairo,
+                        const Chart& chart,
+                        const std::vector<CurveStyle>& styles,
+                        const cv::Rect2d& axes,
+                        const ChartLook& look);
+
+/// An entry of a legend: a piece of a curve, or a hollow point, and its meaning.
+struct LegendKey {
+  const CurveStyle* style = nullptr;  ///< null: a hollow point
+  std::string text;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside it
+};
+
+/// Returns the width of all entries in one row.
+double width_of(const std::vector<LegendKey>& keys, const LegendLook& look);
+
+/// Places entries in rows no wider than `room`, the first of which begins at (0, 0). `align`: 0
+/// left, 0.5 centered, 1 right. Returns the rows' height.
+double place_keys(std::vector<LegendKey>& keys, const LegendLook& look, double room, double align);
+
+void draw_key(cairo_t& cairo, const LegendKey& key, const ChartLook& look);
+
+}  // namespace gpo
