@@ -11,7 +11,7 @@ build_packages=(
   python3-dev pybind11-dev python3-numpy
 )
 test_packages=(
-  libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps python3-xlib
+  libgtest-dev libgmock-dev xvfb xdotool imagemagick x11-apps python3-xlib
   clang libclang-rt-dev  # tests/fuzz
   # bags that we did not write
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
