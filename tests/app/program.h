@@ -12,13 +12,19 @@ struct Outcome {
   int exit_code;
   std::string out;
   std::string err;
-  long peak_kib = 0;  ///< the most memory that it held
+  long peak_kib = 0;  ///< the most memory that it took
 };
 
 /// Runs a shell command in the source folder, without a display.
 Outcome shell(const std::string& command);
 
-/// Runs `gpo-inspector ARGUMENTS` that way.
+/// Runs `gpo-inspector ARGUMENTS` that way, as a process of its own. Needed for signals,
+/// redirections, limits, peaks that are compared, and methods of the user's, which a process
+/// registers once.
+Outcome spawned(const std::string& arguments);
+
+/// Runs `gpo-inspector ARGUMENTS` in this process, in the source folder and without a display.
+/// Words are quoted as in a shell, which none runs.
 Outcome program(const std::string& arguments);
 
 /// Arguments that the program refuses, and what its one line must say.

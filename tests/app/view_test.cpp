@@ -45,7 +45,7 @@ TEST_F(RealWindow, IsToured) {
 }
 
 TEST(View, WithoutADisplaySaysWhatWorksWithoutOne) {
-  const Outcome outcome = program("view");
+  const Outcome outcome = spawned("view");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("display"));
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
