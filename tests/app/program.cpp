@@ -3,6 +3,7 @@
 #include "tests/app/program.h"
 
 #include "app/main_with_errors.h"
+#include "tests/engine/peak_memory.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -62,20 +63,6 @@ class Redirection {
   int before_;
 };
 
-/// A line of /proc/self/status [KiB].
-long status_kib(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with(key)) return std::stol(line.substr(key.size()));
-  return 0;
-}
-
-/// Lets the kernel measure the peak anew; returns the memory that is held now [KiB].
-long begin_peak_kib() {
-  std::ofstream("/proc/self/clear_refs") << "5";
-  return status_kib("VmRSS:");
-}
-
 }  // namespace
 
 std::string read_file(const fs::path& file) {
@@ -129,14 +116,14 @@ Outcome program(const std::string& arguments) {
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   fs::current_path(GPO_SOURCE_DIR);
-  const long held_kib = begin_peak_kib();
+  const PeakMemory memory;
   int exit_code = -1;
   {
     const Redirection to_out(stdout, out), to_err(stderr, err);
     exit_code = main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv);
     std::cout.flush();
   }
-  const long peak_kib = status_kib("VmHWM:") - held_kib;
+  const long peak_kib = memory.kib();
   wordfree(&words);
   cv::setNumThreads(-1);  // `evaluate` leaves one
   return {exit_code, read_file(out), read_file(err), peak_kib};
@@ -154,5 +141,18 @@ void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path&
 }
 
 fs::path desk() { return fs::path(GPO_SOURCE_DIR) / "sequences/desk"; }
+
+std::vector<std::string> rendered_recordings() {
+  if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) return {"orbit", "wander", "rotation-dominant"};
+  return {"sideways",
+          "orbit",
+          "approach",
+          "diagonal",
+          "up-down",
+          "wander",
+          "fast-arc",
+          "low-parallax",
+          "rotation-dominant"};
+}
 
 }  // namespace gpo::test

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace gpo::test {
 
@@ -47,5 +48,10 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// The bundled recording.
 std::filesystem::path desk();
+
+/// Names of the recipes in sequences/ that tests initialize: one of easy motion, one with a rolling
+/// shutter and one that is to be refused; all nine where GPO_ALL_RECORDINGS is set, as
+/// tests/nightly.sh does.
+std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test
