@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -19,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr long kMostKiB = 1 << 20;
-
-void PrintTo(const Target& target, std::ostream* stream) { *stream << target.name; }
 
 class FuzzReplay : public ::testing::TestWithParam<Target> {
  protected:
