@@ -5,6 +5,7 @@
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <sstream>
@@ -24,7 +25,7 @@ constexpr double kReadout_s = 0.02;
 constexpr double kClock_s = 0.008;
 
 /// The result of 30 frames.
-json run(const fs::path& recording, int start, const std::string& more = "") {
+json result_from(const fs::path& recording, int start, const std::string& more = "") {
   const fs::path file = test::fresh_folder() / "result.json";
   test::program(fmt::format("run {} --start {} --frames 30 {} --json {}",
                             recording.string(),
@@ -67,14 +68,14 @@ class RenderedRooms : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Starts, RenderedRooms, ::testing::Values(0, 20));
 
 TEST_P(RenderedRooms, FloorGravityAndMetersAreFoundWithoutFaults) {
-  const json result = run(small_room(), GetParam());
+  const json result = result_from(small_room(), GetParam());
   expect_accurate(result);
   const std::array truth{-0.0031, 0.0212, 0.0771};
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(result["bias_rad_s"][k], truth[k], 0.002);
 }
 
 TEST_P(RenderedRooms, RollingShutterIsEstimated) {
-  const json result = run(small_room(kReadout_s), GetParam());
+  const json result = result_from(small_room(kReadout_s), GetParam());
   expect_accurate(result);
   EXPECT_NEAR(result["row_delay_s"], kReadout_s / 240, 0.1 * kReadout_s / 240);
 }
@@ -85,7 +86,7 @@ TEST_P(RenderedRooms, LensResidualIsWithinTheUncertainty) {
       text.replace(text.find(from), std::string(from).size(), to);
     return text;
   };
-  expect_accurate(run(changed_room("mav0/cam0/sensor.yaml", bend), GetParam()));
+  expect_accurate(result_from(changed_room("mav0/cam0/sensor.yaml", bend), GetParam()));
 }
 
 TEST_P(RenderedRooms, LateClockIsEstimated) {
@@ -102,7 +103,8 @@ TEST_P(RenderedRooms, LateClockIsEstimated) {
     }
     return late;
   };
-  const json result = run(changed_room("mav0/imu0/data.csv", delay), GetParam(), "--time-offset");
+  const json result =
+      result_from(changed_room("mav0/imu0/data.csv", delay), GetParam(), "--time-offset");
   expect_accurate(result);
   EXPECT_NEAR(result["time_offset_s"], kClock_s, 0.001);
 }
