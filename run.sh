@@ -14,7 +14,7 @@ current_program() {
   for preset in release ci; do
     program="$here/build/$preset/app/gpo-inspector"
     [ -x "$program" ] || continue
-    [ -z "$(cd "$here" && find CMakeLists.txt CMakePresets.json app engine ui assets -newer "$program" -type f ! -name '*.md' -print -quit)" ] || continue
+    [ -z "$(cd "$here" && find -H CMakeLists.txt CMakePresets.json app engine ui assets -newer "$program" -type f ! -name '*.md' -print -quit)" ] || continue
     echo "$program"
     return
   done

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, runs every test; ends with CTest's summary,
-# what was skipped and why, and CTest's exit code. ./test.sh ARGS... passes ARGS to ctest (e.g. -R Gpo).
+# Installs what is missing, builds with warnings as errors, and runs every test but those of tests/nightly.sh.
+# Ends with CTest's summary, one line that says which tests were skipped and why, and CTest's exit code.
+#   ./test.sh ARGS...   passes ARGS to ctest, e.g. -R Gpo
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
@@ -12,5 +13,7 @@ cmake --build --preset ci
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 status=0
 ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@" || status=$?
-grep -h -A 1 ': Skipped$' build/ci/Testing/Temporary/LastTest.log || true
+awk '/: Skipped$/ { getline reason; ++count[reason]; ++all }
+  END { for (reason in count) text = text (text ? "; " : "") count[reason] " because " reason
+        if (all) print "skipped " all " tests: " text }' build/ci/Testing/Temporary/LastTest.log
 exit "$status"

@@ -11,8 +11,7 @@ build_packages=(
   python3-dev pybind11-dev python3-numpy
 )
 test_packages=(
-  libgtest-dev libgmock-dev xvfb xauth xdotool imagemagick x11-apps python3-xlib
-  clang libclang-rt-dev  # tests/fuzz
+  libgtest-dev libgmock-dev xvfb xdotool imagemagick x11-apps python3-xlib
   # bags that we did not write
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
   python3-opencv python3-jsonschema  # an initializer that we did not compile
@@ -21,6 +20,7 @@ test_packages=(
   file dpkg-dev  # the Debian packages
 )
 benchmark_packages=(libbenchmark-dev)
+sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
 
 # install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the
 # one line to type and exits 2.

@@ -1,5 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "app/main_with_errors.h"
+
 #include "app/commands/commands.h"
 #include "app/commands/setting_options.h"
 #include "app/methods/method_commands.h"
@@ -360,6 +362,8 @@ void quiet_libraries() {
   std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
 }
 
+}  // namespace
+
 int main_with_errors(int argc, char** argv) {
   CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
                "gpo-inspector");
@@ -388,13 +392,4 @@ int main_with_errors(int argc, char** argv) {
   }
 }
 
-}  // namespace
 }  // namespace gpo
-
-int main(int argc, char** argv) {
-  try {
-    return gpo::main_with_errors(argc, argv);
-  } catch (...) {
-    return gpo::kBadInput;  // not even the message could be written
-  }
-}

@@ -11,13 +11,13 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
-install_packages "${build_packages[@]}" "${test_packages[@]}"
+install_packages "${build_packages[@]}" "${test_packages[@]}" "${sanitizer_packages[@]}"
 jobs=${JOBS:-$(nproc)}
 unreported=$PWD/tests/sanitizers
 
-# What builds or starts something else than what is sanitized here: ./run.sh its own program, tests/fuzz
-# with sanitizers of its own, the engine alone, the installed library, the module for an interpreter that is not sanitized.
-elsewhere='^(Fuzz\.|EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
+# Tests that build or start something else than what is sanitized here: ./run.sh its own program, the engine alone,
+# the installed library, the module for an interpreter that is not sanitized.
+elsewhere='^(EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
 # What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
 # the front door's live form.
 threads='^View$|RealWindow|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
@@ -39,7 +39,7 @@ run() {
   shift
   cmake --preset "$preset"
   cmake --build --preset "$preset" --parallel "$jobs" \
-    --target engine_tests ui_tests monkey_tests app_tests video_tests
+    --target engine_tests ui_tests monkey_tests fuzz_tests app_tests video_tests
   local preload=
   if [ "$preset" = asan ]; then
     preload=$PWD/build/asan/keep_loaded.so

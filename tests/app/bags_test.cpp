@@ -203,7 +203,7 @@ TEST(ConvertedBag, IsReadByRosItself) {
 
 TEST(RealBags, AreDescribedOrRefused) {
   const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
-  if (!fs::exists(folder)) GTEST_SKIP() << "the bags are not on this machine";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   for (const char* name :
        {"rosbagjs_example.bag", "rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
     const Outcome outcome = program("info " + (folder / name).string());

@@ -266,7 +266,7 @@ class RealCalibration : public testing::TestWithParam<BentPaper> {};
 
 TEST_P(RealCalibration, TakesPaperAsItIs) {
   const fs::path recording = fs::path(GPO_SHARED_DIR) / "data" / GetParam().recording;
-  if (!fs::exists(recording)) GTEST_SKIP() << "the recording is not on this machine";
+  if (!fs::exists(recording)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const fs::path output = test::fresh_folder() / "camera.yaml";
   const Outcome outcome =
       program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));

@@ -64,7 +64,7 @@ TEST(Convert, RunGivesTheResultOfTheOriginal) { expect_same_result(desk(), "--fr
 
 TEST(Convert, RunGivesTheResultOfRealTracks) {
   const fs::path cards = fs::path(GPO_SHARED_DIR) / "data" / "cards-tracks";
-  if (!fs::exists(cards)) GTEST_SKIP() << "the recording is not on this machine";
+  if (!fs::exists(cards)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   expect_same_result(cards, "--start 58 --frames 15 --method ba");
 }
 

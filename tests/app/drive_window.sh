@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Drives the real window with a keyboard, in a display of its own:
-#   xvfb-run drive_window.sh PROGRAM RECORDING      in an empty folder
+#   ../with_display.sh 1920x1080 drive_window.sh PROGRAM RECORDING      in an empty folder
 # Says what it expected where it was disappointed, and ends with 1; else with the window's exit code.
 set -u
 program=$1

@@ -20,6 +20,7 @@ using test::Outcome;
 using test::program;
 using test::read_file;
 using test::shell;
+using test::spawned;
 using ::testing::HasSubstr;
 
 const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
@@ -268,7 +269,7 @@ TEST(Evaluate, MoreRecordingsTakeNoMoreMemory) {
   std::string four;
   for (const char* name : {"a", "b", "c", "d"}) four += copy_of_desk(folder / name).string() + " ";
   const auto peak_mib = [&](const std::string& recordings, const char* output) {
-    const Outcome outcome = program("evaluate " + recordings +
+    const Outcome outcome = spawned("evaluate " + recordings +
                                     " --methods dbscan --lengths 60 --starts 0 --jobs 1 --output " +
                                     (folder / output).string());
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

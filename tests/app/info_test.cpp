@@ -126,7 +126,7 @@ TEST(Help, EveryCommandExplainsItself) {
 }
 
 TEST(Help, VersionIsTold) {
-  const Outcome outcome = program("--version");
+  const Outcome outcome = test::spawned("--version");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, ::testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }

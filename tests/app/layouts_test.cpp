@@ -26,6 +26,7 @@ using test::fresh_folder;
 using test::Outcome;
 using test::program;
 using test::write_file;
+using ::testing::HasSubstr;
 
 constexpr int kFrames = 30;
 

@@ -20,9 +20,9 @@ using test::BadInput;
 using test::desk;
 using test::fresh_folder;
 using test::Outcome;
-using test::program;
 using test::read_file;
 using test::shell;
+using test::spawned;
 using test::write_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -43,7 +43,7 @@ std::string run_mine(const std::string& command, const std::string& more = "") {
 }
 
 json result_in(const std::string& arguments, const fs::path& file) {
-  const Outcome outcome = program(arguments + " --json " + file.string());
+  const Outcome outcome = spawned(arguments + " --json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
 }
@@ -83,16 +83,16 @@ TEST(MethodCommand, WhatOursFoundComesBackAsItIs) {
 }
 
 TEST(MethodCommand, AFailureIsTheWindowsAndSaysWhy) {
-  const Outcome bad = program(run_mine("read w; echo '{}'; cat"));
+  const Outcome bad = spawned(run_mine("read w; echo '{}'; cat"));
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.out, HasSubstr("mine: answer 1: cameras: is missing"));
-  const Outcome ended = program(run_mine("echo no module >&2; exit 1"));
+  const Outcome ended = spawned(run_mine("echo no module >&2; exit 1"));
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_EQ(ended.err, "mine: no module\n") << "what it says is shown";
   EXPECT_THAT(ended.out, HasSubstr("mine: ended with exit code 1 before answer 1: no module"));
-  const Outcome late = program(run_mine("sleep 1000", "--method-timeout 0.3"));
+  const Outcome late = spawned(run_mine("sleep 1000", "--method-timeout 0.3"));
   EXPECT_THAT(late.out, HasSubstr("mine: no answer 1 within 0.3 s"));
-  const Outcome much = program(run_mine("head -c 2000000000 /dev/zero"));
+  const Outcome much = spawned(run_mine("head -c 2000000000 /dev/zero"));
   EXPECT_EQ(much.exit_code, 1);
   EXPECT_THAT(much.out, HasSubstr("mine: answer 1 is longer than 8 MiB"));
   EXPECT_LT(much.peak_kib, 1 << 19);
@@ -109,7 +109,7 @@ TEST(MethodCommand, WhatCannotBeMeantIsRefused) {
            BadInput{run + " --method-command m=cat --method-timeout 0", "--method-timeout"},
            BadInput{run + " --method m", "--method: unknown value 'm', expected one of gpo"},
        })
-    expect_refused(program(bad.arguments), bad, folder);
+    expect_refused(spawned(bad.arguments), bad, folder);
 }
 
 // Every second window's process is killed in the middle of its answer; the others fail, too, but
@@ -119,7 +119,7 @@ TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
   write_file(folder / "mine.sh",
              "read w; echo '{\"failed\": \"said so\"}'; read w; printf '{\"cam'; kill -9 $$\n");
   const auto evaluate = [&] {
-    return program(fmt::format(
+    return spawned(fmt::format(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:30:10 --jobs 1 --output {} "
         "--method-command mine='sh {}'",
         desk().string(),
@@ -146,7 +146,7 @@ TEST(MethodCommand, ItStandsInTheComparisonAndTheCurves) {
       result_in("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
   write_file(folder / "answer", answer_of(ours) + "\n");
   for (const std::string view : {"compare", "curves --lengths 10"}) {
-    const Outcome outcome = program(fmt::format(
+    const Outcome outcome = spawned(fmt::format(
         "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
         "mine=\"read w; cat '{}'\"",
         desk().string(),
@@ -163,7 +163,7 @@ TEST(MethodCommand, ItStandsInTheComparisonAndTheCurves) {
 fs::path session_with_command(const fs::path& folder) {
   const fs::path session = folder / "session.json", script = folder / "save.txt";
   write_file(script, "save-session " + session.string() + "\n");
-  const Outcome outcome = program(fmt::format(
+  const Outcome outcome = spawned(fmt::format(
       "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; cat\"",
       desk().string(),
       script.string(),
@@ -181,16 +181,16 @@ TEST(MethodCommand, ASessionStartsNoneUnlessThatIsAllowed) {
   ASSERT_EQ(saved["method_commands"].size(), 1U);
   EXPECT_THAT(saved["method_commands"][0].get<std::string>(), testing::StartsWith("mine=touch "));
   write_file(script, "open " + session.string() + "\n");
-  const Outcome without = program("snapshot --script " + script.string());
+  const Outcome without = spawned("snapshot --script " + script.string());
   EXPECT_EQ(without.exit_code, 0) << without.err;
   EXPECT_THAT(without.err,
               AllOf(HasSubstr("mine: not started: only a session names its command (touch "),
                     HasSubstr("--allow-commands starts it")));
   EXPECT_FALSE(fs::exists(folder / "started"));
-  EXPECT_EQ(program("snapshot --allow-commands --script " + script.string()).exit_code, 0);
+  EXPECT_EQ(spawned("snapshot --allow-commands --script " + script.string()).exit_code, 0);
   EXPECT_TRUE(fs::exists(folder / "started"));
   EXPECT_TRUE(fs::remove(folder / "started"));
-  const Outcome other = program("snapshot --method-command mine=cat --script " + script.string());
+  const Outcome other = spawned("snapshot --method-command mine=cat --script " + script.string());
   EXPECT_EQ(other.err, "") << "what the command line says of a name is what counts";
   EXPECT_FALSE(fs::exists(folder / "started"));
 }
@@ -207,7 +207,7 @@ TEST(MethodCommand, ASessionsBadCommandsAreRefused) {
     json bad = good;
     bad["method_commands"] = commands;
     write_file(session, bad.dump());
-    const Outcome outcome = program("snapshot --allow-commands --script " + script.string());
+    const Outcome outcome = spawned("snapshot --allow-commands --script " + script.string());
     EXPECT_EQ(outcome.exit_code, 2) << commands;
     EXPECT_THAT(outcome.err, HasSubstr(message));
   }
@@ -220,7 +220,7 @@ TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
   json saved = json::parse(read_file(session));
   saved["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
   write_file(session, saved.dump());
-  const Outcome outcome = program("snapshot --script " + script.string());
+  const Outcome outcome = spawned("snapshot --script " + script.string());
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("which a question can show"));
 }
@@ -228,7 +228,7 @@ TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
 TEST(MethodCommand, ShardsAreMergedWithoutIt) {
   const fs::path folder = fresh_folder();
   for (int k = 1; k <= 2; ++k) {
-    const Outcome shard = program(fmt::format(
+    const Outcome shard = spawned(fmt::format(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
         "--method-command mine='read w; echo no >&2'",
         desk().string(),
@@ -236,7 +236,7 @@ TEST(MethodCommand, ShardsAreMergedWithoutIt) {
         (folder / "shards").string()));
     EXPECT_EQ(shard.exit_code, 0) << shard.err;
   }
-  const Outcome merged = program(fmt::format(
+  const Outcome merged = spawned(fmt::format(
       "evaluate --merge {} --output {}", (folder / "shards").string(), (folder / "out").string()));
   EXPECT_EQ(merged.exit_code, 0) << merged.err;
   EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
@@ -262,7 +262,7 @@ TEST(OpencvInitializer, SolvesTheRoom) {
   const fs::path room = fs::path(GPO_SHARED_DIR) / "data/euroc-room";
   if (!fs::exists(room)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const fs::path folder = fresh_folder();
-  const Outcome outcome = program(fmt::format(
+  const Outcome outcome = spawned(fmt::format(
       "evaluate {} --methods gpo_joint,opencv --lengths 20 --starts 0:40:10 --output {} {}",
       room.string(),
       folder.string(),
@@ -279,7 +279,7 @@ TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
   for (const fs::path& recording : {desk(), room}) {
     if (!fs::exists(recording)) continue;
     const Outcome outcome =
-        program(fmt::format("run {} --frames 20 --method checked --method-command checked='{} "
+        spawned(fmt::format("run {} --frames 20 --method checked --method-command checked='{} "
                             "{}/tests/app/checked_initializer.py'",
                             recording.string(),
                             kDebiansPython,

@@ -12,12 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-// In the order of the patterns of movement; the last one is to be refused.
-const std::string kNine =
-    "sequences/sideways.yaml sequences/orbit.yaml sequences/approach.yaml sequences/diagonal.yaml "
-    "sequences/up-down.yaml sequences/wander.yaml sequences/fast-arc.yaml "
-    "sequences/low-parallax.yaml sequences/rotation-dominant.yaml";
-
 /// Errors that no method exceeds by much where there is enough parallax: those of drifting tracks,
 /// some three times what was seen.
 constexpr double kMostPne_deg = 6;
@@ -25,14 +19,16 @@ constexpr double kMostAte_m = 0.006;
 
 // Synthesizes the recordings where that has not been done yet, which takes some minutes.
 TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotationWithAReason) {
+  const std::vector<std::string> names = test::rendered_recordings();
+  std::string recipes;
+  for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
   const fs::path folder = test::fresh_folder() / "evaluation";
   const test::Outcome outcome = test::program(
-      "evaluate " + kNine + " --lengths 30 --starts 0:30:30 --output " + folder.string());
+      "evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Experiment experiment = read_experiment(folder);
-  EXPECT_EQ(experiment.recordings.size(), 9U);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
-  EXPECT_EQ(rows.size(), std::size_t{9} * 2 * experiment.configurations.size());
+  EXPECT_EQ(rows.size(), names.size() * 2 * experiment.configurations.size());
   EXPECT_GE(experiment.configurations.size(), methods().size() + 4);
   for (const Row& row : rows) {
     SCOPED_TRACE(row.recording + " " + row.configuration);

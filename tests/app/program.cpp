@@ -2,18 +2,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/app/program.h"
 
+#include "app/main_with_errors.h"
+#include "tests/engine/peak_memory.h"
+
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <opencv2/core/utility.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <wordexp.h>
 
 namespace gpo::test {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Files for the two outputs of the running test's command.
+struct OutputFiles {
+  std::string out, err;
+};
+
+OutputFiles output_files() {
+  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string(info->test_suite_name()) + "-" + info->name();
+  std::ranges::replace(name, '/', '_');
+  fs::create_directories(GPO_TEST_OUTPUT_DIR);
+  const std::string log = fs::path(GPO_TEST_OUTPUT_DIR) / name;
+  return {log + ".out", log + ".err"};
+}
+
+/// While it lives, what is printed to the stream goes into the file.
+class Redirection {
+ public:
+  Redirection(std::FILE* stream, const std::string& file) : stream_(stream) {
+    std::fflush(stream_);
+    before_ = fcntl(fileno(stream_), F_DUPFD_CLOEXEC, 3);
+    const int to = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    dup2(to, fileno(stream_));
+    close(to);
+  }
+  ~Redirection() {
+    std::fflush(stream_);
+    dup2(before_, fileno(stream_));
+    close(before_);
+  }
+  Redirection(const Redirection&) = delete;
+  Redirection& operator=(const Redirection&) = delete;
+
+ private:
+  std::FILE* stream_;
+  int before_;
+};
+
+}  // namespace
 
 std::string read_file(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -38,12 +88,7 @@ fs::path fresh_folder() {
 }
 
 Outcome shell(const std::string& command) {
-  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  const fs::path log =
-      fs::path(GPO_TEST_OUTPUT_DIR) / (std::string(info->test_suite_name()) + "-" + info->name());
-  fs::create_directories(log.parent_path());
-  const std::string out = log.string() + ".out";
-  const std::string err = log.string() + ".err";
+  const auto [out, err] = output_files();
   const std::string line = "cd '" GPO_SOURCE_DIR "' && unset DISPLAY WAYLAND_DISPLAY && { " +
                            command + " ; } > '" + out + "' 2> '" + err + "' < /dev/null";
   const pid_t child = fork();
@@ -58,7 +103,31 @@ Outcome shell(const std::string& command) {
       WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err), used.ru_maxrss};
 }
 
-Outcome program(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }
+Outcome spawned(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }
+
+Outcome program(const std::string& arguments) {
+  wordexp_t words{};
+  const std::string line = "gpo-inspector " + arguments;
+  if (wordexp(line.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) != 0) {
+    ADD_FAILURE() << "only a shell runs this, use spawned(): " << arguments;
+    return {-1, "", ""};
+  }
+  const auto [out, err] = output_files();
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  fs::current_path(GPO_SOURCE_DIR);
+  const PeakMemory memory;
+  int exit_code = -1;
+  {
+    const Redirection to_out(stdout, out), to_err(stderr, err);
+    exit_code = main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv);
+    std::cout.flush();
+  }
+  const long peak_kib = memory.kib();
+  wordfree(&words);
+  cv::setNumThreads(-1);  // `evaluate` leaves one
+  return {exit_code, read_file(out), read_file(err), peak_kib};
+}
 
 std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
   return stream << bad.arguments;
@@ -72,5 +141,18 @@ void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path&
 }
 
 fs::path desk() { return fs::path(GPO_SOURCE_DIR) / "sequences/desk"; }
+
+std::vector<std::string> rendered_recordings() {
+  if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) return {"orbit", "wander", "rotation-dominant"};
+  return {"sideways",
+          "orbit",
+          "approach",
+          "diagonal",
+          "up-down",
+          "wander",
+          "fast-arc",
+          "low-parallax",
+          "rotation-dominant"};
+}
 
 }  // namespace gpo::test

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace gpo::test {
 
@@ -12,13 +13,19 @@ struct Outcome {
   int exit_code;
   std::string out;
   std::string err;
-  long peak_kib = 0;  ///< the most memory that it held
+  long peak_kib = 0;  ///< the most memory that it took
 };
 
 /// Runs a shell command in the source folder, without a display.
 Outcome shell(const std::string& command);
 
-/// Runs `gpo-inspector ARGUMENTS` that way.
+/// Runs `gpo-inspector ARGUMENTS` that way, as a process of its own. Needed for signals,
+/// redirections, limits, peaks that are compared, and methods of the user's, which a process
+/// registers once.
+Outcome spawned(const std::string& arguments);
+
+/// Runs `gpo-inspector ARGUMENTS` in this process, in the source folder and without a display.
+/// Words are quoted as in a shell, which none runs.
 Outcome program(const std::string& arguments);
 
 /// Arguments that the program refuses, and what its one line must say.
@@ -41,5 +48,10 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// The bundled recording.
 std::filesystem::path desk();
+
+/// Names of the recipes in sequences/ that tests initialize: one of easy motion, one with a rolling
+/// shutter and one that is to be refused; all nine where GPO_ALL_RECORDINGS is set, as
+/// tests/nightly.sh does.
+std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test

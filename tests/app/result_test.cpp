@@ -18,8 +18,8 @@ using test::BadInput;
 using test::desk;
 using test::fresh_folder;
 using test::Outcome;
-using test::program;
 using test::read_file;
+using test::spawned;
 using test::write_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -30,7 +30,7 @@ const std::string kOrb = "--result orb=" + kFolder + "/CameraTrajectory.txt";
 
 json result_of(const std::string& arguments, const fs::path& folder) {
   const fs::path file = folder / "result.json";
-  const Outcome outcome = program("run " + arguments + " --json " + file.string());
+  const Outcome outcome = spawned("run " + arguments + " --json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
 }
@@ -48,7 +48,7 @@ TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
 }
 
 TEST(Result, WhatIsReadIsSaidOnce) {
-  const Outcome outcome = program("run " + desk().string() + " --method orb " + kOrb);
+  const Outcome outcome = spawned("run " + desk().string() + " --method orb " + kOrb);
   EXPECT_EQ(outcome.err,
             "orb: TUM with nanoseconds, the camera's poses; 28 of the window's 30 frames, the "
             "others resected; plane through what its cameras triangulate\n");
@@ -59,7 +59,7 @@ TEST(Result, OurOwnTrajectoryComesBack) {
   const fs::path folder = fresh_folder();
   for (const std::string format : {"tum", "euroc", "kitti"}) {
     const fs::path file = folder / format, points = folder / "points.ply";
-    ASSERT_EQ(program(fmt::format("run {} --frames 10 --trajectory {} --trajectory-format {} "
+    ASSERT_EQ(spawned(fmt::format("run {} --frames 10 --trajectory {} --trajectory-format {} "
                                   "--points {}",
                                   desk().string(),
                                   file.string(),
@@ -85,11 +85,11 @@ TEST(Result, ItStandsInTheComparisonTheCurvesAndTheExperiment) {
   const std::string both =
       fmt::format("{} --methods gpo,colmap,orb {} {}", desk().string(), kColmap, kOrb);
   const Outcome compare =
-      program("snapshot " + both + " --view compare --output " + (folder / "compare.png").string());
+      spawned("snapshot " + both + " --view compare --output " + (folder / "compare.png").string());
   EXPECT_EQ(compare.exit_code, 0) << compare.err;
   EXPECT_GT(fs::file_size(folder / "compare.png"), 100'000U);
   const Outcome evaluate =
-      program("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
+      spawned("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
               (folder / "out").string());
   EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
   EXPECT_THAT(
@@ -103,7 +103,7 @@ TEST(Result, ASessionBringsIt) {
   const fs::path session = folder / "session.json", script = folder / "script.txt";
   write_file(script, "save-session " + session.string() + "\n");
   ASSERT_EQ(
-      program(
+      spawned(
           fmt::format(
               "snapshot {} --method orb {} --script {}", desk().string(), kOrb, script.string()))
           .exit_code,
@@ -112,7 +112,7 @@ TEST(Result, ASessionBringsIt) {
             json::array({"orb=" + kFolder + "/CameraTrajectory.txt"}));
   const fs::path result = folder / "result.json";
   write_file(script, fmt::format("open {}\nexport result {}\n", session.string(), result.string()));
-  const Outcome outcome = program("snapshot --script " + script.string());
+  const Outcome outcome = spawned("snapshot --script " + script.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const json opened = json::parse(read_file(result));
   EXPECT_EQ(opened["method"], "orb");
@@ -131,7 +131,7 @@ TEST(Result, BadFilesAreRefusedBeforeAnythingIsDone) {
            BadInput{run + "it=" + folder.string(), "found neither images.bin nor images.txt"},
            BadInput{run + "it=" + bad.string() + ",frame=wheel", "wheel"},
        }) {
-    const Outcome outcome = program(one.arguments);
+    const Outcome outcome = spawned(one.arguments);
     EXPECT_EQ(outcome.exit_code, 2) << one;
     EXPECT_THAT(outcome.err, HasSubstr(one.message));
     EXPECT_FALSE(fs::exists(json)) << one;

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # A newcomer's tour of the real window by mouse and keyboard, in a display of its own:
-#   xvfb-run -s '-screen 0 1920x1080x24' tour_window.sh PROGRAM RECORDING OTHER_RECORDING [WIDTHxHEIGHT [COMMANDS]]
+#   ../with_display.sh 1920x1080 tour_window.sh PROGRAM RECORDING OTHER_RECORDING [WIDTHxHEIGHT [COMMANDS]]
 # in an empty folder, where it leaves a picture of each stop to be looked at. OTHER_RECORDING is dropped on
 # the window; COMMANDS are typed at 10 ms a key. Says what it expected where it was disappointed, and ends with 1.
 set -u

@@ -10,17 +10,18 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A script beside this file, in a display and a folder of its own.
+/// Runs a script of this folder in a display and a working folder of its own.
 Outcome driven(const std::string& script, const std::string& arguments) {
   return shell("cd '" + fresh_folder().string() +
-               "' && xvfb-run -a -s '-screen 0 1920x1080x24' '" GPO_SOURCE_DIR "/tests/app/" +
+               "' && '" GPO_SOURCE_DIR "/tests/with_display.sh' 1920x1080 '" GPO_SOURCE_DIR
+               "/tests/app/" +
                script + "' '" GPO_PROGRAM "' '" + desk().string() + "' " + arguments);
 }
 
 class RealWindow : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* tool : {"xvfb-run", "xdotool", "import"})
+    for (const char* tool : {"Xvfb", "xdotool", "import"})
       if (shell(std::string("command -v ") + tool).exit_code != 0)
         GTEST_SKIP() << tool << " is not installed";
     if (!std::filesystem::exists(desk())) GTEST_SKIP() << "no bundled recording";
@@ -44,7 +45,7 @@ TEST_F(RealWindow, IsToured) {
 }
 
 TEST(View, WithoutADisplaySaysWhatWorksWithoutOne) {
-  const Outcome outcome = program("view");
+  const Outcome outcome = spawned("view");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("display"));
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));

@@ -3,11 +3,9 @@
 // What a user's own method answers.
 #include "engine/commands/answer.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  gpo::fuzz::parse([&] {
-    gpo::read_answer(gpo::fuzz::bytes_of(data, size),
-                     {.id = 1, .frames = 2, .tracks = 4, .planes = 2});
-  });
-  return 0;
+void gpo::fuzz::fuzz_answer(std::string_view bytes) {
+  gpo::fuzz::parse(
+      [&] { gpo::read_answer(bytes, {.id = 1, .frames = 2, .tracks = 4, .planes = 2}); });
 }

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/calibration_file.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
+void gpo::fuzz::fuzz_calibration(std::string_view bytes) {
+  const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] { gpo::read_calibration(file); });
-  return 0;
 }

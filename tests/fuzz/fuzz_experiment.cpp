@@ -4,15 +4,14 @@
 // file of one window.
 #include "engine/experiment/window_files.h"
 #include "tests/fuzz/fuzzed_folder.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const gpo::fuzz::Folder folder(gpo::fuzz::bytes_of(data, size),
-                                 {"experiment.json", "windows/desk-0-30.json"});
+void gpo::fuzz::fuzz_experiment(std::string_view bytes) {
+  const gpo::fuzz::Folder folder(bytes, {"experiment.json", "windows/desk-0-30.json"});
   gpo::fuzz::parse([&] {
     gpo::Experiment experiment = gpo::read_experiment(folder.path());
     if (experiment.recordings.empty()) return;
     experiment.recordings[0].name = "desk";
     gpo::load_window(folder.path(), experiment, {.recording = 0, .start = 0, .lengths = {30}}, 30);
   });
-  return 0;
 }

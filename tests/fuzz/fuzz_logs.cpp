@@ -8,17 +8,9 @@
 #include "engine/recording/loggers/telemetry_track.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/fuzzed_folder.h"
+#include "tests/fuzz/targets.h"
 
 #include <vector>
-
-extern "C" {
-#include <libavutil/log.h>
-}
-
-extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
-  av_log_set_level(AV_LOG_QUIET);
-  return 0;
-}
 
 namespace {
 
@@ -40,11 +32,12 @@ void read_folder(std::string_view bytes) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string_view bytes = gpo::fuzz::bytes_of(data + 1, size - 1);
+void gpo::fuzz::fuzz_logs(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const char kind = bytes[0];
+  bytes.remove_prefix(1);
   gpo::fuzz::parse([&] {
-    switch (data[0]) {
+    switch (kind) {
       case 'g':
         read_gpmf(bytes);
         break;
@@ -75,5 +68,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         read_folder(bytes);
     }
   });
-  return 0;
 }

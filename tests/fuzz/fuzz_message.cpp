@@ -4,14 +4,15 @@
 #include "engine/recording/bags/bag_picture.h"
 #include "engine/recording/bags/messages.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
 #include <array>
-#include <iostream>
 #include <string>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  std::cerr.setstate(std::ios::failbit);  // OpenCV would tell each failure
+void gpo::fuzz::fuzz_message(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const char kind = bytes[0];
+  bytes.remove_prefix(1);
   constexpr std::array<const char*, 10> kTypes = {"sensor_msgs/Image",
                                                   "sensor_msgs/CompressedImage",
                                                   gpo::kCameraInfoType,
@@ -22,12 +23,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                   "geometry_msgs/TransformStamped",
                                                   "nav_msgs/Odometry",
                                                   "std_msgs/String"};
-  const std::size_t kind = data[0] % (2 * kTypes.size());
-  const bool cdr = kind >= kTypes.size();
+  const std::size_t choice = static_cast<unsigned char>(kind) % (2 * kTypes.size());
+  const bool cdr = choice >= kTypes.size();
   const gpo::MessageEncoding encoding =
       cdr ? gpo::MessageEncoding::cdr : gpo::MessageEncoding::ros1;
-  const std::string type = kTypes[kind % kTypes.size()];
-  const auto bytes = gpo::fuzz::bytes_of(data + 1, size - 1);
+  const std::string type = kTypes[choice % kTypes.size()];
   gpo::fuzz::parse([&] {
     gpo::read_header(bytes, encoding);
     gpo::read_imu(bytes, encoding);
@@ -38,5 +38,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto info = gpo::read_camera_info(bytes, encoding);
     if (info && gpo::is_calibrated(*info)) gpo::camera_of(*info, "camera");
   });
-  return 0;
 }

@@ -4,12 +4,14 @@
 #include "engine/results/colmap_model.h"
 #include "engine/results/result_poses.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string_view bytes = gpo::fuzz::bytes_of(data + 1, size - 1);
+void gpo::fuzz::fuzz_poses(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const char kind = bytes[0];
+  bytes.remove_prefix(1);
   gpo::fuzz::parse([&] {
-    switch (data[0]) {
+    switch (kind) {
       case 'b':
         gpo::read_colmap_images("images.bin", bytes);
         break;
@@ -29,5 +31,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gpo::read_result_poses(gpo::fuzz::file_of(bytes));
     }
   });
-  return 0;
 }

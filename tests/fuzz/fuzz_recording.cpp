@@ -4,9 +4,10 @@
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/fuzz/fuzzed_folder.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const gpo::fuzz::Folder folder(gpo::fuzz::bytes_of(data, size),
+void gpo::fuzz::fuzz_recording(std::string_view bytes) {
+  const gpo::fuzz::Folder folder(bytes,
                                  {"cam0/data.csv",
                                   "cam0/sensor.yaml",
                                   "cam0/data/0.pgm",
@@ -35,5 +36,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto recording = gpo::open_recording(folder.path(), {});
     gpo::to_text(gpo::describe(*recording));
   });
-  return 0;
 }

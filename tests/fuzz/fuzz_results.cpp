@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/results_file.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
+void gpo::fuzz::fuzz_results(std::string_view bytes) {
+  const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] { gpo::read_results(file); });
-  return 0;
 }

@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 #include "ui/workbench/session/session_file.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
+void gpo::fuzz::fuzz_session(std::string_view bytes) {
+  const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] { gpo::read_session(file); });
-  return 0;
 }

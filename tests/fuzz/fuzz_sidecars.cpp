@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/sidecar_files.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
+void gpo::fuzz::fuzz_sidecars(std::string_view bytes) {
+  const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] { gpo::read_board(file); });
   gpo::fuzz::parse([&] { gpo::read_plane(file); });
-  return 0;
 }

@@ -5,14 +5,17 @@
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/layouts.h"
 #include "tests/fuzz/fuzzed_file.h"
+#include "tests/fuzz/targets.h"
 
 constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data + 1, size - 1));
+void gpo::fuzz::fuzz_tables(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const char kind = bytes[0];
+  bytes.remove_prefix(1);
+  const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] {
-    switch (data[0]) {
+    switch (kind) {
       case 'g':
         gpo::read_gyroscope(file, gpo::TimeUnit::by_sample_rate);
         break;
@@ -37,5 +40,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
   });
-  return 0;
 }

@@ -5,8 +5,8 @@
 #include "engine/base/error.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 #include <sys/mman.h>
@@ -36,8 +36,7 @@ void parse(const std::function<void()>& parser) {
   } catch (const InputError& error) {
     const std::string_view message = error.what();
     if (message.size() <= kLongestMessage && std::ranges::none_of(message, is_control)) return;
-    std::fprintf(stderr, "not a line to print: %s\n", error.what());
-    std::abort();
+    throw std::runtime_error(std::string("not a line to print: ") + error.what());
   }
 }
 

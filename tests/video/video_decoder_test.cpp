@@ -73,7 +73,7 @@ TEST(VideoDecoder, GivesOpenCvsPixelsOfRealVideos) {
   for (const char* name : {"chessboard-floor", "chessboard-dark", "painting", "postcard"}) {
     SCOPED_TRACE(name);
     const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data" / name / "video.mp4";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "the recordings are not on this machine";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
     cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
     VideoDecoder sequential(file);
     const int frames = static_cast<int>(sequential.index().times.size());

@@ -8,6 +8,10 @@ import numpy
 import yaml
 
 
+# A truth without sensor.yaml is the body's.
+BODY = {"T_BS": {"data": numpy.eye(4).ravel().tolist()}}
+
+
 def load_yaml(file):
     text = file.read_text()
     return yaml.safe_load(text.replace("%YAML:1.0", "")) or {}
@@ -60,7 +64,7 @@ def messages(folder, pictures):
     mav = pathlib.Path(folder) / "mav0"
     cam, imu = load_yaml(mav / "cam0/sensor.yaml"), load_yaml(mav / "imu0/sensor.yaml")
     truth = mav / "state_groundtruth_estimate0"
-    measured = load_yaml(truth / "sensor.yaml")
+    measured = load_yaml(truth / "sensor.yaml") if (truth / "sensor.yaml").exists() else BODY
     fx, fy, cx, cy = cam["intrinsics"]
     width, height = cam["resolution"]
     frames = rows(mav / "cam0/data.csv")

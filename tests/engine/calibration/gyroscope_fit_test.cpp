@@ -159,7 +159,7 @@ class RealGyroscope : public testing::Test {
   /// Skips the test where the recording is not on this machine.
   void open(const std::string& name) {
     const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << name << " is not on this machine";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
     recording_ = open_recording(folder);
     windows_ = rotations_over_recording(recording_);
   }

@@ -1,10 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Gravity and meters of a real flight, beside motion capture.
+// Gravity and meters of a real flight, beside motion capture, and of a rendered room.
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/synthesis/small_recipe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +18,13 @@
 namespace gpo {
 namespace {
 
-class InertialRoom : public testing::Test {
+class InertialRoom : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / "euroc-room";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the recording is not on this machine";
+    const bool real = GetParam();
+    const auto folder =
+        real ? std::filesystem::path(GPO_SHARED_DIR) / "data/euroc-room" : small_room();
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
     inspector_ = std::make_unique<Inspector>(open_recording(folder));
   }
   std::shared_ptr<const Inspection> inspected(const Settings& settings) {
@@ -30,7 +33,11 @@ class InertialRoom : public testing::Test {
   std::unique_ptr<Inspector> inspector_;
 };
 
-TEST_F(InertialRoom, TwoSecondsTellGravityAndMeters) {
+INSTANTIATE_TEST_SUITE_P(Recordings, InertialRoom, testing::Bool(), [](const auto& info) {
+  return info.param ? "Real" : "Rendered";
+});
+
+TEST_P(InertialRoom, TwoSecondsTellGravityAndMeters) {
   std::vector<double> errors_percent;
   for (const int start : {0, 5, 10, 15, 20}) {
     const auto inspection = inspected({.start = start, .frames = 40});
@@ -48,7 +55,7 @@ TEST_F(InertialRoom, TwoSecondsTellGravityAndMeters) {
   EXPECT_LT(errors_percent[2], 5);
 }
 
-TEST_F(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
+TEST_P(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
   int tried = 0;
   for (int start = 0; start <= 40; start += 5) {
     const auto inspection = inspected({.start = start, .frames = 20});
@@ -64,7 +71,7 @@ TEST_F(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
   EXPECT_GE(tried, 6);
 }
 
-TEST_F(InertialRoom, OffIsOffAndMovesNothingElse) {
+TEST_P(InertialRoom, OffIsOffAndMovesNothingElse) {
   const Settings on{.start = 20, .frames = 20};
   const auto with = inspected(on);
   const auto without = inspected(with_setting(on, "gravity", "off"));
@@ -75,7 +82,7 @@ TEST_F(InertialRoom, OffIsOffAndMovesNothingElse) {
 }
 
 // What accelerations add is less than what the pictures leave open, and never makes it larger.
-TEST_F(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
+TEST_P(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
   for (const int frames : {20, 40}) {
     for (const int start : {0, 10, 20}) {
       const Settings settings{.start = start, .frames = frames};
@@ -97,7 +104,7 @@ TEST_F(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
 }
 
 // The others' uncertainty is not that of the problem that they solved.
-TEST_F(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
+TEST_P(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
   const Settings after{.start = 20, .frames = 20, .method = "ba"};
   const auto joint = inspected(with_setting(after, "gravity", "joint"));
   ASSERT_TRUE(joint->inertial && joint->inertial->ok);

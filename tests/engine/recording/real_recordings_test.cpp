@@ -28,7 +28,7 @@ class RealRecordings : public testing::Test {
 };
 
 #define SKIP_IF_ABSENT(recording) \
-  if (!(recording)) GTEST_SKIP() << "the recording is not on this machine"
+  if (!(recording)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR
 
 TEST_F(RealRecordings, ChessboardFloorHasTruthInEveryFrame) {
   const auto recording = open("chessboard-floor");

@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include "engine/synthesis/synthesized.h"
+
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+#include <unistd.h>
 
 namespace gpo {
 
@@ -52,6 +58,33 @@ std::string small_recipe_with(const std::string& from, const std::string& to) {
   const std::size_t place = text.find(from);
   if (place == std::string::npos) throw std::logic_error("not in the small recipe: " + from);
   return text.replace(place, from.size(), to);
+}
+
+std::filesystem::path small_room(double readout_s) {
+  namespace fs = std::filesystem;
+  std::ostringstream corner;
+  corner << std::ifstream(GPO_SOURCE_DIR "/sequences/companions/corner.yaml").rdbuf();
+  std::string text = corner.str();
+  for (const auto& [from, to] : {
+           std::pair<std::string, std::string>{"[640, 480]", "[320, 240]"},
+           {"[498.2, 497.6, 322.4, 238.1]", "[249.1, 248.8, 160.95, 118.8]"},
+           {"count: 90", "count: 60"},
+           {"samples: 3 ", "samples: 2 "},
+           {"  exposure:", "  rolling_shutter: " + std::to_string(readout_s) + "\n  exposure:"},
+       }) {
+    const std::size_t place = text.find(from);
+    if (place == std::string::npos) throw std::logic_error("not in the corner's recipe: " + from);
+    text.replace(place, from.size(), to);
+  }
+  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "rooms";
+  const fs::path recipe =
+      folder / ("room-" + std::to_string(std::hash<std::string>{}(text)) + ".yaml");
+  fs::create_directories(folder);
+  // Other tests that start at the same time find all of it, or none.
+  const fs::path mine = recipe.string() + std::to_string(getpid());
+  std::ofstream(mine) << text;
+  fs::rename(mine, recipe);
+  return synthesized_recordings(std::span(&recipe, 1), folder, 2).front();
 }
 
 std::filesystem::path test_folder(const std::string& name) {

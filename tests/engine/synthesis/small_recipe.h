@@ -18,6 +18,10 @@ std::string small_recipe_text();
 /// `small_recipe_text` with the first occurrence of `from` replaced.
 std::string small_recipe_with(const std::string& from, const std::string& to);
 
+/// The recording of sequences/companions/corner.yaml in a quarter of its pixels and two thirds of
+/// its frames, whose rows are read within `readout_s`. It is rendered once.
+std::filesystem::path small_room(double readout_s = 0);
+
 /// An empty folder of one test's own.
 std::filesystem::path test_folder(const std::string& name);
 

@@ -146,7 +146,7 @@ std::vector<std::string> sorted_messages(const Bag& bag) {
 /// Bags that are not ours to publish: one recording, compressed in three ways.
 TEST(RealBags, OfAllCompressionsAreTheSame) {
   const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
-  if (!fs::exists(folder)) GTEST_SKIP() << "the bags are not on this machine";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const auto plain = sorted_messages(open_bag(folder / "rosbagjs_example.bag"));
   EXPECT_EQ(plain.size(), 8647U);
   for (const char* name : {"rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
@@ -158,7 +158,7 @@ TEST(RealBags, OfAllCompressionsAreTheSame) {
 
 TEST(RealBags, OfRos2HaveTheSameMessagesInBothContainers) {
   const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
-  if (!fs::exists(folder)) GTEST_SKIP() << "the bags are not on this machine";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const Bag mcap = open_bag(folder / "geocam.mcap");
   const Bag database = open_bag(folder / "geocam.db3");
   ASSERT_EQ(mcap.topics.size(), 94U);

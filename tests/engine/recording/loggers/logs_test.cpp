@@ -40,7 +40,7 @@ const std::string kImu =
     "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n"
     "1000.49, 0.1, 0.2, -0.9, 0.01, 0.02, 0.03\n1000.50, 0.1, 0.2, -0.9, 0.04, 0.05, 0.06\n";
 
-const std::string kFrames =
+const std::string kLoggedFrames =
     R"({"sensor":{"type":"accelerometer","values":[-0.038,9.12,-2.98]},"time":5.0}
 {"sensor":{"type":"gyroscope","values":[0.3,0.2,0.1]},"time":5.02}
 {"sensor":{"type":"gyroscope","values":[0.003,-0.17,0.016]},"time":5.01}
@@ -192,7 +192,7 @@ TEST_F(LoggedVideo, OfStrayScannerThatIsBrokenIsRefused) {
 TEST_F(LoggedVideo, OfSpectacularAiHasItsCalibrationClockAndAxes) {
   video("data.mp4", false);
   video("data2.mp4", false);  // a second camera
-  folder.write("data.jsonl", kFrames);
+  folder.write("data.jsonl", kLoggedFrames);
   folder.write("calibration.json", kSpectacular);
   const auto recording = open();
   EXPECT_EQ(recording->camera.fx, 60.5);

@@ -1,0 +1,115 @@
+#!/usr/bin/env bash
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Runs what is too slow for ./test.sh and prints one line a part: its name, passed, failed or skipped with the
+# reason, and its seconds.
+#   tests/nightly.sh            every part
+#   tests/nightly.sh PART...    these, in this order
+# Parts:
+#   fuzz      builds tests/fuzz under libFuzzer and mutates the inputs of each parser
+#   asan      all tests with the address and undefined-behavior sanitizers
+#   tsan      the tests that start threads, with the thread sanitizer
+#   monkey    many turns of the monkey in the window
+#   nine      all nine rendered recordings by every method
+#   packages  builds, installs and uses the Debian packages; as root, since it changes the machine
+#   arm64     compiles the engine for arm64
+# JOBS=n builds and runs n at a time; default: the number of processors. Logs are in build/nightly/PART.log. The
+# exit code is 1 if a part failed.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source .ci/install.sh
+export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
+all=(nine monkey fuzz asan tsan arm64 packages)
+logs=$PWD/build/nightly
+kSkipped=77
+
+# skip REASON: ends the part.
+skip() { echo "$1" >"$logs/reason"; exit "$kSkipped"; }
+
+# What ./test.sh builds.
+build_ci() {
+  cmake --preset ci && cmake --build --preset ci --parallel "$JOBS"
+}
+
+# Target and mutations: so many that each takes about a minute.
+mutations="answer 100000  bag 15000  calibration 50000  experiment 25000  logs 50000  message 100000  picture 100000
+  poses 100000  recipe 30000  recording 2500  results 75000  script 25000  session 50000  sidecars 50000  tables 150000
+  video 10000"
+
+fuzz() {
+  install_packages "${build_packages[@]}" "${sanitizer_packages[@]}"
+  cmake --preset fuzz && cmake --build --preset fuzz --parallel "$JOBS" || return 1
+  XDG_CACHE_HOME=$PWD/build/fuzz/cache xargs -P "$JOBS" -n 2 bash -c 'fuzz_target "$@"' _ <<<"$mutations"
+}
+fuzz_target() {
+  local target=$1 runs=$2 inputs=("tests/fuzz/seeds/$1") corpus=build/fuzz/corpus/$1
+  [ -d "tests/fuzz/crashes/$target" ] && inputs+=("tests/fuzz/crashes/$target")
+  mkdir -p "$corpus"
+  # Freed memory that the sanitizer keeps must not count as memory that a parser takes.
+  GPO_FUZZ_TARGET=$target ASAN_OPTIONS=quarantine_size_mb=64 build/fuzz/tests/fuzz/fuzz_parsers \
+    -rss_limit_mb=1024 -timeout=60 -runs="$runs" -max_len=4096 -artifact_prefix="build/nightly/$target-" \
+    "$corpus" "${inputs[@]}" && return
+  echo "FAILED: fuzz target $target"
+  return 1
+}
+export -f fuzz_target
+
+asan() { tests/sanitized.sh asan; }
+tsan() { tests/sanitized.sh tsan; }
+
+monkey() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build_ci || return 1
+  local seed
+  for seed in 1 2 3; do
+    XDG_CACHE_HOME=$PWD/build/ci/test-output/cache GPO_MONKEY_SEED=$seed GPO_MONKEY_TURNS=5000 build/ci/tests/monkey_tests || return 1
+  done
+}
+
+nine() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build_ci || return 1
+  GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|LiveRecordings'
+}
+
+packages() {
+  [ "$(id -u)" = 0 ] || skip "installs packages, which takes root"
+  tests/packages.sh
+}
+
+# Nothing is linked or run: Debian's VTK and OpenCV for arm64 cannot be installed beside this machine's. The layers
+# that take headers of Eigen, Ceres and fmt alone, which are the same for all processors, are compiled.
+arm64() {
+  [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64: the other parts are for it"
+  install_packages "${build_packages[@]}" g++-aarch64-linux-gnu
+  local headers=$PWD/build/nightly/arm64 name
+  mkdir -p "$headers"
+  for name in eigen3/Eigen eigen3/unsupported ceres fmt glog gflags; do
+    ln -sfn "/usr/include/$name" "$headers/${name#eigen3/}"
+  done
+  find engine/base engine/geometry engine/window engine/initializers engine/truth engine/evaluation engine/inertial \
+    -name '*.cpp' -print0 |
+    xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O1 -Wall -Wextra -Werror -I. -isystem "$headers" \
+      -S -o /dev/null
+}
+
+mkdir -p "$logs"
+parts=("$@")
+[ $# -gt 0 ] || parts=("${all[@]}")
+for part in "${parts[@]}"; do
+  [[ " ${all[*]} " = *" $part "* ]] || { echo "no part is called '$part'; choose of: ${all[*]}" >&2; exit 2; }
+done
+failed=0
+for part in "${parts[@]}"; do
+  begin=$SECONDS
+  : >"$logs/reason"
+  ("$part") >"$logs/$part.log" 2>&1
+  case $? in
+    0) result=passed ;;
+    "$kSkipped") result="skipped ($(cat "$logs/reason"))" ;;
+    *) result="failed (see build/nightly/$part.log)"; failed=1 ;;
+  esac
+  printf '%-9s %s, %d s\n' "$part" "$result" $((SECONDS - begin))
+done
+exit "$failed"
