@@ -5,7 +5,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
-install_packages "${build_packages[@]}" "${test_packages[@]}"
+install_packages "${build_packages[@]}" "${python_packages[@]}" "${test_packages[@]}"
 cd "$here"
 cmake --preset ci
 cmake --build --preset ci

@@ -1,5 +1,5 @@
 # Debian's packages by name, and how to install those that are missing. Sourced by run.sh,
-# test.sh and tests/benchmark/run.sh.
+# test.sh and tests/*.sh.
 
 build_packages=(
   g++ cmake ninja-build pkg-config
@@ -8,8 +8,8 @@ build_packages=(
   libyaml-cpp-dev libtinyxml2-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libexiv2-dev
-  python3-dev pybind11-dev python3-numpy
 )
+python_packages=(python3-dev pybind11-dev python3-numpy)
 test_packages=(
   libgtest-dev libgmock-dev xvfb xdotool imagemagick x11-apps python3-xlib
   # bags that we did not write

@@ -13,7 +13,7 @@ install_packages lintian
 if [ -n "$given" ]; then
   cp "$given"/*.deb .
 else
-  install_packages "${build_packages[@]}"
+  install_packages "${build_packages[@]}" "${python_packages[@]}"
   (cd "$here" && cmake --preset package && cmake --build --preset package)
   cpack --config "$here/build/package/CPackConfig.cmake"
 fi

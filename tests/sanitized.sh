@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
-install_packages "${build_packages[@]}" "${test_packages[@]}" "${sanitizer_packages[@]}"
+install_packages "${build_packages[@]}" "${python_packages[@]}" "${test_packages[@]}" "${sanitizer_packages[@]}"
 jobs=${JOBS:-$(nproc)}
 unreported=$PWD/tests/sanitizers
 

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The planes of a recording's first twenty frames, beside the picture and in 3-D:
 
-    PYTHONPATH=build/release/python python3 engine/examples/planes_of_a_room.py RECORDING [FIGURE.png]
+    PYTHONPATH=build/package/python python3 engine/examples/planes_of_a_room.py RECORDING [FIGURE.png]
 
 Cells begin with # %%, for editors that run them one by one. Needs python3-matplotlib.
 """

@@ -20,4 +20,8 @@ std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double m
   return skew <= kRounding ? M : nearest_rotation(M);
 }
 
+Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction) {
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
+}
+
 }  // namespace gpo

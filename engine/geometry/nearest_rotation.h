@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace gpo {
 
@@ -16,5 +17,9 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
 /// for rounding; nothing where an entry of M M^T is off by more than `most_skew`, or where M
 /// mirrors.
 std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
+
+/// Returns the smallest rotation that takes the z axis to `direction`. Compiled once: Eigen's
+/// FromTwoVectors brings a singular value decomposition with it.
+Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction);
 
 }  // namespace gpo

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may know whom: reads the includes of the whole tree.
+// Reads the includes of the whole tree and compares them with the layers that CMake declares.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +8,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,85 +22,24 @@ namespace {
 using testing::IsEmpty;
 using Names = std::vector<std::string>;
 
-/// A folder, and the folders whose headers its own files may include beside each other's. With a
-/// slash at the end: and all below it. A folder that is not here must not be.
-struct Room {
-  std::string folder;
-  Names may_include;
+/// The targets of CMake: which files they have and what they link. A source may include the headers
+/// of its own target and of all that this links, directly or through others.
+struct Layers {
+  std::map<std::string, std::string> target_of;  ///< a folder or file -> its target
+  std::map<std::string, std::set<std::string>> links;
 };
 
-// clang-format off
-const std::vector<Room> kRooms = {
-    {"engine/base", {}},
-    {"engine/geometry", {"engine/base"}},
-    {"engine/window", {"engine/base", "engine/geometry"}},
-    {"engine/truth", {"engine/geometry"}},
-    {"engine/initializers/common", {"engine/base", "engine/geometry", "engine/window"}},
-    {"engine/initializers/residuals", {"engine/geometry", "engine/initializers/common"}},
-    {"engine/initializers/plane", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/residuals"}},
-    {"engine/initializers/bundle", {"engine/geometry", "engine/initializers/common", "engine/initializers/residuals"}},
-    {"engine/initializers/candidates", {"engine/geometry", "engine/window", "engine/initializers/common"}},
-    {"engine/initializers/certainty", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/initializers/plane"}},
-    {"engine/initializers", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/"}},
-    {"engine/inertial", {"engine/base", "engine/geometry", "engine/window", "engine/initializers/common"}},
-    {"engine/evaluation", {"engine/geometry", "engine/window", "engine/truth", "engine/initializers/"}},
-    {"engine/frontend/tracking", {"engine/base", "engine/geometry", "engine/window"}},
-    {"engine/frontend", {"engine/base", "engine/geometry", "engine/window"}},
-    {"engine", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/inertial", "engine/frontend"}},
-    {"engine/initialize", {"engine", "engine/base", "engine/geometry", "engine/window", "engine/inertial", "engine/initializers", "engine/initializers/common", "engine/initializers/certainty", "engine/initializers/plane", "engine/frontend"}},
-    {"engine/files", {"engine/base"}},
-    {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},
-    {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
-    {"engine/recording/bags/containers", {"engine/base", "engine/files"}},
-    {"engine/recording/bags", {"engine/base", "engine/files", "engine/geometry", "engine/recording/pictures", "engine/recording/bags/containers"}},
-    {"engine/recording/board", {"engine/base", "engine/files", "engine/geometry", "engine/recording", "engine/recording/pictures"}},
-    {"engine/recording/loggers", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording", "engine/recording/pictures"}},
-    {"engine/recording/companions", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording", "engine/recording/board"}},
-    {"engine/recording/layouts", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/recording/"}},
-    {"engine/calibration/plane", {"engine/base", "engine/geometry"}},
-    {"engine/calibration/sights", {"engine/base", "engine/geometry", "engine/window", "engine/frontend/", "engine/calibration/plane"}},
-    {"engine/calibration", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend", "engine/recording/", "engine/calibration/"}},
-    {"engine/synthesis", {"engine/base", "engine/files", "engine/geometry", "engine/recording/"}},
-    {"engine/process", {}},
-    {"engine/commands", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/initializers/plane", "engine/process"}},
-    {"engine/results", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/commands", "engine/recording/companions"}},
-    {"engine/inspection/window", {"engine", "engine/initialize", "engine/initializers/common", "engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/frontend/", "engine/recording/"}},
-    {"engine/inspection/settings", {"engine/inertial", "engine", "engine/initialize", "engine/files", "engine/base", "engine/geometry", "engine/window", "engine/initializers/", "engine/frontend/", "engine/recording/", "engine/inspection/window"}},
-    {"engine/inspection", {"engine/inertial", "engine", "engine/initialize", "engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection/window", "engine/inspection/settings"}},
-    {"engine/inspection/studies", {"engine/base", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection"}},
-    {"engine/inspection/report", {"engine/inertial", "engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth", "engine/initializers/", "engine/evaluation", "engine/frontend/", "engine/recording/", "engine/inspection", "engine/inspection/settings"}},
-    {"engine/experiment", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/frontend/", "engine/initializers", "engine/recording/", "engine/inspection/"}},
-    {"ui/look", {"engine/geometry"}},
-    {"ui/context", {"engine/", "ui/look"}},
-    {"ui/views/overlay", {"engine/", "ui/look", "ui/context"}},
-    {"ui/views/model", {"engine/base", "ui/look"}},
-    {"ui/views/picture", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/model"}},
-    {"ui/views/scene", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/model", "ui/views/picture"}},
-    {"ui/views/charts", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/picture"}},
-    {"ui/views/figures", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/charts"}},
-    {"ui/views/compare", {"engine/", "ui/look", "ui/context", "ui/views/overlay", "ui/views/picture"}},
-    {"ui/views/normals", {"engine/", "ui/look", "ui/context", "ui/views/charts", "ui/views/overlay", "ui/views/picture", "ui/views/scene"}},
-    {"ui/views", {"engine/", "ui/look", "ui/context", "ui/views/"}},
-    {"ui/workbench", {"engine/", "ui/look"}},
-    {"ui/workbench/session", {"engine/", "ui/workbench"}},
-    {"ui/workbench/work", {"engine/", "ui/workbench", "ui/workbench/session"}},
-    {"ui/workbench/actions", {"engine/", "ui/look", "ui/workbench/"}},
-    {"ui/panels/facts", {"engine/", "ui/look", "ui/views/", "ui/workbench"}},
-    {"ui/panels", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels/facts"}},
-    {"ui/panels/drawers", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts"}},
-    {"ui/panels/timeline", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts"}},
-    {"ui/panels/panes", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts", "ui/panels/drawers"}},
-    {"ui/panels/frame", {"engine/", "ui/look", "ui/context", "ui/views/", "ui/workbench/", "ui/panels", "ui/panels/facts", "ui/panels/panes"}},
-    {"ui", {"engine/", "ui/"}},
-    {"app/terminal", {"engine/"}},
-    {"app/recordings", {"engine/", "ui/", "app/terminal"}},
-    {"app/methods", {"engine/", "ui/"}},
-    {"app/pictures", {"engine/", "ui/"}},
-    {"app/commands", {"engine/", "ui/", "app/terminal", "app/recordings", "app/methods", "app/pictures"}},
-    {"app", {"engine/", "app/"}},
-    {"app/python", {"engine/", "ui/", "app/recordings", "app/pictures"}},
-};
-// clang-format on
+/// Reads lines "files TARGET PATH" and "links TARGET OTHER", as CMake writes them to layers.txt.
+Layers read_layers(std::istream& lines) {
+  Layers layers;
+  for (std::string kind, target, value; lines >> kind >> target >> value;) {
+    if (kind == "files")
+      layers.target_of[value] = target;
+    else
+      layers.links[target].insert(value);
+  }
+  return layers;
+}
 
 /// These use Eigen, Ceres and fmt, and no library of pictures, files or windows.
 const Names kPure = {"engine/base/",
@@ -163,24 +103,50 @@ bool is_ours(const std::string& file) {
   return file.starts_with("engine/") || file.starts_with("ui/") || file.starts_with("app/");
 }
 
-bool covers(const std::string& allowed, const std::string& folder) {
-  return allowed.ends_with('/') ? (folder + "/").starts_with(allowed) : folder == allowed;
+/// Returns the target of the innermost folder that has one; empty if none does.
+std::string target_of(const Layers& layers, std::string path) {
+  for (; !path.empty(); path = folder_of(path)) {
+    if (const auto found = layers.target_of.find(path); found != layers.target_of.end())
+      return found->second;
+  }
+  return "";
 }
 
-bool may_include(const std::vector<Room>& rooms, const std::string& from, const std::string& to) {
+bool may_include(const Layers& layers, const std::string& from, const std::string& to) {
   if (from == to) return true;
-  const auto room = std::ranges::find(rooms, from, &Room::folder);
-  return room != rooms.end() && std::ranges::any_of(room->may_include, [&](const auto& allowed) {
-           return covers(allowed, to);
+  const auto links = layers.links.find(from);
+  return links != layers.links.end() && std::ranges::any_of(links->second, [&](const auto& link) {
+           return may_include(layers, link, to);
          });
 }
 
-Names forbidden(const std::vector<Include>& includes, const std::vector<Room>& rooms) {
+Names forbidden(const std::vector<Include>& includes, const Layers& layers) {
   Names found;
   for (const auto& [from, to] : includes) {
-    if (is_ours(to) && !may_include(rooms, folder_of(from), folder_of(to)))
+    if (!is_ours(to)) continue;
+    const std::string target = target_of(layers, to);
+    if (target.empty() || !may_include(layers, target_of(layers, from), target))
       found.push_back(fmt::format("{} includes {}", from, to));
   }
+  return found;
+}
+
+/// Folders on a cycle of includes, or on a way to one: all that remain when those that
+/// include none of the remaining ones are removed, one after the other.
+std::set<std::string> mutual_folders(const std::vector<Include>& includes) {
+  std::map<std::string, std::set<std::string>> knows;
+  for (const auto& [from, to] : includes) {
+    if (!is_ours(to) || folder_of(from) == folder_of(to)) continue;
+    knows[folder_of(from)].insert(folder_of(to));
+  }
+  const auto knows_a_remaining_one = [&](const auto& folder) {
+    return std::ranges::any_of(folder.second, [&](const auto& to) { return knows.contains(to); });
+  };
+  while (std::erase_if(knows, [&](const auto& folder) { return !knows_a_remaining_one(folder); }) >
+         0) {
+  }
+  std::set<std::string> found;
+  for (const auto& folder : knows) found.insert(folder.first);
   return found;
 }
 
@@ -217,22 +183,20 @@ Names using_libraries(const std::vector<Include>& includes,
   return found;
 }
 
-TEST(Architecture, NobodyKnowsWhomItMayNot) {
-  EXPECT_GT(tree().size(), 1000U);
-  EXPECT_THAT(forbidden(tree(), kRooms), IsEmpty());
+TEST(Architecture, SourcesIncludeWhatTheirTargetLinks) {
+  std::ifstream file(GPO_LAYERS);
+  const Layers layers = read_layers(file);
+  ASSERT_GT(layers.target_of.size(), 10U);
+  std::vector<Include> includes = tree();
+  EXPECT_GT(includes.size(), 1000U);
+  // Without the window only the engine has targets.
+  std::erase_if(includes, [&](const Include& include) {
+    return !include.from.starts_with("engine/") && !layers.target_of.contains("ui");
+  });
+  EXPECT_THAT(forbidden(includes, layers), IsEmpty());
 }
 
-TEST(Architecture, NoTwoRoomsMayKnowEachOther) {
-  Names found;
-  for (const Room& a : kRooms) {
-    for (const Room& b : kRooms) {
-      if (a.folder < b.folder && may_include(kRooms, a.folder, b.folder) &&
-          may_include(kRooms, b.folder, a.folder))
-        found.push_back(fmt::format("{} and {}", a.folder, b.folder));
-    }
-  }
-  EXPECT_THAT(found, IsEmpty());
-}
+TEST(Architecture, NoTwoFoldersIncludeEachOther) { EXPECT_THAT(mutual_folders(tree()), IsEmpty()); }
 
 TEST(Architecture, NoTwoFilesKnowEachOther) { EXPECT_THAT(mutual_units(tree()), IsEmpty()); }
 
@@ -308,20 +272,33 @@ TEST(Architecture, NoTypeIsDefinedTwice) {
   EXPECT_THAT(definitions, IsEmpty());
 }
 
-// What the tests above would say of a tree that is not in order.
-TEST(Architecture, AnArrowThatIsNotInTheTableIsTold) {
+TEST(Architecture, IncludesAgainstTheLayersAreFound) {
+  std::istringstream lines(
+      "files gpo_base engine/base\nfiles gpo_geometry engine/geometry\n"
+      "files gpo_window engine/window\nfiles gpo_window engine/window.h\n"
+      "links gpo_geometry gpo_base\nlinks gpo_window gpo_geometry\n");
   const std::vector<Include> includes = {
       {"engine/geometry/plane.cpp", "engine/window/window.h"},
-      {"engine/window/window.h", "engine/geometry/pose.h"},
+      {"engine/window/window.h", "engine/geometry/fits/pose.h"},
+      {"engine/window/window.h", "engine/base/error.h"},
+      {"engine/window.h", "engine/window/window.h"},
       {"engine/somewhere/new.cpp", "engine/base/error.h"},
+      {"engine/base/error.cpp", "engine/elsewhere/new.h"},
       {"engine/geometry/pose.cpp", "opencv2/core.hpp"},
       {"engine/geometry/a.h", "engine/geometry/b.h"},
       {"engine/geometry/b.cpp", "engine/geometry/a.h"},
       {"engine/geometry/plane.cpp", "engine/geometry/plane.h"},
   };
-  EXPECT_THAT(forbidden(includes, kRooms),
+  EXPECT_THAT(forbidden(includes, read_layers(lines)),
               testing::ElementsAre("engine/geometry/plane.cpp includes engine/window/window.h",
-                                   "engine/somewhere/new.cpp includes engine/base/error.h"));
+                                   "engine/somewhere/new.cpp includes engine/base/error.h",
+                                   "engine/base/error.cpp includes engine/elsewhere/new.h"));
+  EXPECT_THAT(mutual_folders({{"engine/a/1.h", "engine/b/1.h"},
+                              {"engine/b/2.h", "engine/c/1.h"},
+                              {"engine/c/2.h", "engine/a/2.h"},
+                              {"engine/d/1.h", "engine/c/2.h"},
+                              {"engine/c/2.h", "engine/e/2.h"}}),
+              testing::ElementsAre("engine/a", "engine/b", "engine/c", "engine/d"));
   EXPECT_THAT(mutual_units(includes),
               testing::ElementsAre("engine/geometry/a and engine/geometry/b"));
   EXPECT_THAT(using_libraries(includes, kPure, kLibrariesOfPicturesAndFiles),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/bundle/plane_adjustment.h"
 
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/initializers/residuals/ceres_solver.h"
 #include "engine/initializers/residuals/point_view.h"
 #include "engine/initializers/residuals/pose_block.h"
@@ -73,7 +74,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
   const Intrinsics intrinsics{K, K.inverse()};
   AdjustedPlaneBundle result{start, {}};
   std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
-  auto q_normal = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), start.normal);
+  Eigen::Quaterniond q_normal = rotation_from_z_axis(start.normal);
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   add_pose_blocks(cameras, std::nullopt, problem, *ordering);

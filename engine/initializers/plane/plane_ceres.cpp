@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/initializers/plane/plane_solver.h"
 #include "engine/initializers/residuals/ceres_solver.h"
 #include "engine/initializers/residuals/transfer.h"
@@ -174,7 +175,7 @@ class PriorCost : public ceres::CostFunction {
 
 Blocks blocks_of(const PlaneMotion& motion) {
   Blocks blocks;
-  blocks.normal = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), motion.normal);
+  blocks.normal = rotation_from_z_axis(motion.normal);
   for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
   blocks.tau = motion.tau;
   blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
