@@ -57,7 +57,8 @@ std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
 /// itself.
 void tell_of_scan(const Inspection& inspection) {
   const Settings& settings = inspection.settings;
-  if (inspection.initialization->ok || !find_method(settings.method).identity.empty()) return;
+  if (inspection.initialization->ok || !find_method(settings.options.method).identity.empty())
+    return;
   if (inspection.recording->frame_count() > settings.frames)
     fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
 }

@@ -75,7 +75,7 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   DrawnView drawn{
       picture_of(request, inspection, frame_to_draw(request, *recording)), result.ok, {inspection}};
   if (!result.ok)
-    drawn.failures.push_back(failure_text(inspection->settings.method, result.reason));
+    drawn.failures.push_back(failure_text(inspection->settings.options.method, result.reason));
   return drawn;
 }
 

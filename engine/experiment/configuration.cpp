@@ -82,7 +82,7 @@ Change change_of(const std::string& word, const std::string& text) {
 std::vector<Change> preset_changes(Preset preset, const std::string& method) {
   const auto used = [&](Preset of) {
     Settings settings = with_preset({}, of);
-    settings.method = method;
+    settings.options.method = method;
     return as_used(std::move(settings));
   };
   const Settings wanted = used(preset);
@@ -221,17 +221,17 @@ std::uint32_t color_of(const Configuration& configuration) {
 }
 
 Settings apply(const Configuration& configuration, Settings settings) {
-  settings.method = configuration.method;
+  settings.options.method = configuration.method;
   for (const Change& change : configuration.changes)
     settings = with_setting(std::move(settings), change.setting, change.value);
   return settings;
 }
 
 Configuration configuration_of(const Settings& settings, Settings from) {
-  from.method = settings.method;
+  from.options.method = settings.options.method;
   const Settings used = as_used(settings);
   const Settings normal = as_used(std::move(from));
-  Configuration configuration{.method = settings.method};
+  Configuration configuration{.method = settings.options.method};
   for (const Setting* setting : comparable_settings()) {
     const std::string value = value_text(setting->get(used));
     if (value != value_text(setting->get(normal)))

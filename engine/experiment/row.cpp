@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
 
@@ -20,7 +21,7 @@ using nlohmann::ordered_json;
 template <class Value>
 ordered_json json_of(const Value& value) {
   if constexpr (OfASetting<Value>) {
-    const bool read = is_read(value.setting, value.settings.method);
+    const bool read = is_read(value.setting, value.settings.options.method);
     return read ? value_json(value.setting.get(value.settings)) : ordered_json(nullptr);
   } else if constexpr (is_optional<Value>) {
     return value ? json_of(*value) : ordered_json(nullptr);
@@ -90,7 +91,7 @@ void add_timing(Row& row, const Timing& timing) {
 
 std::string setting_cell(const Settings& settings, const Setting& setting) {
   const SettingValue value = setting.get(settings);
-  if (!is_read(setting, settings.method) || std::holds_alternative<std::monostate>(value))
+  if (!is_read(setting, settings.options.method) || std::holds_alternative<std::monostate>(value))
     return "";
   if (setting.kind != SettingKind::on_off) return value_text(value);
   return std::get<bool>(value) ? "true" : "false";
@@ -113,9 +114,9 @@ Row refused_row(const std::string& recording, const Settings& settings, const st
   row.recording = recording;
   row.configuration = key_of(configuration_of(settings));
   row.settings = settings;
-  row.settings.ransac = uses_ransac(settings);
-  row.settings.inliers = inliers_used(settings);
-  row.settings.gravity = gravity_used(settings);
+  row.settings.options.ransac = uses_ransac(settings.options);
+  row.settings.options.inliers = inliers_used(settings.options);
+  row.settings.options.gravity = gravity_used(settings.options);
   row.status = "failed";
   row.reason = reason;
   return row;

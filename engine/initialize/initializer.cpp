@@ -4,7 +4,7 @@
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/initialize/input_checks.h"
-#include "engine/initialize/steps.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initialize/travel.h"
 #include "engine/initializers/certainty/window_evidence.h"
 #include "engine/initializers/methods.h"

@@ -73,7 +73,7 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          cv::Size size) {
   NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
-  const Method& method = find_method(inspection->settings.method);
+  const Method& method = find_method(inspection->settings.options.method);
   if (inspection->initialization->ok)
     content.answers.push_back({method.title, method.rgb, inspection, true});
   return snapshot<NormalsMap>(

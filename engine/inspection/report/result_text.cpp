@@ -173,7 +173,7 @@ std::string to_text(const Inspection& inspection) {
                                      window.start + window.frame_count() - 1,
                                      window.frame_count())) +
                      camera_row(*inspection.recording) +
-                     row("method", find_method(inspection.settings.method).title) +
+                     row("method", find_method(inspection.settings.options.method).title) +
                      row("rotations", rotations_text(inspection)) +
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +
                      row("inliers",

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 
 #include <algorithm>
@@ -143,13 +144,13 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
                  ? "The recording brings its own tracks"
                  : "";
     case SettingReader::inlier_test:
-      return !uses_ransac(settings) && find_method(settings.method).needs_plane
+      return !uses_ransac(settings.options) && find_method(settings.options.method).needs_plane
                  ? "Without RANSAC every track counts as an inlier"
                  : "";
     case SettingReader::method:
-      return is_read(setting, settings.method) ? "" : who_reads(setting);
+      return is_read(setting, settings.options.method) ? "" : who_reads(setting);
     case SettingReader::gravity:
-      return gravity_used(settings) != settings.gravity
+      return gravity_used(settings.options) != settings.options.gravity
                  ? "Only gpo_joint takes gravity into its solution; here it is found after"
                  : "";
   }
@@ -160,9 +161,9 @@ Settings as_used(Settings settings) {
   const Settings given = settings;
   for (const Setting& setting : settings_table()) {
     if (setting.used != nullptr) setting.set(settings, setting.used(given));
-    if (!is_read(setting, given.method)) setting.set(settings, setting.get(Settings{}));
+    if (!is_read(setting, given.options.method)) setting.set(settings, setting.get(Settings{}));
   }
-  settings.gravity = gravity_used(settings);
+  settings.options.gravity = gravity_used(settings.options);
   return settings;
 }
 

@@ -3,6 +3,7 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window/window_rotations.h"
 
@@ -103,14 +104,14 @@ std::vector<Setting> window_rows() {
                       .least = 2,
                       .most = 1000,
                       .stage = tracks}));
-  rows.push_back(row([](auto& s) -> auto& { return s.method; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.method; },
                      {.key = "method",
                       .title = "Method",
                       .help = "Initializer",
                       .stage = initialization,
                       .choices = method_choices()}));
   rows.push_back(row(
-      [](auto& s) -> auto& { return s.rotations; },
+      [](auto& s) -> auto& { return s.options.rotations; },
       {.key = "rotations",
        .title = "Rotations",
        .help = "Where the camera rotations come from: a gyroscope, decomposed homographies of one "
@@ -141,7 +142,7 @@ std::vector<Setting> window_rows() {
 
 void add_inlier_rows(std::vector<Setting>& rows) {
   using enum SettingStage;
-  rows.push_back(row([](auto& s) -> auto& { return s.ransac; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.ransac; },
                      {.key = "ransac",
                       .title = "RANSAC",
                       .help = "Reject tracks off the plane by a homography from the reference "
@@ -149,8 +150,8 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .leads = true,
                       .words = {{"ransac", "on", "with RANSAC", 0x882255},
                                 {"no-ransac", "off", "without RANSAC", 0xBB3355}},
-                      .used = [](const Settings& s) { return value_of(uses_ransac(s)); }}));
-  rows.push_back(row([](auto& s) -> auto& { return s.ransac_threshold_px; },
+                      .used = [](const Settings& s) { return value_of(uses_ransac(s.options)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.options.ransac_threshold_px; },
                      {.key = "ransac_threshold_px",
                       .title = "Threshold",
                       .unit = "px",
@@ -159,7 +160,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .most = 50,
                       .reader = SettingReader::inlier_test}));
   rows.push_back(
-      row([](auto& s) -> auto& { return s.inliers; },
+      row([](auto& s) -> auto& { return s.options.inliers; },
           {.key = "inliers",
            .title = "Inliers",
            .help = "Tracks on the plane: told frame by frame, consistent over the window, "
@@ -169,15 +170,15 @@ void add_inlier_rows(std::vector<Setting>& rows) {
            .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
                      {"consistent", "consistent", "with consistent inliers", 0x999933},
                      {"planes", "planes", "with inliers by plane", 0x88AA55}},
-           .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
-  rows.push_back(row([](auto& s) -> auto& { return s.plane; },
+           .used = [](const Settings& s) { return value_of(inliers_used(s.options)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.options.plane; },
                      {.key = "plane",
                       .title = "Plane",
                       .help = "Which of the window's planes leads: 1 has most tracks",
                       .least = 1,
                       .most = 9,
                       .reader = SettingReader::inlier_test}));
-  rows.push_back(row([](auto& s) -> auto& { return s.seed; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.seed; },
                      {.key = "seed",
                       .title = "Seed",
                       .help = "Seed of every random choice",
@@ -198,37 +199,37 @@ void add_option_rows(std::vector<Setting>& rows) {
     setting.help += fmt::format(" ({})", fmt::join(readers_of(setting.key), ", "));
     rows.push_back(row(field, std::move(setting)));
   };
-  add([](auto& s) -> auto& { return s.initializer.solver; },
+  add([](auto& s) -> auto& { return s.options.initializer.solver; },
       {.key = "solver",
        .title = "Solver",
        .help = "Who minimizes: our own Schur solver, or Ceres",
        .words = {{"schur", "schur", "by our own solver", 0x332288},
                  {"ceres", "ceres", "by Ceres", 0xAA4499}}});
-  add([](auto& s) -> auto& { return s.initializer.error; },
+  add([](auto& s) -> auto& { return s.options.initializer.error; },
       {.key = "error",
        .title = "Error",
        .help = "One-sided transfer error, or Sampson's",
        .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
                  {"sampson", "sampson", "with Sampson's error", 0x997700}}});
-  add([](auto& s) -> auto& { return s.initializer.loss; },
+  add([](auto& s) -> auto& { return s.options.initializer.loss; },
       {.key = "loss",
        .title = "Loss",
        .help = "Squared, or Huber's, linear for outliers",
        .words = {{"squared", "squared", "with squared loss", 0x004488},
                  {"huber", "huber", "with Huber's loss", 0xEE99AA}}});
-  add([](auto& s) -> auto& { return s.initializer.shutter; },
+  add([](auto& s) -> auto& { return s.options.initializer.shutter; },
       {.key = "shutter",
        .title = "Shutter",
        .help = "Rows read one after another at an estimated pace, or all at once",
        .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
-  add([](auto& s) -> auto& { return s.initializer.planes; },
+  add([](auto& s) -> auto& { return s.options.initializer.planes; },
       {.key = "planes",
        .title = "Planes",
        .help = "All planes of the window at once, or the leading one alone",
        .words = {{"all-planes", "all", "with all planes", 0x557733},
                  {"one-plane", "one", "with one plane", 0xCC8899}}});
-  add([](auto& s) -> auto& { return s.initializer.time_offset; },
+  add([](auto& s) -> auto& { return s.options.initializer.time_offset; },
       {.key = "time_offset",
        .title = "Time offset",
        .help = "Estimate the offset between the clocks of camera and gyroscope",
@@ -244,7 +245,7 @@ std::span<const Setting> settings_table() {
     add_inlier_rows(rows);
     add_option_rows(rows);
     rows.push_back(
-        row([](auto& s) -> auto& { return s.gravity; },
+        row([](auto& s) -> auto& { return s.options.gravity; },
             {.key = "gravity",
              .title = "Gravity",
              .help = "Gravity and meters by the accelerometer, where there is one: after the "

@@ -262,7 +262,7 @@ std::string heading(const Inspection& inspection, int frame, bool undistorted) {
   return fmt::format("frame {} · {:.3f} s · {}{}",
                      frame,
                      seconds,
-                     find_method(inspection.settings.method).title,
+                     find_method(inspection.settings.options.method).title,
                      undistorted ? " · undistorted" : "");
 }
 

@@ -95,7 +95,7 @@ struct MarkedFrustum {
   }
 };
 MarkedFrustum marked_frustum(const Inspection& inspection, int frame_in_window) {
-  const std::uint32_t method = find_method(inspection.settings.method).rgb;
+  const std::uint32_t method = find_method(inspection.settings.options.method).rgb;
   const auto corners = frustum(inspection.recording->camera,
                                inspection.initialization->cameras[frame_in_window],
                                frustum_depth(inspection));

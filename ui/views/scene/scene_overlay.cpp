@@ -120,7 +120,7 @@ std::string side_text(const Inspection& inspection, const SceneViewOptions& opti
 std::vector<LegendRow> legend_rows(const Inspection& inspection,
                                    int frame_in_window,
                                    const SceneViewOptions& options) {
-  const Method& method = find_method(inspection.settings.method);
+  const Method& method = find_method(inspection.settings.options.method);
   std::vector<LegendRow> rows;
   if (inspection.initialization->ok) {
     rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});

@@ -64,7 +64,7 @@ void add_cameras(const Stage& stage) {
   const std::vector<Pose>& cameras = found_cameras(*inspection.initialization);
   if (cameras.empty()) return;
   const std::uint32_t rgb = inspection.initialization->ok
-                                ? find_method(inspection.settings.method).rgb
+                                ? find_method(inspection.settings.options.method).rgb
                                 : color_of(Role::bad);
   const double depth = frustum_depth(inspection);
   const Camera& camera = inspection.recording->camera;

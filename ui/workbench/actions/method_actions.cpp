@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/look/method_help.h"
@@ -30,10 +31,12 @@ void add_choices_of_method(std::vector<Action>& table) {
                           method_help(method.key),
                           [key = method.key](State& s) {
                             Settings settings = s.settings;
-                            settings.method = key;
+                            settings.options.method = key;
                             change_settings(s, settings);
                           });
-    action.checked = [key = method.key](const State& s) { return s.settings.method == key; };
+    action.checked = [key = method.key](const State& s) {
+      return s.settings.options.method == key;
+    };
     action.needs_recording = false;
     table.push_back(action);
   }
@@ -99,9 +102,9 @@ void add_settings(std::vector<Action>& table) {
             {letter('R')},
             "Rejects outliers by a homography from the reference frame",
             [](State& s) {
-              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings)));
+              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings.options)));
             });
-  ransac.checked = [](const State& s) { return uses_ransac(s.settings); };
+  ransac.checked = [](const State& s) { return uses_ransac(s.settings.options); };
   ransac.needs_recording = false;
   table.push_back(ransac);
   for (Action& action : settings_by_name()) table.push_back(std::move(action));
