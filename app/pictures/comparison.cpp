@@ -6,7 +6,6 @@
 #include "engine/experiment/figures.h"
 #include "engine/experiment/ranges.h"
 #include "engine/experiment/summary.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 
 #include <algorithm>
@@ -32,9 +31,9 @@ std::vector<int> lengths_of(const ComparisonRequest& request) {
 }  // namespace
 
 std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
-  if (request.methods) return parse_configurations(*request.methods);
+  if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;
-  for (const Method& method : methods()) all.push_back({.method = method.key});
+  for (const MethodChoice& method : request.table.all()) all.push_back({.method = method});
   return all;
 }
 

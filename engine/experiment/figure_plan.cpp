@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/figure_plan.h"
 
-#include "engine/initializers/methods.h"
-
 #include <algorithm>
 #include <array>
 
@@ -15,7 +13,7 @@ bool is_plain(const Configuration& c) { return c == Configuration{.method = c.me
 bool is_gpo(const Configuration& c) { return is_plain(c) && c.method == "gpo"; }
 
 bool is_of(const Configuration& c, MethodFamily family) {
-  return is_gpo(c) || (is_plain(c) && find_method(c.method).family == family);
+  return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
 }
 
 /// The method as it is, or with nothing but that setting changed.

@@ -39,9 +39,11 @@ constexpr std::uint32_t kBoundColor = 0x555555;
 
 /// A method has its own in all figures, with whatever settings.
 int marker_of(const Configuration& configuration) {
-  const auto all = methods();
-  const auto found = std::ranges::find(all, configuration.method, &Method::key);
-  return static_cast<int>(found - all.begin());
+  const auto ours = methods();
+  if (configuration.method.own())
+    return static_cast<int>(ours.size()) + configuration.method.row().number;
+  const auto found = std::ranges::find(ours, configuration.method.key(), &Method::key);
+  return static_cast<int>(found - ours.begin());
 }
 
 Curve curve_of(const std::vector<Cell>& cells,

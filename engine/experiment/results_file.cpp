@@ -94,12 +94,12 @@ Number number_of(const std::string& text, const char* expected) {
 }
 
 template <class Value>
-void read_value(const std::string& text, Value& value) {
+void read_value(const std::string& text, const MethodTable& methods, Value& value) {
   if constexpr (OfASetting<Value>) {
-    read_setting_cell(value.settings, value.setting, text);
+    read_setting_cell(value.settings, value.setting, text, methods);
   } else if constexpr (is_optional<Value>) {
     value.reset();
-    if (!text.empty()) read_value(text, value.emplace());
+    if (!text.empty()) read_value(text, methods, value.emplace());
   } else if constexpr (std::is_same_v<Value, std::string>) {
     value = text;
   } else {
@@ -108,28 +108,28 @@ void read_value(const std::string& text, Value& value) {
   }
 }
 
-void check(const Row& row) {
+void check(const Row& row, const MethodTable& methods) {
   if (row.status != "ok" && row.status != "failed")
     throw InputError(fmt::format("status: found '{}', expected ok or failed", row.status));
-  if (key_of(parse_configuration(row.configuration)) != row.configuration)
+  if (key_of(parse_configuration(row.configuration, methods)) != row.configuration)
     throw InputError(
         fmt::format("configuration: '{}' is not how it is written", row.configuration));
 }
 
-Row row_of(const Line& line, const std::vector<std::string>& names) {
+Row row_of(const Line& line, const std::vector<std::string>& names, const MethodTable& methods) {
   Row row;
   visit_row(row, [&](const char* name, auto& value) {
     const auto column = std::ranges::find(names, name);
     if (column == names.end()) return;
     try {
-      read_value(line.cells[column - names.begin()], value);
+      read_value(line.cells[column - names.begin()], methods, value);
     } catch (const SettingError&) {
       throw;  // names itself
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", name, error.what()));
     }
   });
-  check(row);
+  check(row, methods);
   return row;
 }
 
@@ -143,7 +143,7 @@ bool is_results(const std::filesystem::path& file) {
   return begin == kBegin;
 }
 
-std::vector<Row> read_results(const std::filesystem::path& file) {
+std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods) {
   CsvText text(file.string(), read_file(file));
   const std::vector<std::string> names = text.next().cells;
   for (const char* needed : kNeeded)
@@ -164,7 +164,7 @@ std::vector<Row> read_results(const std::filesystem::path& file) {
                                    line.cells.size(),
                                    names.size()));
     try {
-      rows.push_back(row_of(line, names));
+      rows.push_back(row_of(line, names, methods));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", file.string(), line.number, error.what()));
     }

@@ -31,15 +31,15 @@ ordered_json json_of(const Value& value) {
 }
 
 template <class Value>
-void read_value(const ordered_json& json, Value& value) {
+void read_value(const ordered_json& json, const MethodTable& methods, Value& value) {
   if constexpr (OfASetting<Value>) {
     const std::string cell = json.is_null()     ? ""
                              : json.is_string() ? json.get<std::string>()
                                                 : json.dump();
-    read_setting_cell(value.settings, value.setting, cell);
+    read_setting_cell(value.settings, value.setting, cell, methods);
   } else if constexpr (is_optional<Value>) {
     value.reset();
-    if (!json.is_null()) read_value(json, value.emplace());
+    if (!json.is_null()) read_value(json, methods, value.emplace());
   } else {
     value = json.get<Value>();
   }
@@ -97,11 +97,14 @@ std::string setting_cell(const Settings& settings, const Setting& setting) {
   return std::get<bool>(value) ? "true" : "false";
 }
 
-void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell) {
+void read_setting_cell(Settings& settings,
+                       const Setting& setting,
+                       const std::string& cell,
+                       const MethodTable& methods) {
   if (cell.empty()) {
     setting.set(settings, setting.get(Settings{}));
   } else if (setting.kind != SettingKind::on_off) {
-    setting.set(settings, value_from(setting, cell));
+    set_value(settings, setting, value_from(setting, cell, methods), methods);
   } else if (cell == "true" || cell == "false") {
     setting.set(settings, cell == "true");
   } else {
@@ -160,9 +163,9 @@ ordered_json to_json(const Row& row) {
   return json;
 }
 
-Row row_from_json(const ordered_json& json) {
+Row row_from_json(const ordered_json& json, const MethodTable& methods) {
   Row row;
-  visit_row(row, [&](const char* name, auto& value) { read_value(json.at(name), value); });
+  visit_row(row, [&](const char* name, auto& value) { read_value(json.at(name), methods, value); });
   return row;
 }
 

@@ -58,7 +58,10 @@ concept OfASetting = requires(T column) {
 /// Its cell in results.csv: as scripts write the value, but true and false for on and off.
 std::string setting_cell(const Settings& settings, const Setting& setting);
 /// Reads it; empty is the default. Throws SettingError.
-void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell);
+void read_setting_cell(Settings& settings,
+                       const Setting& setting,
+                       const std::string& cell,
+                       const MethodTable& methods = {});
 
 /// The one declaration of the columns, in their order: `visit(name, value&)`. Times, and on what
 /// they were measured, are the last, because all others are the same in every run.
@@ -112,6 +115,6 @@ std::string to_csv(std::span<const Row> rows);
 
 nlohmann::ordered_json to_json(const Row& row);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
-Row row_from_json(const nlohmann::ordered_json& json);
+Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
 
 }  // namespace gpo

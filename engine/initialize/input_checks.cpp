@@ -3,7 +3,6 @@
 #include "engine/initialize/input_checks.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +36,7 @@ void check_camera(const Camera& camera) {
 }
 
 void check_options(const InitializeOptions& options) {
-  find_method(options.method);
+  options.method.row();
   if (!(options.ransac_threshold_px > 0)) {
     throw SettingError("ransac_threshold_px",
                        fmt::format("{}, expected more than 0", options.ransac_threshold_px));

@@ -6,7 +6,6 @@
 #include "engine/initialize/gravity.h"
 #include "engine/initialize/method_defaults.h"
 #include "engine/initializers/certainty/growth.h"
-#include "engine/initializers/methods.h"
 
 #include <utility>
 
@@ -72,7 +71,7 @@ Initialization run_method(const Window& window,
     result.stopped = rotations.stopped;
     return result;
   }
-  const Method& method = find_method(options.method);
+  const Method& method = options.method.row();
   return method.initialize_from ? method.initialize_from(window, sources, watch)
                                 : method.initialize(window, options.initializer, watch);
 }
@@ -88,7 +87,7 @@ Finished finished(const Window& window,
                   const InitializeOptions& options,
                   std::span<const Verdict> growth,
                   Initialization result) {
-  Finished end{assessed(find_method(options.method), window, std::move(result))};
+  Finished end{assessed(options.method.row(), window, std::move(result))};
   add_gravity(window, sources, gravity_used(options), end);
   complete_verdict(window, growth, end.initialization);
   if (options.camera_is_guess && end.initialization.verdict) demote(*end.initialization.verdict);

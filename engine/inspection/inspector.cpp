@@ -3,7 +3,6 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/stages.h"
 #include "engine/inspection/window/window_rotations.h"
 
@@ -66,7 +65,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
   check_window(*stages.recording, settings);
-  find_method(settings.options.method);  // throws before any work is done
+  settings.options.method.row();  // throws before any work is done
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;

@@ -6,7 +6,6 @@
 #include "engine/inertial/scale_since.h"
 #include "engine/initialize/method_defaults.h"
 #include "engine/initialize/pipeline.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_truth.h"
@@ -53,7 +52,7 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
 Watch told_by(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
-  const std::string title = find_method(settings.options.method).title;
+  const std::string title = settings.options.method.row().title;
   return {stop, [=, last = std::chrono::steady_clock::now()](int iteration, double cost) mutable {
             if (milliseconds_since(last) < kPause_ms) return;
             last = std::chrono::steady_clock::now();

@@ -45,7 +45,7 @@ const std::vector<Room> kRooms = {
     {"engine/evaluation", {"engine/geometry", "engine/window", "engine/truth", "engine/initializers/"}},
     {"engine/frontend/tracking", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine/frontend", {"engine/base", "engine/geometry", "engine/window"}},
-    {"engine", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/inertial", "engine/frontend"}},
+    {"engine", {"engine/geometry", "engine/window", "engine/initializers", "engine/initializers/common", "engine/inertial", "engine/frontend"}},
     {"engine/initialize", {"engine", "engine/base", "engine/geometry", "engine/window", "engine/inertial", "engine/initializers", "engine/initializers/common", "engine/initializers/certainty", "engine/initializers/plane", "engine/frontend"}},
     {"engine/files", {"engine/base"}},
     {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},

@@ -326,7 +326,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["camera"] = {{"source", to_string(inspection.recording->camera_source)},
                     {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
                     {"distortion_coefficients", camera.coefficients}};
-  json["method"] = inspection.settings.options.method;
+  json["method"] = inspection.settings.options.method.key();
   json["status"] = result.ok ? "ok" : "failed";
   json["reason"] = result.reason;
   json["window"] = {{"start", window.start},

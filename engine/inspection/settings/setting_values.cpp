@@ -51,9 +51,11 @@ SettingValue ids_from(const Setting& setting, const std::string& text) {
   return ids;
 }
 
-SettingValue choice_from(const Setting& setting, const std::string& text) {
+SettingValue choice_from(const Setting& setting,
+                         const std::string& text,
+                         const MethodTable& methods) {
   std::vector<std::string> known;
-  for (const SettingChoice& one : setting.choices) {
+  for (const SettingChoice& one : choices_of(setting, methods)) {
     if (one.key == text) return text;
     known.push_back(one.key);
   }
@@ -84,7 +86,9 @@ std::string value_text(const SettingValue& value) {
   return std::visit(Text{}, value);
 }
 
-SettingValue value_from(const Setting& setting, const std::string& text) {
+SettingValue value_from(const Setting& setting,
+                        const std::string& text,
+                        const MethodTable& methods) {
   using enum SettingKind;
   if (setting.optional && text == kDefault) return {};
   switch (setting.kind) {
@@ -96,7 +100,7 @@ SettingValue value_from(const Setting& setting, const std::string& text) {
     case number:
       return in_range(setting, text, parse_number(text), setting.least, setting.most);
     case choice:
-      return choice_from(setting, text);
+      return choice_from(setting, text, methods);
     case ids:
       return ids_from(setting, text);
   }
@@ -107,9 +111,21 @@ std::string setting_text(const Settings& settings, const std::string& key) {
   return value_text(find_setting(key).get(settings));
 }
 
-Settings with_setting(Settings settings, const std::string& key, const std::string& text) {
+void set_value(Settings& settings,
+               const Setting& setting,
+               const SettingValue& value,
+               const MethodTable& methods) {
+  setting.set(settings, value);
+  if (setting.key == "method")
+    settings.options.method = methods.find(settings.options.method.key());
+}
+
+Settings with_setting(Settings settings,
+                      const std::string& key,
+                      const std::string& text,
+                      const MethodTable& methods) {
   const Setting& setting = find_setting(key);
-  setting.set(settings, value_from(setting, text));
+  set_value(settings, setting, value_from(setting, text, methods), methods);
   return settings;
 }
 
@@ -129,8 +145,8 @@ Settings with_default(Settings settings, const std::string& key) {
   return settings;
 }
 
-bool is_read(const Setting& setting, const std::string& method) {
-  const auto& options = find_method(method).reads;
+bool is_read(const Setting& setting, const MethodChoice& method) {
+  const auto& options = method.row().reads;
   return setting.reader != SettingReader::method ||
          std::ranges::find(options, setting.key) != options.end();
 }
@@ -144,7 +160,7 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
                  ? "The recording brings its own tracks"
                  : "";
     case SettingReader::inlier_test:
-      return !uses_ransac(settings.options) && find_method(settings.options.method).needs_plane
+      return !uses_ransac(settings.options) && settings.options.method.row().needs_plane
                  ? "Without RANSAC every track counts as an inlier"
                  : "";
     case SettingReader::method:

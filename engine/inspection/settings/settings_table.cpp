@@ -32,7 +32,7 @@ constexpr bool kIsWhole = std::is_integral_v<T> && !std::is_same_v<T, bool>;
 
 template <class T>
 constexpr SettingKind kind_of() {
-  if constexpr (Choice<T> || std::is_same_v<T, std::string>) return SettingKind::choice;
+  if constexpr (Choice<T> || std::is_same_v<T, MethodChoice>) return SettingKind::choice;
   if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
   if constexpr (std::is_same_v<T, double>) return SettingKind::number;
   return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
@@ -42,6 +42,8 @@ template <class T>
 SettingValue value_of(const T& field) {
   if constexpr (Plain<T>::kOptional) {
     return field ? value_of(*field) : SettingValue();
+  } else if constexpr (std::is_same_v<T, MethodChoice>) {
+    return field.key();
   } else if constexpr (Choice<T>) {
     return std::string(to_string(field));
   } else if constexpr (kIsWhole<T>) {
@@ -58,6 +60,8 @@ void set_field(T& field, const SettingValue& value) {
     if (!std::holds_alternative<std::monostate>(value)) set_field(field.emplace(), value);
   } else if constexpr (Choice<T>) {
     field = choice<T>(std::get<std::string>(value));
+  } else if constexpr (std::is_same_v<T, MethodChoice>) {
+    field = std::get<std::string>(value);
   } else if constexpr (kIsWhole<T>) {
     field = static_cast<T>(std::get<std::int64_t>(value));
   } else {
@@ -81,9 +85,10 @@ Setting row(Field, Setting setting) {
   return setting;
 }
 
-std::vector<SettingChoice> method_choices() {
+std::vector<SettingChoice> method_choices(const MethodTable& methods) {
   std::vector<SettingChoice> choices;
-  for (const Method& method : methods()) choices.push_back({method.key, method.title, method.rgb});
+  for (const MethodChoice& method : methods.all())
+    choices.push_back({method.key(), method.row().title, method.row().rgb});
   return choices;
 }
 
@@ -109,7 +114,7 @@ std::vector<Setting> window_rows() {
                       .title = "Method",
                       .help = "Initializer",
                       .stage = initialization,
-                      .choices = method_choices()}));
+                      .choices = method_choices({})}));
   rows.push_back(row(
       [](auto& s) -> auto& { return s.options.rotations; },
       {.key = "rotations",
@@ -266,6 +271,10 @@ std::vector<std::string> setting_keys() {
   std::vector<std::string> keys;
   for (const Setting& setting : settings_table()) keys.push_back(setting.key);
   return keys;
+}
+
+std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods) {
+  return setting.key == "method" ? method_choices(methods) : setting.choices;
 }
 
 const Setting& find_setting(std::string_view key) {

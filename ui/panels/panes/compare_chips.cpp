@@ -106,7 +106,7 @@ void list_of_all(const PanelInput& input, Commands& commands) {
         commands);
   ImGui::Separator();
   heading("METHODS AND ABLATIONS");
-  for (const Configuration& one : parse_configurations("all"))
+  for (const Configuration& one : parse_configurations("all", state.methods))
     entry(input, one, title_of(one), commands);
   ImGui::Separator();
   if (ImGui::MenuItem("The paper's four")) push(commands, RunAction{"compare paper"});

@@ -21,24 +21,8 @@ using State = WorkbenchState;
 
 void add_choices_of_method(std::vector<Action>& table) {
   for (std::size_t i = 0; i < methods().size(); ++i) {
-    const Method& method = methods()[i];
-    std::vector<Shortcut> shortcuts;
-    if (i < 9) shortcuts.push_back(letter(static_cast<char>('1' + i)));
-    Action action = plain("method " + method.key,
-                          method.title,
-                          "Method",
-                          shortcuts,
-                          method_help(method.key),
-                          [key = method.key](State& s) {
-                            Settings settings = s.settings;
-                            settings.options.method = key;
-                            change_settings(s, settings);
-                          });
-    action.checked = [key = method.key](const State& s) {
-      return s.settings.options.method == key;
-    };
-    action.needs_recording = false;
-    table.push_back(action);
+    table.push_back(choice_of_method(methods()[i].key));
+    if (i < 9) table.back().shortcuts.push_back(letter(static_cast<char>('1' + i)));
   }
 }
 
@@ -51,7 +35,7 @@ std::vector<Action> settings_by_name() {
     std::size_t least;
     std::size_t most;
     const char* tooltip;
-    Settings (*changed)(const Settings&, const Arguments&);
+    Settings (*changed)(const State&, const Arguments&);
   };
   const std::array rows = {
       Row{"set",
@@ -60,15 +44,17 @@ std::vector<Action> settings_by_name() {
           2,
           2,
           "Gives a setting another value",
-          [](const Settings& s, const Arguments& a) { return with_setting(s, a[0], a[1]); }},
+          [](const State& s, const Arguments& a) {
+            return with_setting(s.settings, a[0], a[1], s.methods);
+          }},
       Row{"preset",
           "Choose a preset",
           "best|paper",
           1,
           1,
           "All settings but the window: the best that we have, or what the paper does",
-          [](const Settings& s, const Arguments& a) {
-            return with_preset(s, choice<Preset>(a[0]));
+          [](const State& s, const Arguments& a) {
+            return with_preset(s.settings, choice<Preset>(a[0]));
           }},
       Row{"reset",
           "Reset settings",
@@ -76,8 +62,8 @@ std::vector<Action> settings_by_name() {
           0,
           1,
           "Gives a setting, or all of them with window and method, its default value",
-          [](const Settings& s, const Arguments& a) {
-            return a.empty() ? Settings{} : with_default(s, a[0]);
+          [](const State& s, const Arguments& a) {
+            return a.empty() ? Settings{} : with_default(s.settings, a[0]);
           }},
   };
   std::vector<Action> actions;
@@ -87,7 +73,7 @@ std::vector<Action> settings_by_name() {
     action.needs_recording = false;
     action.run = [row](State& s, const Arguments& arguments) {
       expect_count(row.name, arguments, row.least, row.most);
-      change_settings(s, row.changed(s.settings, arguments));
+      change_settings(s, row.changed(s, arguments));
     };
     actions.push_back(std::move(action));
   }
@@ -125,6 +111,22 @@ void wish_start(State& s) {
 }
 
 }  // namespace
+
+Action choice_of_method(const MethodChoice& method) {
+  Action action = plain("method " + method.key(),
+                        method.row().title,
+                        "Method",
+                        {},
+                        method_help(method.key()),
+                        [method](State& s) {
+                          Settings settings = s.settings;
+                          settings.options.method = method;
+                          change_settings(s, settings);
+                        });
+  action.checked = [method](const State& s) { return s.settings.options.method == method; };
+  action.needs_recording = false;
+  return action;
+}
 
 void add_method_actions(std::vector<Action>& table) {
   add_choices_of_method(table);

@@ -20,9 +20,10 @@ void change_span(WorkbenchState& state, const Recording& to) {
   state.spans.push_back({from, now.start, now.frames, now.options.method});
   const auto kept = std::ranges::find(state.spans, to.path, &KeptSpan::recording);
   const Settings standard;
-  const KeptSpan span = kept == state.spans.end()
-                            ? KeptSpan{to.path, standard.start, standard.frames, standard.method}
-                            : *kept;
+  const KeptSpan span =
+      kept == state.spans.end()
+          ? KeptSpan{to.path, standard.start, standard.frames, standard.options.method}
+          : *kept;
   state.settings.start = span.start;
   state.settings.frames = span.frames;
   state.settings.options.method = span.method;
