@@ -8,12 +8,11 @@
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -25,11 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without those whose names are the user's own already.
-std::vector<std::string> new_ones(std::vector<std::string> spelled, const MethodTable& table) {
+/// Those whose names are not taken yet, which then are.
+std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std::string>& taken) {
   std::erase_if(spelled, [&](const std::string& one) {
-    const std::string name = one.substr(0, one.find('='));
-    return std::ranges::any_of(table.own(), [&](const auto& own) { return own->key == name; });
+    return !taken.insert(one.substr(0, one.find('='))).second;
   });
   return spelled;
 }
@@ -125,8 +123,11 @@ OwnMethods::OwnMethods(const MethodArguments& arguments)
 
 void OwnMethods::add_session(const fs::path& file) {
   waiting.clear();
+  std::set<std::string> taken;
+  for (const auto& method : table.own()) taken.insert(method->key);
   SpelledMethods fresh = methods_in_session(file);
-  fresh = {new_ones(fresh.commands, table), new_ones(fresh.results, table)};
+  fresh.commands = take_new(std::move(fresh.commands), taken);
+  fresh.results = take_new(std::move(fresh.results), taken);
   if (!allow_commands_) check_can_be_shown(fresh.commands);
   CommandOptions options = options_;
   allowed = std::make_shared<std::atomic<bool>>(allow_commands_);

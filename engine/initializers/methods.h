@@ -26,20 +26,20 @@ enum class MethodFamily { aggregation, optimization };
 /// A method is one file and one row of a table: the command line's choices, the combo box, the
 /// legends and the tests read it.
 struct Method {
-  std::string key;    ///< on the command line, in files
-  std::string title;  ///< for people
-  std::uint32_t rgb;  ///< 0xRRGGBB, Okabe-Ito
-  MethodFamily family;
-  bool needs_plane;  ///< takes every track that it is given to lie on the plane
-  Inliers inliers;   ///< by default: as its authors do
+  std::string key;         ///< on the command line, in files
+  std::string title = {};  ///< for people
+  std::uint32_t rgb = 0;   ///< 0xRRGGBB, Okabe-Ito
+  MethodFamily family = MethodFamily::optimization;
+  bool needs_plane = false;           ///< takes every track that it is given to lie on the plane
+  Inliers inliers = Inliers::planes;  ///< by default: as its authors do
   /// Whether it takes the rotations as given or moves them all (free), by which its uncertainty is
   /// computed; nothing: it says so itself.
-  std::optional<RotationModel> rotations;
+  std::optional<RotationModel> rotations = {};
   /// The options that it heeds (fields of `InitializerOptions`), by the keys of their settings.
-  std::vector<std::string> reads;
+  std::vector<std::string> reads = {};
   std::function<Initialization(
       const Window& window, const InitializerOptions& options, const Watch& watch)>
-      initialize;
+      initialize = {};
   /// Of a user's own: the same for those who have more than the window; empty of ours.
   std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
       initialize_from = {};

@@ -99,6 +99,22 @@ TEST(Initialize, TakesTheFramesRotationsWhereTheyHaveAny) {
   EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.2);
 }
 
+TEST(Initialize, RunsAMethodOfTheCallersOwn) {
+  const auto simulation = test::simulate({.frames = 15});
+  auto own = std::make_shared<Method>(find_method("pnp"));
+  own->key = "mine";
+  const auto initialized = [&](const MethodChoice& method) {
+    return initialize(test::camera_of(simulation.window),
+                      test::frames_of(simulation.window),
+                      nullptr,
+                      {.method = method});
+  };
+  const Initialized mine = initialized(MethodChoice(own));
+  ASSERT_TRUE(mine.initialization.ok) << mine.initialization.reason;
+  EXPECT_EQ(mine.initialization.plane.normal, initialized("pnp").initialization.plane.normal);
+  EXPECT_THROW(initialized("mine"), SettingError);
+}
+
 TEST(Initialize, WithAGuessedCameraNothingIsMoreThanWeak) {
   const auto simulation = test::simulate({.frames = 15});
   const Initialized result = initialize(test::camera_of(simulation.window),
