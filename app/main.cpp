@@ -10,6 +10,8 @@
 #include "app/terminal/interrupt.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -274,7 +276,7 @@ void add_convert(CLI::App& app, ConvertArguments& arguments) {
 }
 
 struct AllArguments {
-  MethodArguments methods;  ///< already registered
+  MethodArguments methods;
   CalibrateArguments calibrate;
   EvaluateArguments evaluate;
   InfoArguments info;
@@ -314,7 +316,19 @@ void declare(CLI::App& app, AllArguments& arguments) {
   add_pages(app, arguments.page);
 }
 
-int dispatch(const CLI::App& app, const AllArguments& arguments, const OwnMethods& own) {
+/// Methods that options name, which are known once all options are read.
+void find_methods(AllArguments& arguments, OwnMethods& own) {
+  const ViewArguments& view = arguments.view;
+  const auto& session = view.session ? view.session : view.recording;
+  if (session && is_session(*session)) own.add_session(*session);
+  own.add_shards(arguments.evaluate.merge);
+  for (Settings* settings : {&arguments.run.inspect.settings,
+                             &arguments.snapshot.inspect.settings,
+                             &arguments.view.settings})
+    *settings = with_setting(*settings, "method", settings->options.method.key(), own.table);
+}
+
+int dispatch(const CLI::App& app, const AllArguments& arguments, OwnMethods& own) {
   if (app.got_subcommand("info")) return info_command(arguments.info);
   if (app.got_subcommand("convert")) return convert_command(arguments.convert);
   if (app.got_subcommand("run")) return run_command(arguments.run);
@@ -322,7 +336,7 @@ int dispatch(const CLI::App& app, const AllArguments& arguments, const OwnMethod
   if (app.got_subcommand("calibrate"))
     return arguments.calibrate.gyroscope ? calibrate_gyroscope_command(arguments.calibrate)
                                          : calibrate_command(arguments.calibrate);
-  if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate);
+  if (app.got_subcommand("evaluate")) return evaluate_command(arguments.evaluate, own.table);
   if (app.got_subcommand("synthesize"))
     return synthesize_command(arguments.recipe, arguments.synthesize_output);
   if (app.got_subcommand("pages")) {
@@ -370,10 +384,11 @@ int main_with_errors(int argc, char** argv) {
   AllArguments arguments;
   try {
     quiet_libraries();
-    const OwnMethods own = register_methods(argc, argv);
     declare(app, arguments);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
+    OwnMethods own(arguments.methods);
+    find_methods(arguments, own);
     const int code = dispatch(app, arguments, own);
     if (std::fflush(stdout) == 0) return code;
     return complain(fmt::format("standard output: cannot be written: {}",

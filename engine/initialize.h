@@ -7,6 +7,7 @@
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initializers/common/initialization.h"
 #include "engine/initializers/common/initializer_options.h"
+#include "engine/initializers/methods.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -38,7 +39,7 @@ struct Frame {
 
 /// As `gpo-inspector run` has them, under the names of its options.
 struct InitializeOptions {
-  std::string method = "gpo_joint";  ///< key in `methods()` (engine/initializers/methods.h)
+  MethodChoice method = "gpo_joint";  ///< one of `methods()` by its key, or a row of your own
   RotationSource rotations = RotationSource::automatic;  ///< `truth`: those of the frames
   std::optional<bool> ransac = std::nullopt;  ///< off: all tracks; nothing: as the method does
   double ransac_threshold_px = 2.0;           ///< largest transfer error of an inlier [px]

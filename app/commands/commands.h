@@ -131,7 +131,7 @@ struct ConvertArguments {
 int calibrate_command(const CalibrateArguments& arguments);
 int calibrate_gyroscope_command(const CalibrateArguments& arguments);
 int convert_command(const ConvertArguments& arguments);
-int evaluate_command(const EvaluateArguments& arguments);
+int evaluate_command(const EvaluateArguments& arguments, const MethodTable& methods);
 int info_command(const InfoArguments& arguments);
 int run_command(const RunArguments& arguments);
 /// Initializes from everywhere in the recording and writes what came of it; kFailed where nothing
@@ -139,13 +139,13 @@ int run_command(const RunArguments& arguments);
 int scan_command(const InspectArguments& arguments,
                  const std::filesystem::path& file,
                  std::optional<int> wanted_step);
-int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own);
+int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own);
 /// Runs the window's commands off-screen; `size`: of the window.
 int script_command(const std::filesystem::path& script,
                    const InspectArguments& arguments,
                    cv::Size size,
-                   const OwnMethods& own);
+                   OwnMethods& own);
 int synthesize_command(const std::filesystem::path& recipe, const std::filesystem::path& output);
-int view_command(const ViewArguments& arguments, const OwnMethods& own);
+int view_command(const ViewArguments& arguments, OwnMethods& own);
 
 }  // namespace gpo

@@ -147,8 +147,8 @@ void check_usage(const EvaluateArguments& arguments) {
   check_experiment_folder(arguments.output);
 }
 
-int run(const EvaluateArguments& arguments) {
-  const ExperimentRequest request{parse_configurations(arguments.methods),
+int run(const EvaluateArguments& arguments, const MethodTable& methods) {
+  const ExperimentRequest request{parse_configurations(arguments.methods, methods),
                                   parse_ranges(arguments.lengths, "lengths"),
                                   parse_ranges(arguments.starts, "starts"),
                                   arguments.seed};
@@ -183,10 +183,10 @@ int run(const EvaluateArguments& arguments) {
 
 }  // namespace
 
-int evaluate_command(const EvaluateArguments& arguments) {
+int evaluate_command(const EvaluateArguments& arguments, const MethodTable& methods) {
   check_usage(arguments);
-  if (arguments.merge.empty()) return run(arguments);
-  write_results(arguments, merge_experiments(arguments.merge, arguments.output));
+  if (arguments.merge.empty()) return run(arguments, methods);
+  write_results(arguments, merge_experiments(arguments.merge, arguments.output, methods));
   return kDone;
 }
 

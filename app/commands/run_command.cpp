@@ -5,7 +5,6 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "engine/files/json_text.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/camera_path.h"
@@ -57,7 +56,7 @@ std::FILE* table_stream(const std::vector<NamedFile>& outputs) {
 /// itself.
 void tell_of_scan(const Inspection& inspection) {
   const Settings& settings = inspection.settings;
-  if (inspection.initialization->ok || !find_method(settings.method).identity.empty()) return;
+  if (inspection.initialization->ok || !settings.options.method.row().identity.empty()) return;
   if (inspection.recording->frame_count() > settings.frames)
     fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
 }

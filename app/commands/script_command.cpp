@@ -43,9 +43,8 @@ void run(WorkbenchHost& host, OffscreenContext& context, const std::string& line
 int script_command(const std::filesystem::path& script,
                    const InspectArguments& arguments,
                    cv::Size size,
-                   const OwnMethods& own) {
+                   OwnMethods& own) {
   const std::vector<ScriptLine> lines = read_script(script);
-  say_not_started(own);
   OffscreenContext context(size.width, size.height);
   Gui gui;
   WorkbenchHost host(gui,
@@ -54,6 +53,12 @@ int script_command(const std::filesystem::path& script,
   host.timings = false;
   host.size = size;
   host.state.settings = arguments.settings;
+  host.state.methods = own.table;
+  host.link.add_methods = [&own](const std::filesystem::path& session, WorkbenchState& state) {
+    own.add_session(session);
+    say_not_started(own);
+    state.methods = own.table;
+  };
   host.link.calibrates = arguments.calibrate == "auto";
   if (!arguments.recording.empty()) host.state.wishes.open = arguments.recording;
   run(host, context, "");

@@ -50,7 +50,11 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
     const std::string name = option_name(setting.key);
     const std::string help = help_of(setting);
     const auto take = [&settings, &given, key = setting.key](const std::string& text) {
-      settings = with_setting(std::move(settings), key, text);
+      // Which methods there are is known once everything is read, see `find_method`.
+      if (key == "method")
+        settings.options.method = text;
+      else
+        settings = with_setting(std::move(settings), key, text);
       given.push_back(key);
     };
     if (setting.kind == SettingKind::on_off) {

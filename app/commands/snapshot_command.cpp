@@ -33,9 +33,11 @@ void tell_unused_by_view(const SnapshotArguments& arguments) {
 }
 
 /// Draws, and says what was not used and what failed.
-DrawnView draw(const SnapshotArguments& arguments, const std::optional<cv::Size>& size) {
+DrawnView draw(const SnapshotArguments& arguments,
+               const std::optional<cv::Size>& size,
+               const MethodTable& methods) {
   const ComparisonRequest compared{
-      arguments.methods, arguments.lengths, arguments.inspect.settings};
+      arguments.methods, arguments.lengths, arguments.inspect.settings, methods};
   const ViewRequest request{arguments.view, arguments.frame, size, compared};
   DrawnView drawn = draw_view(open(arguments.inspect), request);
   if (arguments.view == "compare" || arguments.view == "curves")
@@ -109,7 +111,7 @@ void check_required(const SnapshotArguments& arguments) {
 
 }  // namespace
 
-int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own) {
+int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own) {
   const auto size =
       arguments.size ? std::optional(picture_size(*arguments.size, "--size")) : std::nullopt;
   if (arguments.script)
@@ -123,7 +125,7 @@ int snapshot_command(const SnapshotArguments& arguments, const OwnMethods& own) 
   check_files(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   tell_unused_by_view(arguments);
-  const DrawnView drawn = draw(arguments, size);
+  const DrawnView drawn = draw(arguments, size, own.table);
   const cv::Mat& picture = drawn.picture;
   make_folder(folder_of(fs::absolute(arguments.output)));
   write_picture(arguments.output, picture);

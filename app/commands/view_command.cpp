@@ -41,7 +41,7 @@ constexpr const char* kTitle = "GPO Inspector";
 /// Everything between opening the window and closing it.
 struct Session {
   const ViewArguments& arguments;
-  const OwnMethods& own;
+  OwnMethods& own;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
@@ -54,14 +54,20 @@ struct Session {
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two turns of the loop
 
-  Session(const ViewArguments& from, const OwnMethods& methods) : arguments(from), own(methods) {
+  Session(const ViewArguments& from, OwnMethods& methods) : arguments(from), own(methods) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
+    host.state.methods = own.table;
+    host.link.add_methods = [this](const std::filesystem::path& file, WorkbenchState& state) {
+      own.add_session(file);
+      if (!own.waiting.empty()) ask_for_commands();
+      state.methods = own.table;
+    };
   }
   ~Session() { own.log->on_change({}); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Whether the commands that only a session names may be started; before anything is opened.
+  /// Whether the commands that only a session names may be started; before it is opened.
   void ask_for_commands() {
     constexpr std::size_t kAllOfIt = 4000;
     std::vector<std::string> shown;
@@ -166,7 +172,7 @@ struct Session {
 
 }  // namespace
 
-int view_command(const ViewArguments& arguments, const OwnMethods& own) {
+int view_command(const ViewArguments& arguments, OwnMethods& own) {
   const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =
       arguments;
   if (recording && !std::filesystem::exists(*recording)) {
@@ -174,7 +180,8 @@ int view_command(const ViewArguments& arguments, const OwnMethods& own) {
   }
   const bool shown = recording && (is_session(*recording) || is_results(*recording));
   if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
-  if (session_file) read_session(*session_file);  // an error is said before there is a window
+  if (session_file)
+    read_session(*session_file, own.table);  // an error is said before there is a window
   const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
   Session session(arguments, own);
   session.script.assign(lines.begin(), lines.end());

@@ -7,16 +7,11 @@
 #include "engine/commands/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
-#include "ui/workbench/session/script.h"
-#include "ui/workbench/session/session_file.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -29,60 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is known of the command line before it is read.
-struct Glance {
-  MethodArguments methods;
-  std::optional<fs::path> session;
-  std::optional<fs::path> script;
-  std::vector<fs::path> merge;
-  std::vector<std::string> others;
-};
-
-/// Nothing of one that is wrong, which is said where all is read.
-std::optional<Glance> glance_at(int argc, const char* const* argv) {
-  CLI::App only_these;
-  only_these.set_help_flag();
-  only_these.allow_extras();
-  Glance glance;
-  add_method_commands(only_these, glance.methods);
-  only_these.add_option("--session", glance.session)->allow_extra_args(false);
-  only_these.add_option("--script", glance.script)->allow_extra_args(false);
-  only_these.add_option("--merge", glance.merge);
-  try {
-    only_these.parse(argc, argv);
-  } catch (const CLI::ParseError&) {
-    return std::nullopt;
-  }
-  glance.others = only_these.remaining();
-  return glance;
-}
-
-/// Sessions that the command line opens, or its script.
-std::vector<fs::path> sessions_of(const Glance& glance) {
-  std::vector<fs::path> files;
-  if (glance.session) files.push_back(*glance.session);
-  const auto& others = glance.others;
-  const std::size_t recording = !others.empty() && others[0] == "view" ? 1 : 0;
-  if (recording < others.size()) files.emplace_back(others[recording]);
-  try {
-    constexpr std::string_view kOpen = "open ";
-    for (const ScriptLine& line :
-         glance.script ? read_script(*glance.script) : std::vector<ScriptLine>{})
-      if (line.text.starts_with(kOpen)) files.emplace_back(line.text.substr(kOpen.size()));
-    std::erase_if(files, [](const fs::path& file) { return !is_session(file); });
-  } catch (const InputError&) {
-    files.clear();  // said where it is read
-  }
-  return files;
-}
-
-/// Those of `from` whose names are not taken yet.
-std::vector<std::string> take_new(const std::vector<std::string>& from,
-                                  std::set<std::string>& taken) {
-  std::vector<std::string> fresh;
-  for (const std::string& one : from)
-    if (taken.insert(one.substr(0, one.find('='))).second) fresh.push_back(one);
-  return fresh;
+/// Those whose names are not taken yet, which then are.
+std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std::string>& taken) {
+  std::erase_if(spelled, [&](const std::string& one) {
+    return !taken.insert(one.substr(0, one.find('='))).second;
+  });
+  return spelled;
 }
 
 /// All that is asked about must be seen: nothing beyond the window, nothing behind line ends.
@@ -99,10 +46,6 @@ void check_can_be_shown(const std::vector<std::string>& waiting) {
                     bytes,
                     kMostCommands,
                     kMostBytes));
-}
-
-void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
-  to.insert(to.end(), from.begin(), from.end());
 }
 
 /// Methods of the user's that shards were computed with, by what they were then.
@@ -168,42 +111,51 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
                    "Commands that only a session names are started, without a question");
 }
 
-OwnMethods register_methods(int argc, const char* const* argv) {
-  OwnMethods own;
-  auto glance = glance_at(argc, argv);
-  if (!glance) return own;
-  SpelledMethods all = glance->methods.spelled;
-  std::set<std::string> taken;
-  for (const std::string& name : names_of(all)) taken.insert(name);
-  const std::size_t given = all.commands.size();
-  for (const fs::path& file : sessions_of(*glance)) {
-    const SpelledMethods recorded = methods_in_session(file);
-    append(all.commands, take_new(recorded.commands, taken));
-    append(all.results, take_new(recorded.results, taken));
-  }
-  *own.allowed = glance->methods.allow_commands;
-  CommandOptions options;
-  options.time_limit =
-      std::chrono::milliseconds(static_cast<std::int64_t>(1000 * glance->methods.timeout_s));
-  options.told = [log = own.log](const std::string& name, const std::string& line) {
+OwnMethods::OwnMethods(const MethodArguments& arguments)
+    : allow_commands_(arguments.allow_commands) {
+  options_.time_limit =
+      std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
+  options_.told = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };
-  if (!*own.allowed)
-    check_can_be_shown({all.commands.begin() + std::ptrdiff_t(given), all.commands.end()});
-  std::vector<Method> methods;
-  const auto number = [&] { return static_cast<int>(methods.size()); };
-  for (std::size_t i = 0; i < all.commands.size(); ++i) {
-    if (i >= given) options.allowed = own.allowed;
-    if (i >= given && !*own.allowed) own.waiting.push_back(all.commands[i]);
-    methods.push_back(command_method(parse_method_command(all.commands[i]), options, number()));
+  add(arguments.spelled, options_);
+}
+
+void OwnMethods::add_session(const fs::path& file) {
+  waiting.clear();
+  std::set<std::string> taken;
+  for (const auto& method : table.own()) taken.insert(method->key);
+  SpelledMethods fresh = methods_in_session(file);
+  fresh.commands = take_new(std::move(fresh.commands), taken);
+  fresh.results = take_new(std::move(fresh.results), taken);
+  if (!allow_commands_) check_can_be_shown(fresh.commands);
+  CommandOptions options = options_;
+  allowed = std::make_shared<std::atomic<bool>>(allow_commands_);
+  options.allowed = allowed;
+  add(fresh, options);
+  if (!allow_commands_) waiting = fresh.commands;
+}
+
+void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
+  for (const auto& [name, identity] : methods_of_shards(folders))
+    if (!table.contains(name))
+      table.add(method_of_shard(name, identity, static_cast<int>(table.own().size())));
+}
+
+void OwnMethods::add(const SpelledMethods& spelled, const CommandOptions& options) {
+  MethodTable more = table;
+  const auto number = [&] { return static_cast<int>(more.own().size()); };
+  for (const std::string& text : spelled.commands) {
+    Method method = command_method(parse_method_command(text), options, number());
+    method.command = text;
+    more.add(std::move(method));
   }
-  for (const std::string& text : all.results)
-    methods.push_back(result_method(parse_program_result(text), options.told, number()));
-  for (const auto& [name, identity] : methods_of_shards(glance->merge))
-    if (!taken.contains(name)) methods.push_back(method_of_shard(name, identity, number()));
-  if (!methods.empty()) add_methods(std::move(methods));
-  keep_spelled_methods(std::move(all));
-  return own;
+  for (const std::string& text : spelled.results) {
+    Method method = result_method(parse_program_result(text), options.told, number());
+    method.result = text;
+    more.add(std::move(method));
+  }
+  table = std::move(more);
 }
 
 }  // namespace gpo

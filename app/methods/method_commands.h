@@ -3,9 +3,11 @@
 #pragma once
 
 #include "app/methods/method_log.h"
+#include "engine/commands/command_method.h"
 #include "engine/commands/spelled_methods.h"
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,12 +25,28 @@ struct MethodArguments {
   bool allow_commands = false;  ///< those of sessions are started, too
 };
 
-/// Those that are in the table.
-struct OwnMethods {
+/// The user's own methods: those of the command line, then those of sessions.
+class OwnMethods {
+ public:
+  /// Adds those of the command line. Throws InputError.
+  explicit OwnMethods(const MethodArguments& arguments);
+
+  /// Adds those that a session names, but for names that are known: what is told twice stays as it
+  /// is. Throws InputError, then nothing is added.
+  void add_session(const std::filesystem::path& file);
+  /// Adds the names of those that made shards, which are to be merged.
+  void add_shards(const std::vector<std::filesystem::path>& folders);
+
+  MethodTable table;  ///< ours and these
   std::shared_ptr<MethodLog> log = std::make_shared<MethodLog>();
-  /// "NAME=COMMAND" of sessions, which are not started while `allowed` is false.
+  /// "NAME=COMMAND" of the last session, which are not started while `allowed` is false.
   std::vector<std::string> waiting;
-  std::shared_ptr<std::atomic<bool>> allowed = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<std::atomic<bool>> allowed;
+
+ private:
+  void add(const SpelledMethods& spelled, const CommandOptions& options);
+  CommandOptions options_;
+  bool allow_commands_;
 };
 
 /// Says on standard error that those that wait are not started, and what would start them.
@@ -36,11 +54,5 @@ void say_not_started(const OwnMethods& own);
 
 /// To be had by every command that initializes.
 void add_method_commands(CLI::App& command, MethodArguments& arguments);
-
-/// Adds the methods of the user's that the command line tells to the table, before it is read for
-/// the other options, which name methods; and those of the session that it names, or of the
-/// sessions that its script opens; and, to merge shards, names of those that made them. What is
-/// told twice is as the command line has it. Throws InputError.
-OwnMethods register_methods(int argc, const char* const* argv);
 
 }  // namespace gpo

@@ -85,7 +85,7 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   DrawnView drawn{
       picture_of(request, inspection, frame_to_draw(request, *recording)), result.ok, {inspection}};
   if (!result.ok)
-    drawn.failures.push_back(failure_text(inspection->settings.method, result.reason));
+    drawn.failures.push_back(failure_text(inspection->settings.options.method, result.reason));
   return drawn;
 }
 
@@ -147,9 +147,9 @@ DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
 }  // namespace
 
 std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
-  if (request.methods) return parse_configurations(*request.methods);
+  if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;
-  for (const Method& method : methods()) all.push_back({.method = method.key});
+  for (const MethodChoice& method : request.table.all()) all.push_back({.method = method});
   return all;
 }
 

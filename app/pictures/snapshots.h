@@ -20,6 +20,7 @@ struct ComparisonRequest {
   std::optional<std::string> methods;  ///< as `evaluate` reads them; default: the methods' table
   std::optional<std::string> lengths;  ///< of the windows; default: 5 to the window's, by 5
   Settings window;                     ///< what no configuration names is as here
+  MethodTable table = {};              ///< of methods
 };
 
 /// What is compared, in its order. Throws InputError.

@@ -175,7 +175,7 @@ InitializeOptions options_of_keywords(const py::kwargs& given) {
     if (find_setting(name).stage == SettingStage::tracks || name == "exclude")
       throw InputError(name + ": of recordings; the frames given are the window");
   }
-  return options_of(settings_of(given));
+  return settings_of(given).options;
 }
 
 TrackedWindow initialized(const CameraOrK& camera,

@@ -166,7 +166,8 @@ py::array snapshot(const RecordingOrPath& recording,
 void bind_results(py::module_& module) {
   py::class_<Result, Solved>(
       module, "Result", "One initialization of a recording's window, with what it was made of.")
-      .def_property_readonly("method", [](const Result& r) { return r.shared->settings.method; })
+      .def_property_readonly(
+          "method", [](const Result& r) { return r.shared->settings.options.method.key(); })
       .def_property_readonly("frames",
                              &frames_of,
                              "[(timestamp_ns, ids (n,), pixels (n, 2) as in the picture)]: what "
@@ -176,7 +177,7 @@ void bind_results(py::module_& module) {
       .def("__str__", [](const Result& r) { return to_text(*r.shared); })
       .def("__repr__", [](const Result& r) {
         return fmt::format("<gpo.Result {} on {}: {}>",
-                           r.shared->settings.method,
+                           r.shared->settings.options.method.key(),
                            r.shared->recording->name,
                            r.initialization->ok ? "ok" : r.initialization->reason);
       });

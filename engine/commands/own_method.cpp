@@ -62,6 +62,7 @@ Method own_method(const std::string& name,
     return from(window, {}, watch);
   };
   method.identity = std::move(identity);
+  method.number = number;
   return method;
 }
 

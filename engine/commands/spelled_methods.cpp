@@ -7,18 +7,12 @@
 
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
-
-SpelledMethods& kept() {
-  static SpelledMethods one;
-  return one;
-}
 
 std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
                                   const std::filesystem::path& file,
@@ -46,9 +40,14 @@ std::vector<std::string> names_of(const SpelledMethods& spelled) {
   return names;
 }
 
-void keep_spelled_methods(SpelledMethods spelled) { kept() = std::move(spelled); }
-
-const SpelledMethods& spelled_methods() { return kept(); }
+SpelledMethods spelled_in(const MethodTable& methods) {
+  SpelledMethods spelled;
+  for (const auto& method : methods.own()) {
+    if (!method->command.empty()) spelled.commands.push_back(method->command);
+    if (!method->result.empty()) spelled.results.push_back(method->result);
+  }
+  return spelled;
+}
 
 std::string with_whole_paths(const std::string& result) {
   const std::size_t equals = result.find('=');

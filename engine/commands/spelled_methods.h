@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/initializers/methods.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,10 +21,8 @@ struct SpelledMethods {
 /// The names of all.
 std::vector<std::string> names_of(const SpelledMethods& spelled);
 
-/// Keeps those that are in the table of methods, for sessions to record them: to be called once at
-/// most, before anyone asks.
-void keep_spelled_methods(SpelledMethods spelled);
-const SpelledMethods& spelled_methods();
+/// Those of a table, for sessions to record them.
+SpelledMethods spelled_in(const MethodTable& methods);
 
 /// A result's spelling with its files' whole paths, so that it is found from anywhere.
 std::string with_whole_paths(const std::string& result);

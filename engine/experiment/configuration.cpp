@@ -3,7 +3,6 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
@@ -57,10 +56,10 @@ const SettingWord& word_of(const Change& change) {
                             [](const SettingWord& word) { return std::string(word.value); });
 }
 
-std::string known_methods() {
+std::vector<std::string> keys_of(const MethodTable& methods) {
   std::vector<std::string> keys;
-  for (const Method& method : methods()) keys.push_back(method.key);
-  return fmt::format("{}", fmt::join(keys, ", "));
+  for (const MethodChoice& method : methods.all()) keys.push_back(method.key());
+  return keys;
 }
 
 [[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
@@ -79,10 +78,10 @@ Change change_of(const std::string& word, const std::string& text) {
 }
 
 /// What a preset decides of the settings that this method reads, and the other preset otherwise.
-std::vector<Change> preset_changes(Preset preset, const std::string& method) {
+std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
     Settings settings = with_preset({}, of);
-    settings.method = method;
+    settings.options.method = method;
     return as_used(std::move(settings));
   };
   const Settings wanted = used(preset);
@@ -99,7 +98,7 @@ std::vector<Change> preset_changes(Preset preset, const std::string& method) {
 /// One word's, or all those of a preset.
 std::vector<Change> changes_of(const std::string& word,
                                const std::string& text,
-                               const std::string& method) {
+                               const MethodChoice& method) {
   for (const Preset preset : {Preset::best, Preset::paper})
     if (word == to_string(preset)) return preset_changes(preset, method);
   return {change_of(word, text)};
@@ -110,12 +109,12 @@ void check_read(const Configuration& configuration, const std::string& text) {
   for (const Change& change : configuration.changes) {
     const Setting& setting = find_setting(change.setting);
     if (!is_read(setting, configuration.method))
-      refuse(
-          fmt::format("'{}': {} does not read '{}'", text, configuration.method, change.setting));
+      refuse(fmt::format(
+          "'{}': {} does not read '{}'", text, configuration.method.key(), change.setting));
     if (value_text(setting.get(used)) != change.value)
       refuse(fmt::format("'{}': {} does not take '{}' for '{}'",
                          text,
-                         configuration.method,
+                         configuration.method.key(),
                          change.value,
                          change.setting));
   }
@@ -131,9 +130,8 @@ std::vector<Change> in_order(const std::vector<Change>& changes) {
   return ordered;
 }
 
-std::vector<std::string> all_keys() {
-  std::vector<std::string> keys;
-  for (const Method& method : methods()) keys.push_back(method.key);
+std::vector<std::string> all_keys(const MethodTable& methods) {
+  std::vector<std::string> keys = keys_of(methods);
   keys.insert(keys.end(), kAblations.begin(), kAblations.end());
   return keys;
 }
@@ -153,12 +151,14 @@ bool Configuration::names(const std::string& setting) const {
   return std::ranges::find(changes, setting, &Change::setting) != changes.end();
 }
 
-Configuration parse_configuration(const std::string& text) {
+Configuration parse_configuration(const std::string& text, const MethodTable& methods) {
   const std::vector<std::string> parts = split(text, '+');
-  const std::string method = parts.empty() ? "" : parts.front();
-  if (std::ranges::find(methods(), method, &Method::key) == methods().end())
-    refuse(
-        fmt::format("unknown method '{}', expected all, or some of {}", method, known_methods()));
+  const std::string key = parts.empty() ? "" : parts.front();
+  if (!methods.contains(key))
+    refuse(fmt::format("unknown method '{}', expected all, or some of {}",
+                       key,
+                       fmt::join(keys_of(methods), ", ")));
+  const MethodChoice method = methods.find(key);
   Configuration configuration{.method = method};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     for (Change& change : changes_of(parts[i], text, method)) {
@@ -172,11 +172,12 @@ Configuration parse_configuration(const std::string& text) {
   return configuration;
 }
 
-std::vector<Configuration> parse_configurations(const std::string& text) {
+std::vector<Configuration> parse_configurations(const std::string& text,
+                                                const MethodTable& methods) {
   std::vector<Configuration> configurations;
   std::vector<Configuration> shortest;
   const auto add = [&](const std::string& key) {
-    const Configuration configuration = parse_configuration(key);
+    const Configuration configuration = parse_configuration(key, methods);
     const Configuration comes_to = configuration_of(apply(configuration, {}));
     if (std::ranges::find(shortest, comes_to) != shortest.end()) return;
     shortest.push_back(comes_to);
@@ -184,7 +185,7 @@ std::vector<Configuration> parse_configurations(const std::string& text) {
   };
   for (const std::string& key : split(text, ',')) {
     if (key == "all") {
-      std::ranges::for_each(all_keys(), add);
+      std::ranges::for_each(all_keys(methods), add);
     } else {
       add(key);
     }
@@ -208,30 +209,30 @@ std::string key_of(const Configuration& configuration) {
 }
 
 std::string title_of(const Configuration& configuration) {
-  std::string title = find_method(configuration.method).title;
+  std::string title = configuration.method.row().title;
   for (const Change& change : configuration.changes)
     title += fmt::format(" {}", word_of(change).title);
   return title;
 }
 
 std::uint32_t color_of(const Configuration& configuration) {
-  std::uint32_t rgb = find_method(configuration.method).rgb;
+  std::uint32_t rgb = configuration.method.row().rgb;
   for (const Change& change : configuration.changes) rgb = mixed(rgb, word_of(change).rgb);
   return rgb;
 }
 
 Settings apply(const Configuration& configuration, Settings settings) {
-  settings.method = configuration.method;
+  settings.options.method = configuration.method;
   for (const Change& change : configuration.changes)
     settings = with_setting(std::move(settings), change.setting, change.value);
   return settings;
 }
 
 Configuration configuration_of(const Settings& settings, Settings from) {
-  from.method = settings.method;
+  from.options.method = settings.options.method;
   const Settings used = as_used(settings);
   const Settings normal = as_used(std::move(from));
-  Configuration configuration{.method = settings.method};
+  Configuration configuration{.method = settings.options.method};
   for (const Setting* setting : comparable_settings()) {
     const std::string value = value_text(setting->get(used));
     if (value != value_text(setting->get(normal)))

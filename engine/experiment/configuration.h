@@ -20,7 +20,7 @@ struct Configuration {
     std::string value;    ///< as `setting_text` writes it
     bool operator==(const Change&) const = default;
   };
-  std::string method;                ///< key in `methods()`
+  MethodChoice method = "";
   std::vector<Change> changes = {};  ///< each setting once, in the order of their words
 
   bool names(const std::string& setting) const;
@@ -29,11 +29,12 @@ struct Configuration {
 
 /// Reads one. Throws SettingError "methods: ..." that names what was found and what is known, also
 /// for an option that the method does not read.
-Configuration parse_configuration(const std::string& text);
+Configuration parse_configuration(const std::string& text, const MethodTable& methods = {});
 
 /// Reads a list with commas; of those that come to the same by default, the first. `all` stands for
 /// every method and the paper's ablations. Throws SettingError.
-std::vector<Configuration> parse_configurations(const std::string& text);
+std::vector<Configuration> parse_configurations(const std::string& text,
+                                                const MethodTable& methods = {});
 
 /// METHOD[+WORD1|WORD2][+WORD3...], for help: all words, those of one setting together.
 std::string configuration_syntax();

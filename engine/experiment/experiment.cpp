@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/initializers/methods.h"
 
 #include <algorithm>
 #include <numeric>
@@ -95,6 +94,12 @@ std::optional<Range> parse_range(const std::string& text) {
 
 }  // namespace
 
+MethodTable methods_of(const Experiment& experiment) {
+  MethodTable methods;
+  for (const Configuration& one : experiment.configurations) methods.add(one.method);
+  return methods;
+}
+
 ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
   ExperimentDifferences found;
   if (a.configurations != b.configurations) found.plan.emplace_back("methods");
@@ -131,8 +136,8 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
   experiment.seed = request.seed;
   experiment.program = GPO_VERSION;
   for (const Configuration& one : experiment.configurations) {
-    const std::string& identity = find_method(one.method).identity;
-    if (!identity.empty()) experiment.commands[one.method] = identity;
+    const std::string& identity = one.method.row().identity;
+    if (!identity.empty()) experiment.commands[one.method.key()] = identity;
   }
   int most_frames = 0;
   for (const auto& recording : recordings) {
@@ -249,7 +254,7 @@ std::map<std::string, std::string> commands_in(const ordered_json& json) {
   return json.at("commands").get<std::map<std::string, std::string>>();
 }
 
-Experiment experiment_from_json(const ordered_json& json) {
+Experiment experiment_from_json(const ordered_json& json, const MethodTable& methods) {
   if (json.at("format") != kFormat) {
     throw InputError(
         fmt::format("key `format`: found {}, of another version of the program, expected {}",
@@ -266,7 +271,7 @@ Experiment experiment_from_json(const ordered_json& json) {
   }
   experiment.lengths = json.at("lengths").get<std::vector<int>>();
   for (const ordered_json& key : json.at("configurations")) {
-    experiment.configurations.push_back(parse_configuration(key.get<std::string>()));
+    experiment.configurations.push_back(parse_configuration(key.get<std::string>(), methods));
   }
   experiment.seed = json.at("seed").get<std::uint64_t>();
   experiment.program = json.at("program").get<std::string>();

@@ -62,6 +62,9 @@ struct Experiment {
   bool operator==(const Experiment&) const = default;
 };
 
+/// The methods that its configurations choose from.
+MethodTable methods_of(const Experiment& experiment);
+
 /// In what two experiments differ, by names; where they do not, results are the same, times aside,
 /// wherever their recordings lie.
 struct ExperimentDifferences {
@@ -119,6 +122,7 @@ nlohmann::ordered_json to_json(const Experiment& experiment);
 /// Of an experiment's file, or a window's. Throws nlohmann::json::exception.
 std::map<std::string, std::string> commands_in(const nlohmann::ordered_json& json);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
-Experiment experiment_from_json(const nlohmann::ordered_json& json);
+Experiment experiment_from_json(const nlohmann::ordered_json& json,
+                                const MethodTable& methods = {});
 
 }  // namespace gpo

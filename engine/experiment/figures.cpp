@@ -39,9 +39,11 @@ constexpr std::uint32_t kBoundColor = 0x555555;
 
 /// A method has its own in all figures, with whatever settings.
 int marker_of(const Configuration& configuration) {
-  const auto all = methods();
-  const auto found = std::ranges::find(all, configuration.method, &Method::key);
-  return static_cast<int>(found - all.begin());
+  const auto ours = methods();
+  if (configuration.method.own())
+    return static_cast<int>(ours.size()) + configuration.method.row().number;
+  const auto found = std::ranges::find(ours, configuration.method.key(), &Method::key);
+  return static_cast<int>(found - ours.begin());
 }
 
 Curve curve_of(const std::vector<Cell>& cells,
@@ -122,7 +124,7 @@ bool is_plain(const Configuration& c) { return c == Configuration{.method = c.me
 bool is_gpo(const Configuration& c) { return is_plain(c) && c.method == "gpo"; }
 
 bool is_of(const Configuration& c, MethodFamily family) {
-  return is_gpo(c) || (is_plain(c) && find_method(c.method).family == family);
+  return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
 }
 
 /// The method as it is, or with nothing but that setting changed.

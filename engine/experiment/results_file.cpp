@@ -19,21 +19,23 @@ constexpr std::array kNeeded{"recording", "configuration", "start", "frames", "s
 constexpr std::size_t kMostRows = 500'000;
 constexpr const char* kBegin = "recording,configuration,";
 
-void check(const Row& row) {
+void check(const Row& row, const MethodTable& methods) {
   if (row.status != "ok" && row.status != "failed")
     throw InputError(fmt::format("status: found '{}', expected ok or failed", row.status));
-  if (key_of(parse_configuration(row.configuration)) != row.configuration)
+  if (key_of(parse_configuration(row.configuration, methods)) != row.configuration)
     throw InputError(
         fmt::format("configuration: '{}' is not how it is written", row.configuration));
 }
 
-Row row_of(const QuotedCsv::Row& line, const std::vector<std::string>& names) {
-  Row row = row_from([&](const char* name) -> std::optional<std::string> {
+Row row_of(const QuotedCsv::Row& line,
+           const std::vector<std::string>& names,
+           const MethodTable& methods) {
+  Row row = row_from(methods, [&](const char* name) -> std::optional<std::string> {
     const auto column = std::ranges::find(names, name);
     if (column == names.end()) return std::nullopt;
     return line.cells[column - names.begin()];
   });
-  check(row);
+  check(row, methods);
   return row;
 }
 
@@ -47,7 +49,7 @@ bool is_results(const std::filesystem::path& file) {
   return begin == kBegin;
 }
 
-std::vector<Row> read_results(const std::filesystem::path& file) {
+std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods) {
   QuotedCsv text(file);
   const std::vector<std::string> names = text.next().cells;
   for (const char* needed : kNeeded)
@@ -68,7 +70,7 @@ std::vector<Row> read_results(const std::filesystem::path& file) {
                                    line.cells.size(),
                                    names.size()));
     try {
-      rows.push_back(row_of(line, names));
+      rows.push_back(row_of(line, names, methods));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", file.string(), line.line, error.what()));
     }

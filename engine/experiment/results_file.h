@@ -14,6 +14,6 @@ bool is_results(const std::filesystem::path& file);
 
 /// Its rows. Columns are found by their names: those that it does not have are unknown in every
 /// row, others than `visit_row` names are passed over. Throws InputError with file and line.
-std::vector<Row> read_results(const std::filesystem::path& file);
+std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods = {});
 
 }  // namespace gpo

@@ -6,6 +6,7 @@
 #include "engine/experiment/configuration.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
 
@@ -23,7 +24,7 @@ using nlohmann::ordered_json;
 template <class Value>
 ordered_json json_of(const Value& value) {
   if constexpr (OfASetting<Value>) {
-    const bool read = is_read(value.setting, value.settings.method);
+    const bool read = is_read(value.setting, value.settings.options.method);
     return read ? value_json(value.setting.get(value.settings)) : ordered_json(nullptr);
   } else if constexpr (is_optional<Value>) {
     return value ? json_of(*value) : ordered_json(nullptr);
@@ -43,12 +44,12 @@ Number number_of(const std::string& text, const char* expected) {
 }
 
 template <class Value>
-void read_value(const std::string& text, Value& value) {
+void read_value(const std::string& text, const MethodTable& methods, Value& value) {
   if constexpr (OfASetting<Value>) {
-    read_setting_cell(value.settings, value.setting, text);
+    read_setting_cell(value.settings, value.setting, text, methods);
   } else if constexpr (is_optional<Value>) {
     value.reset();
-    if (!text.empty()) read_value(text, value.emplace());
+    if (!text.empty()) read_value(text, methods, value.emplace());
   } else if constexpr (std::is_same_v<Value, std::string>) {
     value = text;
   } else {
@@ -95,17 +96,20 @@ void add_timing(Row& row, const Timing& timing) {
 
 std::string setting_cell(const Settings& settings, const Setting& setting) {
   const SettingValue value = setting.get(settings);
-  if (!is_read(setting, settings.method) || std::holds_alternative<std::monostate>(value))
+  if (!is_read(setting, settings.options.method) || std::holds_alternative<std::monostate>(value))
     return "";
   if (setting.kind != SettingKind::on_off) return value_text(value);
   return std::get<bool>(value) ? "true" : "false";
 }
 
-void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell) {
+void read_setting_cell(Settings& settings,
+                       const Setting& setting,
+                       const std::string& cell,
+                       const MethodTable& methods) {
   if (cell.empty()) {
     setting.set(settings, setting.get(Settings{}));
   } else if (setting.kind != SettingKind::on_off) {
-    setting.set(settings, value_from(setting, cell));
+    set_value(settings, setting, value_from(setting, cell, methods), methods);
   } else if (cell == "true" || cell == "false") {
     setting.set(settings, cell == "true");
   } else {
@@ -118,9 +122,9 @@ Row refused_row(const std::string& recording, const Settings& settings, const st
   row.recording = recording;
   row.configuration = key_of(configuration_of(settings));
   row.settings = settings;
-  row.settings.ransac = uses_ransac(settings);
-  row.settings.inliers = inliers_used(settings);
-  row.settings.gravity = gravity_used(settings);
+  row.settings.options.ransac = uses_ransac(settings.options);
+  row.settings.options.inliers = inliers_used(settings.options);
+  row.settings.options.gravity = gravity_used(settings.options);
   row.status = "failed";
   row.reason = reason;
   return row;
@@ -164,13 +168,14 @@ ordered_json to_json(const Row& row) {
   return json;
 }
 
-Row row_from(const std::function<std::optional<std::string>(const char* name)>& cell_of) {
+Row row_from(const MethodTable& methods,
+             const std::function<std::optional<std::string>(const char* name)>& cell_of) {
   Row row;
   visit_row(row, [&](const char* name, auto& value) {
     const auto cell = cell_of(name);
     if (!cell) return;
     try {
-      read_value(*cell, value);
+      read_value(*cell, methods, value);
     } catch (const SettingError&) {
       throw;  // names itself
     } catch (const InputError& error) {
@@ -180,8 +185,8 @@ Row row_from(const std::function<std::optional<std::string>(const char* name)>& 
   return row;
 }
 
-Row row_from_json(const ordered_json& json) {
-  return row_from([&](const char* name) -> std::optional<std::string> {
+Row row_from_json(const ordered_json& json, const MethodTable& methods) {
+  return row_from(methods, [&](const char* name) -> std::optional<std::string> {
     const ordered_json& value = json.at(name);
     if (value.is_null()) return "";
     return value.is_string() ? value.get<std::string>() : value.dump();

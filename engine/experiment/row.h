@@ -59,7 +59,10 @@ concept OfASetting = requires(T column) {
 /// Its cell in results.csv: as scripts write the value, but true and false for on and off.
 std::string setting_cell(const Settings& settings, const Setting& setting);
 /// Reads it; empty is the default. Throws SettingError.
-void read_setting_cell(Settings& settings, const Setting& setting, const std::string& cell);
+void read_setting_cell(Settings& settings,
+                       const Setting& setting,
+                       const std::string& cell,
+                       const MethodTable& methods = {});
 
 /// The one declaration of the columns, in their order: `visit(name, value&)`. Times, and on what
 /// they were measured, are the last, because all others are the same in every run.
@@ -113,10 +116,11 @@ std::string to_csv(std::span<const Row> rows);
 
 /// From its cells, by the names of the columns; a column without one is unknown. Throws InputError
 /// that names the column.
-Row row_from(const std::function<std::optional<std::string>(const char* name)>& cell_of);
+Row row_from(const MethodTable& methods,
+             const std::function<std::optional<std::string>(const char* name)>& cell_of);
 
 nlohmann::ordered_json to_json(const Row& row);
 /// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
-Row row_from_json(const nlohmann::ordered_json& json);
+Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
 
 }  // namespace gpo

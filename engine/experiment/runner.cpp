@@ -144,7 +144,8 @@ class Run {
     Inspector inspector(recording);
     for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
       const int frames = *length;
-      const Settings window{.start = task.start, .frames = frames, .seed = experiment_.seed};
+      const Settings window{
+          .start = task.start, .frames = frames, .options = {.seed = experiment_.seed}};
       std::vector<Row> rows =
           compute_window(experiment_, *recording, inspector, window, stop_.get_token());
       if (stop_.stop_requested()) return;

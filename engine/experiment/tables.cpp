@@ -54,11 +54,9 @@ std::string number(const Cell& cell, const NumberColumn& column) {
                                        : fmt::format("{:.{}f}", value, column.digits);
 }
 
-std::string title_of_key(const std::string& key) { return title_of(parse_configuration(key)); }
-
 std::string windows_of(const Cell& cell) { return fmt::format("{}/{}", cell.ok, cell.windows); }
 
-Table time_table(const std::vector<Cell>& cells, int frames) {
+Table time_table(const std::vector<Cell>& cells, int frames, const MethodTable& methods) {
   const std::vector<NumberColumn> columns{
       {"Front end [ms/frame]", {"track_ms", "ransac_ms"}, 1, true, 2},
       {"Rotations [ms]", {"rotations_ms"}, 1, false, 2},
@@ -70,7 +68,8 @@ Table time_table(const std::vector<Cell>& cells, int frames) {
   for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
   for (const Cell& cell : cells) {
     if (cell.frames != frames) continue;
-    std::vector<std::string> line{title_of_key(cell.configuration), windows_of(cell)};
+    const Configuration configuration = parse_configuration(cell.configuration, methods);
+    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
     for (const NumberColumn& column : columns) line.push_back(number(cell, column));
     table.lines.push_back(std::move(line));
   }
@@ -213,7 +212,9 @@ ordered_json timing_json(std::span<const Row> rows) {
 Table running_time_table(std::span<const Row> rows) {
   const std::set<int> lengths = lengths_in(rows);
   const int frames = timed_length({lengths.begin(), lengths.end()});
-  Table table = time_table(summarize(rows), frames);
+  MethodTable methods;
+  for (const Row& row : rows) methods.add(row.settings.options.method);
+  Table table = time_table(summarize(rows), frames, methods);
   table.caption =
       fmt::format("Running time of different initialization methods with {} frames", frames);
   if (frames != kPaperFrames) table.caption += fmt::format(" (no windows of {})", kPaperFrames);

@@ -87,7 +87,7 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
     check_experiment_folder(folder);
     make_folder(folder);
   } else {
-    found = differences(read_experiment(folder), experiment);
+    found = differences(read_experiment(folder, methods_of(experiment)), experiment);
   }
   if (!found.plan.empty()) {
     throw InputError(
@@ -102,7 +102,7 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
   return found.content;
 }
 
-Experiment read_experiment(const fs::path& folder) {
+Experiment read_experiment(const fs::path& folder, const MethodTable& methods) {
   const fs::path file = definition_file(folder);
   const ordered_json json = read_json(file);
   if (json.is_discarded()) {
@@ -110,7 +110,7 @@ Experiment read_experiment(const fs::path& folder) {
         fmt::format("{}: is not the definition of an experiment (no JSON)", file.string()));
   }
   try {
-    return experiment_from_json(json);
+    return experiment_from_json(json, methods);
   } catch (const ordered_json::exception& error) {
     throw InputError(fmt::format(
         "{}: is not the definition of an experiment ({})", file.string(), error.what()));
@@ -144,7 +144,8 @@ WindowFile load_window(const fs::path& folder,
     std::vector<std::string> differs = differences_from(experiment, recording, json);
     if (!differs.empty()) return {std::nullopt, std::move(differs)};
     std::vector<Row> rows;
-    for (const ordered_json& row : json.at("rows")) rows.push_back(row_from_json(row));
+    const MethodTable methods = methods_of(experiment);
+    for (const ordered_json& row : json.at("rows")) rows.push_back(row_from_json(row, methods));
     if (belongs(rows, experiment)) return {std::move(rows), {}};
   } catch (const ordered_json::exception&) {
   } catch (const InputError&) {
@@ -177,10 +178,12 @@ std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::
                                  list_of(missing)));
 }
 
-Experiment merge_experiments(std::span<const fs::path> folders, const fs::path& output) {
-  Experiment experiment = read_experiment(folders.front());
+Experiment merge_experiments(std::span<const fs::path> folders,
+                             const fs::path& output,
+                             const MethodTable& methods) {
+  Experiment experiment = read_experiment(folders.front(), methods);
   for (const fs::path& folder : folders) {
-    ExperimentDifferences found = differences(experiment, read_experiment(folder));
+    ExperimentDifferences found = differences(experiment, read_experiment(folder, methods));
     std::vector<std::string>& names = found.plan;
     names.insert(names.end(), found.content.begin(), found.content.end());
     if (names.empty()) continue;

@@ -28,7 +28,7 @@ std::vector<std::string> begin_experiment(const std::filesystem::path& folder,
 void check_experiment_folder(const std::filesystem::path& folder);
 
 /// What a folder is about. Throws InputError.
-Experiment read_experiment(const std::filesystem::path& folder);
+Experiment read_experiment(const std::filesystem::path& folder, const MethodTable& methods = {});
 
 /// The rows of one window, one a configuration, all of one of the experiment's recordings, start
 /// and length, with what they depend on.
@@ -57,6 +57,7 @@ std::vector<Row> collect_rows(const Experiment& experiment,
 /// definition and all its windows. Throws InputError where they, or windows in them, are of
 /// different experiments (with the name of what differs) or a window is missing.
 Experiment merge_experiments(std::span<const std::filesystem::path> folders,
-                             const std::filesystem::path& output);
+                             const std::filesystem::path& output,
+                             const MethodTable& methods = {});
 
 }  // namespace gpo

@@ -3,13 +3,10 @@
 #include "engine/initialize.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/make_window.h"
-#include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize/chosen_rotations.h"
-#include "engine/initialize/gravity.h"
 #include "engine/initialize/input_checks.h"
-#include "engine/initialize/steps.h"
-#include "engine/initializers/methods.h"
+#include "engine/initialize/method_defaults.h"
+#include "engine/initialize/pipeline.h"
 #include "engine/window/tracks.h"
 
 #include <numeric>
@@ -72,32 +69,10 @@ Gyroscope with_names(Gyroscope gyroscope) {
   return gyroscope;
 }
 
-Initialization solved(const Window& window,
-                      const InitializeOptions& options,
-                      const Sources& sources,
-                      const std::stop_token& stop) {
-  const Method& method = find_method(options.method);
-  Initialization result = method.initialize_from
-                              ? method.initialize_from(window, sources, stop)
-                              : method.initialize(window, options.initializer, stop);
-  return assessed(method, window, std::move(result));
-}
-
-/// Nothing without accelerations.
-std::optional<InertialAlignment> aligned(const Window& window,
-                                         const Gyroscope* gyroscope,
-                                         const InitializeOptions& options,
-                                         Initialization& initialization) {
-  if (gyroscope == nullptr || gyroscope->accelerations_m_s2.empty()) return std::nullopt;
-  std::optional<Pose> T_gyro_camera;
-  if (options.p_gyro_camera_m)
-    T_gyro_camera = Pose{gyroscope->R_gyro_camera, *options.p_gyro_camera_m};
-  return find_gravity(window,
-                      uncertain_poses(window, initialization),
-                      *gyroscope,
-                      T_gyro_camera,
-                      gravity_used(options),
-                      initialization);
+/// The camera's place on the IMU, if its position is known.
+std::optional<Pose> body_camera_of(const Gyroscope* gyroscope, const InitializeOptions& options) {
+  if (gyroscope == nullptr || !options.p_gyro_camera_m) return std::nullopt;
+  return Pose{gyroscope->R_gyro_camera, *options.p_gyro_camera_m};
 }
 
 }  // namespace
@@ -124,29 +99,23 @@ Initialized initialize(const Camera& camera,
   std::vector<std::int64_t> timestamps_ns;
   for (const Frame& frame : frames) timestamps_ns.push_back(frame.timestamp_ns);
   Tracks tracks = tracks_of(frames);
-  const RansacOptions ransac = ransac_options(options);
-  Window window =
-      make_window(tracks, camera, timestamps_ns, ransac, inliers_used(options), options.plane - 1);
-  const ChosenRotations chosen = chosen_rotations(window, gyro, R_wc, asked, ransac, stop);
+  Window window = window_of(tracks, camera, timestamps_ns, options);
+  const ChosenRotations chosen =
+      chosen_rotations(window, gyro, R_wc, asked, ransac_options(options), stop);
 
   Initialized result;
   result.ids = std::move(tracks.ids);
   result.rotations = chosen.source;
   result.rotations_note = chosen.note;
-  result.window = with_rotations(std::move(window), chosen.rotations, !uses_ransac(options));
-  Initialization& initialization = result.initialization;
+  result.window = with_rotations(std::move(window), chosen.rotations, options);
+  const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
+  Initialization found = run_method(result.window, chosen.rotations, sources, options, stop);
   std::vector<Verdict> growth;
-  if (chosen.rotations.R_wc.empty()) {
-    initialization = failed(chosen.rotations.reason);
-    initialization.stopped = chosen.rotations.stopped;
-  } else {
-    initialization = solved(result.window, options, {&camera, gyro}, stop);
-    if (!initialization.verdict) growth = growing_verdicts(result.window, stop);
-  }
-  if (initialization.ok && options.gravity != Gravity::off)
-    result.inertial = aligned(result.window, gyro, options, initialization);
-  complete_verdict(result.window, growth, initialization);
-  if (options.camera_is_guess && initialization.verdict) demote(*initialization.verdict);
+  const bool needs_growth = !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
+  if (needs_growth) growth = growing_verdicts(result.window, stop);
+  Finished end = finished(result.window, sources, options, growth, std::move(found));
+  result.initialization = std::move(end.initialization);
+  result.inertial = std::move(end.inertial);
   return result;
 }
 

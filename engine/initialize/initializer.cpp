@@ -4,10 +4,9 @@
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/initialize/input_checks.h"
-#include "engine/initialize/steps.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initialize/travel.h"
 #include "engine/initializers/certainty/window_evidence.h"
-#include "engine/initializers/methods.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -41,7 +40,7 @@ void check(const LiveOptions& options) {
 
 /// Whether one homography's way bounds what the verdict is to be: of the plane with most tracks.
 bool travel_tells(const InitializeOptions& options) {
-  return options.plane == 1 && find_method(options.method).needs_plane;
+  return options.plane == 1 && options.method.row().needs_plane;
 }
 
 std::string why_not_ready(const Initialized& result) {

@@ -3,7 +3,6 @@
 #include "engine/initialize/input_checks.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +24,7 @@ bool is_rotation(const Eigen::Matrix3d& R) {
 }  // namespace
 
 void check_options(const InitializeOptions& options) {
-  find_method(options.method);
+  options.method.row();
   if (!(options.ransac_threshold_px > 0)) {
     throw SettingError("ransac_threshold_px",
                        fmt::format("{}, expected more than 0", options.ransac_threshold_px));

@@ -18,9 +18,7 @@
 #include "engine/initializers/pnp_ba.h"
 
 #include <algorithm>
-#include <atomic>
-#include <iterator>
-#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -61,7 +59,6 @@ void say_what_makes_it_weak(const std::optional<Uncertainty>& judged_by, Verdict
         *judged_by->neighbors_sigma_deg);
 }
 
-/// The rows of this program.
 std::vector<Method> our_methods() {
   using enum MethodFamily;
   using enum Inliers;
@@ -82,42 +79,11 @@ std::vector<Method> our_methods() {
   // clang-format on
 }
 
-/// What `add_methods` keeps until the table is made, which happens once.
-struct Registry {
-  std::vector<Method> own;
-  std::atomic<bool> closed = false;
-};
-
-Registry& registry() {
-  static Registry one;
-  return one;
+[[noreturn]] void refuse_unknown(std::string_view key, const std::vector<MethodChoice>& known) {
+  std::string keys;
+  for (const MethodChoice& one : known) keys += (keys.empty() ? "" : ", ") + one.key();
+  throw SettingError("method", fmt::format("unknown method '{}', expected one of {}", key, keys));
 }
-
-}  // namespace
-
-std::span<const Method> methods() {
-  static const std::vector<Method> table = [] {
-    registry().closed = true;
-    std::vector<Method> all = our_methods();
-    std::ranges::move(registry().own, std::back_inserter(all));
-    return all;
-  }();
-  return table;
-}
-
-void add_methods(std::vector<Method> own) {
-  if (registry().closed) throw std::logic_error("methods are added before they are used");
-  std::vector<std::string> taken;
-  for (const Method& method : our_methods()) taken.push_back(method.key);
-  for (const Method& method : own) {
-    if (std::ranges::find(taken, method.key) != taken.end())
-      throw InputError(fmt::format("there already is a method '{}'", method.key));
-    taken.push_back(method.key);
-  }
-  registry().own = std::move(own);
-}
-
-namespace {
 
 /// Where a method is much less sure than its window allows, since it holds rotations or is none of
 /// the best: two numbers that differ need a word.
@@ -132,6 +98,11 @@ void say_what_is_lost(const std::optional<Uncertainty>& result, Verdict& verdict
 }
 
 }  // namespace
+
+std::span<const Method> methods() {
+  static const std::vector<Method> table = our_methods();
+  return table;
+}
 
 Initialization assessed(const Method& method, const Window& window, Initialization result) {
   if (!result.ok) return result;
@@ -167,12 +138,38 @@ std::vector<std::string> readers_of(const std::string& option) {
 }
 
 const Method& find_method(std::string_view key) {
-  std::string known;
-  for (const Method& method : methods()) {
-    if (method.key == key) return method;
-    known += (known.empty() ? "" : ", ") + method.key;
-  }
-  throw SettingError("method", fmt::format("unknown method '{}', expected one of {}", key, known));
+  const auto found = std::ranges::find(methods(), key, &Method::key);
+  if (found == methods().end()) refuse_unknown(key, MethodTable().all());
+  return *found;
+}
+
+void MethodTable::add(Method own) {
+  if (contains(own.key)) throw InputError(fmt::format("there already is a method '{}'", own.key));
+  own_.push_back(std::make_shared<const Method>(std::move(own)));
+}
+
+void MethodTable::add(const MethodChoice& choice) {
+  if (choice.own() && std::ranges::find(own_, choice.own()) == own_.end())
+    own_.push_back(choice.own());
+}
+
+std::vector<MethodChoice> MethodTable::all() const {
+  std::vector<MethodChoice> all;
+  for (const Method& method : methods()) all.emplace_back(method.key);
+  for (const auto& method : own_) all.emplace_back(method);
+  return all;
+}
+
+bool MethodTable::contains(std::string_view key) const {
+  const std::vector<MethodChoice> known = all();
+  return std::ranges::find(known, key, &MethodChoice::key) != known.end();
+}
+
+MethodChoice MethodTable::find(std::string_view key) const {
+  const std::vector<MethodChoice> known = all();
+  const auto found = std::ranges::find(known, key, &MethodChoice::key);
+  if (found == known.end()) refuse_unknown(key, known);
+  return *found;
 }
 
 }  // namespace gpo

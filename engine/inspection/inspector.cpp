@@ -3,7 +3,6 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/stages.h"
 #include "engine/inspection/window/window_rotations.h"
 
@@ -66,11 +65,11 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
   check_window(*stages.recording, settings);
-  find_method(settings.method);  // throws before any work is done
+  settings.options.method.row();  // throws before any work is done
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  rotation_source_used(*stages.recording, settings.rotations);  // so does this
+  rotation_source_used(*stages.recording, settings.options.rotations);  // so does this
   const bool prepared = stages.update_tracks(settings, stop, progress) &&
                         stages.update_truth(settings, stop, progress) &&
                         stages.update_window(settings, stop);
@@ -80,10 +79,10 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
     // The truth is of one plane, which is taken to be the one with most tracks.
-    const bool leads_truth = settings.plane == 1;
+    const bool leads_truth = settings.options.plane == 1;
     if (inspection.truth) {
       inspection.evaluation = evaluate(
-          *inspection.initialization, *inspection.window, *inspection.truth, settings.seed);
+          *inspection.initialization, *inspection.window, *inspection.truth, settings.options.seed);
       if (!leads_truth) without_plane(*inspection.evaluation);
       if (inspection.inertial)
         compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);

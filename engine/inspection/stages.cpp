@@ -3,12 +3,9 @@
 #include "engine/inspection/stages.h"
 
 #include "engine/base/error.h"
-#include "engine/frontend/make_window.h"
 #include "engine/inertial/scale_since.h"
-#include "engine/inertial/uncertain_poses.h"
-#include "engine/initialize/gravity.h"
-#include "engine/initialize/steps.h"
-#include "engine/initializers/methods.h"
+#include "engine/initialize/method_defaults.h"
+#include "engine/initialize/pipeline.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_truth.h"
@@ -34,7 +31,7 @@ Span covering(const std::optional<Span>& kept, const Span& wanted) {
 /// all tracks in the end and those that never do.
 Settings rejecting(SettingStage stage, const Settings& settings) {
   Settings acting = acting_until(stage, settings);
-  acting.ransac = ransac_options(options_of(settings)).enabled;
+  acting.options.ransac = ransac_options(settings.options).enabled;
   return acting;
 }
 
@@ -55,7 +52,7 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
 Watch told_by(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
-  const std::string title = find_method(settings.method).title;
+  const std::string title = settings.options.method.row().title;
   return {stop, [=, last = std::chrono::steady_clock::now()](int iteration, double cost) mutable {
             if (milliseconds_since(last) < kPause_ms) return;
             last = std::chrono::steady_clock::now();
@@ -81,32 +78,34 @@ Sources sources_of(const Recording& recording, const Window& window) {
   return sources;
 }
 
-Initialization initialized(const Recording& recording,
-                           const Window& window,
-                           const Settings& settings,
-                           const Watch& watch) {
-  const Method& method = find_method(settings.method);
-  return method.initialize_from
-             ? method.initialize_from(window, sources_of(recording, window), watch)
-             : method.initialize(window, settings.initializer, watch);
+/// The options with what the recording determines.
+InitializeOptions options_for(const Recording& recording, const Settings& settings) {
+  InitializeOptions options = settings.options;
+  if (recording.camera_source == CameraSource::guess) options.camera_is_guess = true;
+  return options;
 }
 
-/// Gravity and meters; nothing where the recording has no accelerometer.
-void align(const Window& window,
-           Gravity when,
-           Initialization& initialization,
-           Inspection& inspection) {
-  const auto& gyroscope = inspection.recording->gyroscope;
-  const auto& T_body_camera = inspection.recording->T_body_camera;
-  if (!gyroscope || gyroscope->accelerations_m_s2.empty()) return;
-  const UncertainPoses poses = uncertain_poses(window, initialization);
-  inspection.inertial =
-      find_gravity(window, poses, *gyroscope, T_body_camera, when, initialization);
-  if (!inspection.inertial->ok || !inspection.inertial->scale_known) return;
-  const auto count = poses_that_tell_scale(poses, *gyroscope, T_body_camera);
-  if (!count) return;
-  const auto at = std::ranges::find(window.timestamps_ns, poses.times_ns[*count - 1]);
-  inspection.scale_known_at = static_cast<int>(at - window.timestamps_ns.begin());
+/// Frame of the window up to which it takes to know the scale; nullopt if it is not known.
+std::optional<int> scale_known_at(const Window& window,
+                                  const Sources& sources,
+                                  const Finished& end) {
+  if (!end.inertial || !end.inertial->ok || !end.inertial->scale_known) return std::nullopt;
+  const auto count = poses_that_tell_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
+  if (!count) return std::nullopt;
+  const auto at = std::ranges::find(window.timestamps_ns, end.poses.times_ns[*count - 1]);
+  return static_cast<int>(at - window.timestamps_ns.begin());
+}
+
+Timing timing_of(const Stages& stages, const Settings& settings, double initialize_ms) {
+  const Kept<Span, Tracked>& followed =
+      stages.longest_tracks[static_cast<std::size_t>(settings.tracking)];
+  Timing t;
+  t.track = followed.value.milliseconds[settings.frames - 1];
+  t.ransac = stages.outliers.milliseconds;
+  t.rotations = stages.rotations.milliseconds;
+  t.initialize = initialize_ms;
+  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  return t;
 }
 
 }  // namespace
@@ -148,24 +147,20 @@ bool Stages::update_truth(const Settings& settings,
 
 bool Stages::update_window(const Settings& settings, const std::stop_token& stop) {
   check_excluded(*tracks.value, settings);
-  const RansacOptions ransac = ransac_options(options_of(settings));
-  const Inliers inliers = inliers_used(settings);
   outliers.update(rejecting(SettingStage::inliers, settings), [&]() {
     return std::optional(
-        std::make_shared<const Window>(make_window(without(*tracks.value, settings.exclude),
-                                                   recording->camera,
-                                                   recording->timestamps_ns,
-                                                   ransac,
-                                                   inliers,
-                                                   settings.plane - 1)));
+        std::make_shared<const Window>(window_of(without(*tracks.value, settings.exclude),
+                                                 recording->camera,
+                                                 recording->timestamps_ns,
+                                                 settings.options)));
   });
   const Settings turning = rejecting(SettingStage::rotations, settings);
   return rotations.update(turning, [&]() -> std::optional<ChosenRotations> {
     ChosenRotations chosen = window_rotations(*recording,
                                               *outliers.value,
                                               truth.value.get(),
-                                              settings.rotations,
-                                              ransac_options(options_of(turning)),
+                                              settings.options.rotations,
+                                              ransac_options(turning.options),
                                               stop);
     return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
   });
@@ -176,23 +171,14 @@ void Stages::initialize(const Settings& settings,
                         const Progress& progress,
                         Inspection& inspection) {
   const Rotations& given = rotations.value.rotations;
-  inspection.rotations_used = rotations.value.source;
-  inspection.rotations_note = rotations.value.note;
-  Window window = with_rotations(*outliers.value, given, !uses_ransac(settings));
-  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+  const InitializeOptions options = options_for(*recording, settings);
+  Window window = with_rotations(*outliers.value, given, options);
+  const Sources sources = sources_of(*recording, window);
   const auto begin = std::chrono::steady_clock::now();
-  Initialization initialization =
-      given.R_wc.empty()
-          ? failed(given.reason)
-          : initialized(*recording, window, settings, told_by(settings, stop, progress));
-  Timing& t = inspection.timing;
-  t.track = longest_tracks[static_cast<std::size_t>(settings.tracking)]
-                .value.milliseconds[settings.frames - 1];
-  t.ransac = outliers.milliseconds;
-  t.rotations = rotations.milliseconds;
-  t.initialize = milliseconds_since(begin);
-  t.optimize = initialization.solver.milliseconds;
-  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  Initialization found =
+      run_method(window, given, sources, options, told_by(settings, stop, progress));
+  inspection.timing = timing_of(*this, settings, milliseconds_since(begin));
+  inspection.timing.optimize = found.solver.milliseconds;
   if (!given.R_wc.empty()) {
     // What was stopped is short, and no result.
     const bool grown = growth.update(*rotations.key, [&]() {
@@ -202,19 +188,18 @@ void Stages::initialize(const Settings& settings,
     if (!grown) return;
     inspection.growth = growth.value;
     inspection.motion = frame_motion(window);
-    initialization = assessed(find_method(settings.method), window, std::move(initialization));
+    if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
   }
-  if (initialization.ok && settings.gravity != Gravity::off)
-    align(window, gravity_used(settings), initialization, inspection);
-  complete_verdict(window, inspection.growth, initialization);
-  if (recording->camera_source == CameraSource::guess) {
-    std::ranges::for_each(inspection.growth, demote);
-    if (initialization.verdict) demote(*initialization.verdict);
-  }
+  Finished end = finished(window, sources, options, inspection.growth, std::move(found));
+  inspection.scale_known_at = scale_known_at(window, sources, end);
+  inspection.inertial = std::move(end.inertial);
+  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+  inspection.rotations_used = rotations.value.source;
+  inspection.rotations_note = rotations.value.note;
   inspection.tracks = tracks.value;
   inspection.truth = truth.value;
   inspection.window = std::make_shared<const Window>(std::move(window));
-  inspection.initialization = std::make_shared<const Initialization>(std::move(initialization));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(end.initialization));
 }
 
 }  // namespace gpo

@@ -39,7 +39,7 @@ Inspections inspect_desk() {
   Inspections inspections;
   for (const char* method : {"gpo", "pnp", "dbscan", "ba"}) {
     Settings settings;
-    settings.method = method;
+    settings.options.method = method;
     inspections.push_back(inspector.inspect(settings));
   }
   return inspections;
@@ -175,7 +175,7 @@ std::jthread compute(Frames frames) {
     while (!stop.stop_requested()) {
       Inspector inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk"));
       for (const char* method : {"gpo", "pnp", "dbscan", "ba", "pnp_ba", "pba", "fpba"})
-        inspector.inspect({.frames = 60, .method = method}, stop);
+        inspector.inspect({.frames = 60, .options = {.method = method}}, stop);
     }
   });
 }

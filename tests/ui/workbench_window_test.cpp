@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench_window.h"
 
+#include "engine/initialize/method_defaults.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
@@ -160,8 +161,8 @@ TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
   open();
   const Commands commands = click(115, 218);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
-  EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings),
-            uses_ransac(inspection_->settings));
+  EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings.options),
+            uses_ransac(inspection_->settings.options));
 }
 
 TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
-#include "engine/initializers/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
@@ -73,7 +72,7 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          cv::Size size) {
   NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
-  const Method& method = find_method(inspection->settings.method);
+  const Method& method = inspection->settings.options.method.row();
   if (inspection->initialization->ok)
     content.answers.push_back({method.title, method.rgb, inspection, true});
   return snapshot<NormalsMap>(

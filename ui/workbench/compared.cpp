@@ -65,7 +65,8 @@ std::vector<Compared> unmoved_results(const WorkbenchState& state) {
 
 std::vector<Configuration> compared_list(const WorkbenchState& state) {
   std::vector<Configuration> list;
-  for (const std::string& key : state.compared) list.push_back(parse_configuration(key));
+  for (const std::string& key : state.compared)
+    list.push_back(parse_configuration(key, state.methods));
   return list;
 }
 
@@ -143,7 +144,7 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   const PaneNeeds needs = needs_of(state.panes);
   const std::optional<std::string> other = flipped(state);
   if (!needs.compared && other)
-    wanted.push_back(apply(parse_configuration(*other), compared_base(state)));
+    wanted.push_back(apply(parse_configuration(*other, state.methods), compared_base(state)));
   if (!needs.compared) return wanted;
   const auto want_each = [&](int frames) {
     Settings window = state.settings;

@@ -77,7 +77,7 @@ struct KeptSpan {
   std::filesystem::path recording;
   int start = 0;
   int frames = 0;
-  std::string method;
+  MethodChoice method = "";
 };
 
 struct WorkbenchState;
@@ -111,6 +111,7 @@ struct WorkbenchState {
   std::shared_ptr<const StartScan> scan;     ///< null: nobody asked for one
 
   Settings settings;
+  MethodTable methods;               ///< to choose from
   std::vector<KeptSpan> spans;       ///< of recordings that were open before
   std::vector<UndoStep> undo, redo;  ///< before earlier changes, and undone ones; the last one last
   bool dragging_settings = false;    ///< the last change was one of many small ones

@@ -3,6 +3,7 @@
 #include "engine/inspection/report/result_json.h"
 
 #include "engine/files/json_text.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -297,10 +298,10 @@ ordered_json growth_json(const Inspection& inspection) {
 
 Settings settings_used(const Inspection& inspection) {
   Settings used = inspection.settings;
-  used.rotations = inspection.rotations_used;
-  used.ransac = uses_ransac(used);
-  used.inliers = inspection.window->inliers;
-  used.gravity = gravity_used(used);
+  used.options.rotations = inspection.rotations_used;
+  used.options.ransac = uses_ransac(used.options);
+  used.options.inliers = inspection.window->inliers;
+  used.options.gravity = gravity_used(used.options);
   return used;
 }
 
@@ -325,7 +326,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["camera"] = {{"source", to_string(inspection.recording->camera_source)},
                     {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
                     {"distortion_coefficients", camera.coefficients}};
-  json["method"] = inspection.settings.method;
+  json["method"] = inspection.settings.options.method.key();
   json["status"] = result.ok ? "ok" : "failed";
   json["reason"] = result.reason;
   json["window"] = {{"start", window.start},

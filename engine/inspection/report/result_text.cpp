@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/result_text.h"
 
-#include "engine/initializers/methods.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
@@ -173,7 +172,7 @@ std::string to_text(const Inspection& inspection) {
                                      window.start + window.frame_count() - 1,
                                      window.frame_count())) +
                      camera_row(*inspection.recording) +
-                     row("method", find_method(inspection.settings.method).title) +
+                     row("method", inspection.settings.options.method.row().title) +
                      row("rotations", rotations_text(inspection)) +
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +
                      row("inliers",

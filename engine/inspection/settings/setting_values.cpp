@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 
 #include <algorithm>
@@ -50,9 +51,11 @@ SettingValue ids_from(const Setting& setting, const std::string& text) {
   return ids;
 }
 
-SettingValue choice_from(const Setting& setting, const std::string& text) {
+SettingValue choice_from(const Setting& setting,
+                         const std::string& text,
+                         const MethodTable& methods) {
   std::vector<std::string> known;
-  for (const SettingChoice& one : setting.choices) {
+  for (const SettingChoice& one : choices_of(setting, methods)) {
     if (one.key == text) return text;
     known.push_back(one.key);
   }
@@ -83,7 +86,9 @@ std::string value_text(const SettingValue& value) {
   return std::visit(Text{}, value);
 }
 
-SettingValue value_from(const Setting& setting, const std::string& text) {
+SettingValue value_from(const Setting& setting,
+                        const std::string& text,
+                        const MethodTable& methods) {
   using enum SettingKind;
   if (setting.optional && text == kDefault) return {};
   switch (setting.kind) {
@@ -95,7 +100,7 @@ SettingValue value_from(const Setting& setting, const std::string& text) {
     case number:
       return in_range(setting, text, parse_number(text), setting.least, setting.most);
     case choice:
-      return choice_from(setting, text);
+      return choice_from(setting, text, methods);
     case ids:
       return ids_from(setting, text);
   }
@@ -106,9 +111,21 @@ std::string setting_text(const Settings& settings, const std::string& key) {
   return value_text(find_setting(key).get(settings));
 }
 
-Settings with_setting(Settings settings, const std::string& key, const std::string& text) {
+void set_value(Settings& settings,
+               const Setting& setting,
+               const SettingValue& value,
+               const MethodTable& methods) {
+  setting.set(settings, value);
+  if (setting.key == "method")
+    settings.options.method = methods.find(settings.options.method.key());
+}
+
+Settings with_setting(Settings settings,
+                      const std::string& key,
+                      const std::string& text,
+                      const MethodTable& methods) {
   const Setting& setting = find_setting(key);
-  setting.set(settings, value_from(setting, text));
+  set_value(settings, setting, value_from(setting, text, methods), methods);
   return settings;
 }
 
@@ -128,8 +145,8 @@ Settings with_default(Settings settings, const std::string& key) {
   return settings;
 }
 
-bool is_read(const Setting& setting, const std::string& method) {
-  const auto& options = find_method(method).reads;
+bool is_read(const Setting& setting, const MethodChoice& method) {
+  const auto& options = method.row().reads;
   return setting.reader != SettingReader::method ||
          std::ranges::find(options, setting.key) != options.end();
 }
@@ -143,13 +160,13 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
                  ? "The recording brings its own tracks"
                  : "";
     case SettingReader::inlier_test:
-      return !uses_ransac(settings) && find_method(settings.method).needs_plane
+      return !uses_ransac(settings.options) && settings.options.method.row().needs_plane
                  ? "Without RANSAC every track counts as an inlier"
                  : "";
     case SettingReader::method:
-      return is_read(setting, settings.method) ? "" : who_reads(setting);
+      return is_read(setting, settings.options.method) ? "" : who_reads(setting);
     case SettingReader::gravity:
-      return gravity_used(settings) != settings.gravity
+      return gravity_used(settings.options) != settings.options.gravity
                  ? "Only gpo_joint takes gravity into its solution; here it is found after"
                  : "";
   }
@@ -160,9 +177,9 @@ Settings as_used(Settings settings) {
   const Settings given = settings;
   for (const Setting& setting : settings_table()) {
     if (setting.used != nullptr) setting.set(settings, setting.used(given));
-    if (!is_read(setting, given.method)) setting.set(settings, setting.get(Settings{}));
+    if (!is_read(setting, given.options.method)) setting.set(settings, setting.get(Settings{}));
   }
-  settings.gravity = gravity_used(settings);
+  settings.options.gravity = gravity_used(settings.options);
   return settings;
 }
 

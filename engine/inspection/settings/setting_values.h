@@ -12,11 +12,21 @@ namespace gpo {
 /// ids with commas or none, or default where it is left to the method.
 std::string value_text(const SettingValue& value);
 /// Reads it. Throws SettingError that names the setting, what was found and what is expected.
-SettingValue value_from(const Setting& setting, const std::string& text);
+SettingValue value_from(const Setting& setting,
+                        const std::string& text,
+                        const MethodTable& methods = {});
+/// Sets it; a method is found in the table.
+void set_value(Settings& settings,
+               const Setting& setting,
+               const SettingValue& value,
+               const MethodTable& methods = {});
 
 std::string setting_text(const Settings& settings, const std::string& key);
 /// The settings with another value. Throws InputError for an unknown key, SettingError for a value.
-Settings with_setting(Settings settings, const std::string& key, const std::string& text);
+Settings with_setting(Settings settings,
+                      const std::string& key,
+                      const std::string& text,
+                      const MethodTable& methods = {});
 
 /// The settings with a switch on or off; left to the method where that does so by itself.
 Settings switched(Settings settings, const std::string& key, bool on);
@@ -25,7 +35,7 @@ Settings switched(Settings settings, const std::string& key, bool on);
 Settings with_default(Settings settings, const std::string& key);
 
 /// Whether the method heeds a setting; false only for an option that it does not name.
-bool is_read(const Setting& setting, const std::string& method);
+bool is_read(const Setting& setting, const MethodChoice& method);
 
 /// Why a setting changes nothing beside the others, or in this recording (null: in any), in one
 /// line; empty where it may.

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/settings/settings.h"
 
-#include "engine/initialize/steps.h"
-
 #include <utility>
 
 namespace gpo {
@@ -11,14 +9,14 @@ namespace {
 
 Settings paper() {
   Settings settings;
-  settings.method = "gpo";
-  settings.rotations = RotationSource::raw;
+  settings.options.method = "gpo";
+  settings.options.rotations = RotationSource::raw;
   settings.tracking = Tracking::frame_to_frame;
-  settings.inliers = Inliers::per_frame;
-  settings.initializer = {.solver = Solver::ceres,
-                          .loss = Loss::squared,
-                          .shutter = Shutter::global,
-                          .planes = Planes::one};
+  settings.options.inliers = Inliers::per_frame;
+  settings.options.initializer = {.solver = Solver::ceres,
+                                  .loss = Loss::squared,
+                                  .shutter = Shutter::global,
+                                  .planes = Planes::one};
   return settings;
 }
 
@@ -28,9 +26,9 @@ Settings with_preset(Settings settings, Preset preset) {
   Settings chosen = preset == Preset::best ? Settings{} : paper();
   chosen.start = settings.start;
   chosen.frames = settings.frames;
-  chosen.ransac_threshold_px = settings.ransac_threshold_px;
-  chosen.plane = settings.plane;
-  chosen.seed = settings.seed;
+  chosen.options.ransac_threshold_px = settings.options.ransac_threshold_px;
+  chosen.options.plane = settings.options.plane;
+  chosen.options.seed = settings.options.seed;
   chosen.exclude = std::move(settings.exclude);
   return chosen;
 }
@@ -40,23 +38,5 @@ std::optional<Preset> preset_of(const Settings& settings) {
     if (settings == with_preset(settings, preset)) return preset;
   return std::nullopt;
 }
-
-InitializeOptions options_of(const Settings& settings) {
-  return {.method = settings.method,
-          .rotations = settings.rotations,
-          .ransac = settings.ransac,
-          .ransac_threshold_px = settings.ransac_threshold_px,
-          .inliers = settings.inliers,
-          .plane = settings.plane,
-          .seed = settings.seed,
-          .gravity = settings.gravity,
-          .initializer = settings.initializer};
-}
-
-bool uses_ransac(const Settings& settings) { return uses_ransac(options_of(settings)); }
-
-Inliers inliers_used(const Settings& settings) { return inliers_used(options_of(settings)); }
-
-Gravity gravity_used(const Settings& settings) { return gravity_used(options_of(settings)); }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/window/window_rotations.h"
 
@@ -31,7 +32,7 @@ constexpr bool kIsWhole = std::is_integral_v<T> && !std::is_same_v<T, bool>;
 
 template <class T>
 constexpr SettingKind kind_of() {
-  if constexpr (Choice<T> || std::is_same_v<T, std::string>) return SettingKind::choice;
+  if constexpr (Choice<T> || std::is_same_v<T, MethodChoice>) return SettingKind::choice;
   if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
   if constexpr (std::is_same_v<T, double>) return SettingKind::number;
   return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
@@ -41,6 +42,8 @@ template <class T>
 SettingValue value_of(const T& field) {
   if constexpr (Plain<T>::kOptional) {
     return field ? value_of(*field) : SettingValue();
+  } else if constexpr (std::is_same_v<T, MethodChoice>) {
+    return field.key();
   } else if constexpr (Choice<T>) {
     return std::string(to_string(field));
   } else if constexpr (kIsWhole<T>) {
@@ -57,6 +60,8 @@ void set_field(T& field, const SettingValue& value) {
     if (!std::holds_alternative<std::monostate>(value)) set_field(field.emplace(), value);
   } else if constexpr (Choice<T>) {
     field = choice<T>(std::get<std::string>(value));
+  } else if constexpr (std::is_same_v<T, MethodChoice>) {
+    field = std::get<std::string>(value);
   } else if constexpr (kIsWhole<T>) {
     field = static_cast<T>(std::get<std::int64_t>(value));
   } else {
@@ -80,9 +85,10 @@ Setting row(Field, Setting setting) {
   return setting;
 }
 
-std::vector<SettingChoice> method_choices() {
+std::vector<SettingChoice> method_choices(const MethodTable& methods) {
   std::vector<SettingChoice> choices;
-  for (const Method& method : methods()) choices.push_back({method.key, method.title, method.rgb});
+  for (const MethodChoice& method : methods.all())
+    choices.push_back({method.key(), method.row().title, method.row().rgb});
   return choices;
 }
 
@@ -103,14 +109,14 @@ std::vector<Setting> window_rows() {
                       .least = 2,
                       .most = 1000,
                       .stage = tracks}));
-  rows.push_back(row([](auto& s) -> auto& { return s.method; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.method; },
                      {.key = "method",
                       .title = "Method",
                       .help = "Initializer",
                       .stage = initialization,
-                      .choices = method_choices()}));
+                      .choices = method_choices({})}));
   rows.push_back(row(
-      [](auto& s) -> auto& { return s.rotations; },
+      [](auto& s) -> auto& { return s.options.rotations; },
       {.key = "rotations",
        .title = "Rotations",
        .help = "Where the camera rotations come from: a gyroscope, decomposed homographies of one "
@@ -141,7 +147,7 @@ std::vector<Setting> window_rows() {
 
 void add_inlier_rows(std::vector<Setting>& rows) {
   using enum SettingStage;
-  rows.push_back(row([](auto& s) -> auto& { return s.ransac; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.ransac; },
                      {.key = "ransac",
                       .title = "RANSAC",
                       .help = "Reject tracks off the plane by a homography from the reference "
@@ -149,8 +155,8 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .leads = true,
                       .words = {{"ransac", "on", "with RANSAC", 0x882255},
                                 {"no-ransac", "off", "without RANSAC", 0xBB3355}},
-                      .used = [](const Settings& s) { return value_of(uses_ransac(s)); }}));
-  rows.push_back(row([](auto& s) -> auto& { return s.ransac_threshold_px; },
+                      .used = [](const Settings& s) { return value_of(uses_ransac(s.options)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.options.ransac_threshold_px; },
                      {.key = "ransac_threshold_px",
                       .title = "Threshold",
                       .unit = "px",
@@ -159,7 +165,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .most = 50,
                       .reader = SettingReader::inlier_test}));
   rows.push_back(
-      row([](auto& s) -> auto& { return s.inliers; },
+      row([](auto& s) -> auto& { return s.options.inliers; },
           {.key = "inliers",
            .title = "Inliers",
            .help = "Tracks on the plane: told frame by frame, consistent over the window, "
@@ -169,15 +175,15 @@ void add_inlier_rows(std::vector<Setting>& rows) {
            .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
                      {"consistent", "consistent", "with consistent inliers", 0x999933},
                      {"planes", "planes", "with inliers by plane", 0x88AA55}},
-           .used = [](const Settings& s) { return value_of(inliers_used(s)); }}));
-  rows.push_back(row([](auto& s) -> auto& { return s.plane; },
+           .used = [](const Settings& s) { return value_of(inliers_used(s.options)); }}));
+  rows.push_back(row([](auto& s) -> auto& { return s.options.plane; },
                      {.key = "plane",
                       .title = "Plane",
                       .help = "Which of the window's planes leads: 1 has most tracks",
                       .least = 1,
                       .most = 9,
                       .reader = SettingReader::inlier_test}));
-  rows.push_back(row([](auto& s) -> auto& { return s.seed; },
+  rows.push_back(row([](auto& s) -> auto& { return s.options.seed; },
                      {.key = "seed",
                       .title = "Seed",
                       .help = "Seed of every random choice",
@@ -198,37 +204,37 @@ void add_option_rows(std::vector<Setting>& rows) {
     setting.help += fmt::format(" ({})", fmt::join(readers_of(setting.key), ", "));
     rows.push_back(row(field, std::move(setting)));
   };
-  add([](auto& s) -> auto& { return s.initializer.solver; },
+  add([](auto& s) -> auto& { return s.options.initializer.solver; },
       {.key = "solver",
        .title = "Solver",
        .help = "Who minimizes: our own Schur solver, or Ceres",
        .words = {{"schur", "schur", "by our own solver", 0x332288},
                  {"ceres", "ceres", "by Ceres", 0xAA4499}}});
-  add([](auto& s) -> auto& { return s.initializer.error; },
+  add([](auto& s) -> auto& { return s.options.initializer.error; },
       {.key = "error",
        .title = "Error",
        .help = "One-sided transfer error, or Sampson's",
        .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
                  {"sampson", "sampson", "with Sampson's error", 0x997700}}});
-  add([](auto& s) -> auto& { return s.initializer.loss; },
+  add([](auto& s) -> auto& { return s.options.initializer.loss; },
       {.key = "loss",
        .title = "Loss",
        .help = "Squared, or Huber's, linear for outliers",
        .words = {{"squared", "squared", "with squared loss", 0x004488},
                  {"huber", "huber", "with Huber's loss", 0xEE99AA}}});
-  add([](auto& s) -> auto& { return s.initializer.shutter; },
+  add([](auto& s) -> auto& { return s.options.initializer.shutter; },
       {.key = "shutter",
        .title = "Shutter",
        .help = "Rows read one after another at an estimated pace, or all at once",
        .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
-  add([](auto& s) -> auto& { return s.initializer.planes; },
+  add([](auto& s) -> auto& { return s.options.initializer.planes; },
       {.key = "planes",
        .title = "Planes",
        .help = "All planes of the window at once, or the leading one alone",
        .words = {{"all-planes", "all", "with all planes", 0x557733},
                  {"one-plane", "one", "with one plane", 0xCC8899}}});
-  add([](auto& s) -> auto& { return s.initializer.time_offset; },
+  add([](auto& s) -> auto& { return s.options.initializer.time_offset; },
       {.key = "time_offset",
        .title = "Time offset",
        .help = "Estimate the offset between the clocks of camera and gyroscope",
@@ -244,7 +250,7 @@ std::span<const Setting> settings_table() {
     add_inlier_rows(rows);
     add_option_rows(rows);
     rows.push_back(
-        row([](auto& s) -> auto& { return s.gravity; },
+        row([](auto& s) -> auto& { return s.options.gravity; },
             {.key = "gravity",
              .title = "Gravity",
              .help = "Gravity and meters by the accelerometer, where there is one: after the "
@@ -265,6 +271,10 @@ std::vector<std::string> setting_keys() {
   std::vector<std::string> keys;
   for (const Setting& setting : settings_table()) keys.push_back(setting.key);
   return keys;
+}
+
+std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods) {
+  return setting.key == "method" ? method_choices(methods) : setting.choices;
 }
 
 const Setting& find_setting(std::string_view key) {

@@ -54,10 +54,10 @@ struct Setting {
   double most = 0;
   SettingReader reader = SettingReader::all;
   SettingStage stage = SettingStage::inliers;
-  bool advanced = false;                            ///< what few people change
-  bool leads = false;                               ///< its word stands before the others' in a key
-  std::vector<SettingWord> words = {};              ///< empty: no configuration names it
-  std::vector<SettingChoice> choices = {};          ///< of a choice
+  bool advanced = false;                    ///< what few people change
+  bool leads = false;                       ///< its word stands before the others' in a key
+  std::vector<SettingWord> words = {};      ///< empty: no configuration names it
+  std::vector<SettingChoice> choices = {};  ///< of a choice; of the method ours, see `choices_of`
   SettingValue (*used)(const Settings&) = nullptr;  ///< what is left to the method comes to
   /// Why a choice is not to be had in a recording, one line; empty: it is. Null: all are.
   std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
@@ -70,6 +70,8 @@ struct Setting {
 
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
+/// The values to choose from; of the method those of the table.
+std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods);
 /// Throws InputError that names the known ones.
 const Setting& find_setting(std::string_view key);
 

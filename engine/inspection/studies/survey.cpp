@@ -132,7 +132,7 @@ SurveyStatus Survey::status() const {
     ++status.of;
     status.stage = "normals of the window";
   } else if (const Settings* settings = next())
-    status.stage = fmt::format("{}, {} frames", settings->method, settings->frames);
+    status.stage = fmt::format("{}, {} frames", settings->options.method.key(), settings->frames);
   return status;
 }
 

@@ -65,7 +65,7 @@ struct Tally {
 /// Why a track of which no frame is an inlier is none over the window.
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
-  const ConsistencyOptions options{.threshold_px = inspection.settings.ransac_threshold_px};
+  const ConsistencyOptions options{.threshold_px = inspection.settings.options.ransac_threshold_px};
   const TrackConsistency track =
       consistency(window.points_px, {window.H_i1, window.inlier}, options)[column];
   if (!track.mean_square) {
@@ -111,10 +111,10 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
     return reason_of_inconsistency(inspection, tally, life.column);
   std::string text =
       fmt::format("outlier in {} of {} frames", tally.seen - tally.inlier, tally.seen);
-  if (tally.worst_px > settings.ransac_threshold_px) {
+  if (tally.worst_px > settings.options.ransac_threshold_px) {
     text += fmt::format(": transfer error up to {:.1f} px above {:.1f} px",
                         tally.worst_px,
-                        settings.ransac_threshold_px);
+                        settings.options.ransac_threshold_px);
   }
   return text;
 }

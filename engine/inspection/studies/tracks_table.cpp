@@ -57,7 +57,7 @@ std::string loss_of(const Tracks& tracks, int column) {
 std::string tracks_csv(const Inspection& inspection) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
-  const double threshold_px = inspection.settings.ransac_threshold_px;
+  const double threshold_px = inspection.settings.options.ransac_threshold_px;
   const auto planes = plane_cells(window);
   std::string csv = "#frame,track,x,y,plane,verdict,residual_px,reason\n";
   for (int column = 0; column < tracks.track_count(); ++column) {

@@ -22,8 +22,8 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
   const Configuration plain = parse_configuration("gpo");
   EXPECT_EQ(plain, (Configuration{.method = "gpo"}));
   const Configuration both = parse_configuration("gpo+averaging+no-ransac");
-  EXPECT_EQ(apply(both, {}).ransac, false);
-  EXPECT_EQ(apply(both, {}).rotations, RotationSource::averaging);
+  EXPECT_EQ(apply(both, {}).options.ransac, false);
+  EXPECT_EQ(apply(both, {}).options.rotations, RotationSource::averaging);
   EXPECT_EQ(key_of(both), "gpo+no-ransac+averaging");
   EXPECT_EQ(parse_configuration(key_of(both)), both);
   const Configuration anchored = parse_configuration("ba+anchored+truth");
@@ -34,15 +34,15 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
   EXPECT_EQ(key_of(consistent), "gpo+truth+anchored+consistent");
   EXPECT_EQ(parse_configuration(key_of(consistent)), consistent);
   EXPECT_EQ(title_of(parse_configuration("gpo+consistent")), "GPO with consistent inliers");
-  EXPECT_EQ(apply(consistent, {}).inliers, Inliers::consistent);
+  EXPECT_EQ(apply(consistent, {}).options.inliers, Inliers::consistent);
 }
 
 TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
   const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
   const Settings settings = apply(squared, {});
-  EXPECT_EQ(settings.initializer.loss, Loss::squared);
-  EXPECT_EQ(settings.initializer.shutter, Shutter::global);
-  EXPECT_TRUE(settings.initializer.time_offset);
+  EXPECT_EQ(settings.options.initializer.loss, Loss::squared);
+  EXPECT_EQ(settings.options.initializer.shutter, Shutter::global);
+  EXPECT_TRUE(settings.options.initializer.time_offset);
   EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
   EXPECT_EQ(configuration_of(settings), squared);
   EXPECT_EQ(title_of(parse_configuration("gpo+ceres")), "GPO by Ceres");
@@ -52,9 +52,9 @@ TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
 
 TEST(Configuration, NamesGravityWhereAMethodTakesIt) {
   const Configuration joint = parse_configuration("gpo_joint+joint-gravity");
-  EXPECT_EQ(apply(joint, {}).gravity, Gravity::joint);
+  EXPECT_EQ(apply(joint, {}).options.gravity, Gravity::joint);
   EXPECT_EQ(configuration_of(apply(joint, {})), joint);
-  EXPECT_EQ(apply(parse_configuration("ba+no-gravity"), {}).gravity, Gravity::off);
+  EXPECT_EQ(apply(parse_configuration("ba+no-gravity"), {}).options.gravity, Gravity::off);
   EXPECT_THAT(error_of([] { parse_configuration("ba+joint-gravity"); }),
               HasSubstr("'ba+joint-gravity': ba does not take 'joint' for 'gravity'"));
 }
@@ -68,15 +68,15 @@ TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
   EXPECT_EQ(shortest("gpo+anchored"), "gpo");
   EXPECT_EQ(shortest("pnp+planes"), "pnp");
   EXPECT_EQ(shortest("closed_form+per-frame"), "closed_form+per-frame");
-  Settings unread{.method = "ba"};
-  unread.initializer.loss = Loss::squared;
+  Settings unread{.options = {.method = "ba"}};
+  unread.options.initializer.loss = Loss::squared;
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
 }
 
 TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
   Settings from;
   from.tracking = Tracking::anchored;
-  from.ransac = false;
+  from.options.ransac = false;
   for (const char* key : {"gpo", "gpo+frame-to-frame", "gpo+ransac+truth"}) {
     const Settings settings = apply(parse_configuration(key), from);
     EXPECT_EQ(key_of(configuration_of(settings, from)), key);
@@ -86,7 +86,7 @@ TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
 TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
   Settings anchored;
   anchored.tracking = Tracking::anchored;
-  anchored.initializer.loss = Loss::huber;
+  anchored.options.initializer.loss = Loss::huber;
   const Settings applied = apply(parse_configuration("gpo_joint+averaging"), anchored);
   EXPECT_EQ(applied.tracking, Tracking::anchored);
   EXPECT_EQ(applied.initializer.loss, Loss::huber);
@@ -97,7 +97,7 @@ TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
 TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettings) {
   Settings settings;
   settings.tracking = Tracking::frame_to_frame;
-  settings.ransac = false;
+  settings.options.ransac = false;
   const auto list = parse_configurations("gpo,gpo+no-ransac,pba");
   const Settings base = base_of(list, settings);
   EXPECT_EQ(key_of(configuration_of(apply(list[0], base))), "gpo+frame-to-frame");
@@ -106,7 +106,7 @@ TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettin
 }
 
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
-  const Settings base{.start = 3, .frames = 7, .method = "gpo", .seed = 9};
+  const Settings base{.start = 3, .frames = 7, .options = {.method = "gpo", .seed = 9}};
   Settings expected = base;
   expected.ransac = false;
   expected.rotations = RotationSource::truth;

@@ -63,25 +63,25 @@ std::map<std::string, std::string> cells_of(const Row& row) {
 TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
   const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
   const auto inspection = Inspector(recording).inspect(
-      {.frames = 6, .method = "gpo", .tracking = Tracking::frame_to_frame});
+      {.frames = 6, .tracking = Tracking::frame_to_frame, .options = {.method = "gpo"}});
   const Row row = make_row(*inspection);
   EXPECT_EQ(row.configuration, "gpo+frame-to-frame");
   EXPECT_EQ(row.settings.tracking, Tracking::frame_to_frame);
-  EXPECT_EQ(row.settings.rotations, RotationSource::gyro_calibrated);
-  EXPECT_EQ(row.settings.ransac, true);
+  EXPECT_EQ(row.settings.options.rotations, RotationSource::gyro_calibrated);
+  EXPECT_EQ(row.settings.options.ransac, true);
 }
 
 TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
-  Settings settings{.method = "gpo"};
-  settings.initializer.loss = Loss::squared;
-  settings.gravity = Gravity::joint;
+  Settings settings{.options = {.method = "gpo"}};
+  settings.options.initializer.loss = Loss::squared;
+  settings.options.gravity = Gravity::joint;
   auto cells = cells_of(refused_row("desk", settings, ""));
   EXPECT_EQ(cells.at("configuration"), "gpo");
   EXPECT_EQ(cells.at("solver"), "schur");
   EXPECT_EQ(cells.at("gravity"), "after");
   EXPECT_EQ(cells.at("loss"), "");
   EXPECT_EQ(cells.at("shutter"), "");
-  settings.method = "gpo_joint";
+  settings.options.method = "gpo_joint";
   cells = cells_of(refused_row("desk", settings, ""));
   EXPECT_EQ(cells.at("configuration"), "gpo_joint+squared+joint-gravity");
   EXPECT_EQ(cells.at("gravity"), "joint");
@@ -92,10 +92,10 @@ TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
 
 TEST(Row, ComesBackFromJsonToTheBit) {
   Row row = made_row("gpo+no-ransac", 3, 7, 0.1 + 0.2);
-  row.settings.rotations = RotationSource::averaging;
-  row.settings.ransac = false;
+  row.settings.options.rotations = RotationSource::averaging;
+  row.settings.options.ransac = false;
   row.settings.tracking = Tracking::anchored;
-  row.settings.inliers = Inliers::consistent;
+  row.settings.options.inliers = Inliers::consistent;
   row.inliers = 118;
   row.iterations = 9;
   const auto text = to_json(row).dump();

@@ -78,7 +78,7 @@ TEST_F(RunnerTest, RowsAreWhatRunGivesInTheOrderOfThePlan) {
   for (const int start : {0, 10, 20}) {
     for (const int frames : {5, 7}) {
       for (const Configuration& c : experiment_.configurations) {
-        const Settings window{.start = start, .frames = frames, .seed = 3};
+        const Settings window{.start = start, .frames = frames, .options = {.seed = 3}};
         expected.push_back(make_row(*Inspector(recordings_[0]).inspect(apply(c, window))));
       }
     }
@@ -274,7 +274,7 @@ TEST_F(RunnerTest, WhatARecordingLacksIsAFailedRowWithTheReason) {
   EXPECT_EQ(rows[0].status, "failed");
   EXPECT_EQ(rows[0].reason, "rotations: gyro: desk has no gyroscope");
   EXPECT_FALSE(rows[0].pne_deg);
-  EXPECT_EQ(rows[1].settings.rotations, RotationSource::averaging);
+  EXPECT_EQ(rows[1].settings.options.rotations, RotationSource::averaging);
 }
 
 }  // namespace

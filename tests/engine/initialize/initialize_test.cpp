@@ -59,17 +59,17 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
     SCOPED_TRACE(std::string(asked.method) + " " + to_string(asked.rotations));
     Settings settings;
     settings.frames = 12;
-    settings.method = asked.method;
-    settings.rotations = asked.rotations;
-    settings.ransac = asked.ransac;
-    settings.plane = asked.plane;
+    settings.options.method = asked.method;
+    settings.options.rotations = asked.rotations;
+    settings.options.ransac = asked.ransac;
+    settings.options.plane = asked.plane;
     const auto inspection = inspector.inspect(settings);
     std::vector<Frame> frames = frames_of(*inspection);
     if (asked.rotations == truth)
       for (std::size_t i = 0; i < frames.size(); ++i)
         frames[i].R_wc = inspection->truth->cameras[i]->R_wc;
     const Initialized result =
-        initialize(recording->camera, frames, &*recording->gyroscope, options_of(settings));
+        initialize(recording->camera, frames, &*recording->gyroscope, settings.options);
     test::expect_same(*inspection->initialization, result.initialization);
     EXPECT_EQ(inspection->rotations_used, result.rotations);
     EXPECT_EQ(inspection->rotations_note, result.rotations_note);
@@ -97,6 +97,22 @@ TEST(Initialize, TakesTheFramesRotationsWhereTheyHaveAny) {
       initialize(test::camera_of(simulation.window), frames, nullptr, {.method = "gpo"});
   EXPECT_EQ(result.rotations, RotationSource::truth);
   EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.2);
+}
+
+TEST(Initialize, RunsAMethodOfTheCallersOwn) {
+  const auto simulation = test::simulate({.frames = 15});
+  auto own = std::make_shared<Method>(find_method("pnp"));
+  own->key = "mine";
+  const auto initialized = [&](const MethodChoice& method) {
+    return initialize(test::camera_of(simulation.window),
+                      test::frames_of(simulation.window),
+                      nullptr,
+                      {.method = method});
+  };
+  const Initialized mine = initialized(MethodChoice(own));
+  ASSERT_TRUE(mine.initialization.ok) << mine.initialization.reason;
+  EXPECT_EQ(mine.initialization.plane.normal, initialized("pnp").initialization.plane.normal);
+  EXPECT_THROW(initialized("mine"), SettingError);
 }
 
 TEST(Initialize, WithAGuessedCameraNothingIsMoreThanWeak) {

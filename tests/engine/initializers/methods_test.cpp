@@ -205,5 +205,27 @@ TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
   }
 }
 
+TEST(MethodTable, FindsOursAndTheUsersOwn) {
+  MethodTable table;
+  table.add(Method{.key = "mine", .title = "mine"});
+  const MethodTable copy = table;
+  EXPECT_EQ(table.all().size(), methods().size() + 1);
+  EXPECT_EQ(&copy.find("mine").row(), &table.find("mine").row()) << "copies share their rows";
+  EXPECT_EQ(table.find("gpo"), MethodChoice("gpo"));
+  EXPECT_EQ(&table.find("gpo").row(), &find_method("gpo"));
+  EXPECT_NE(table.find("mine"), MethodChoice("mine")) << "which names none of ours";
+  EXPECT_THROW(MethodChoice("mine").row(), SettingError);
+  EXPECT_THROW(MethodTable().find("mine"), SettingError);
+}
+
+TEST(MethodTable, RefusesAKeyThatIsTaken) {
+  MethodTable table;
+  table.add(Method{.key = "mine"});
+  EXPECT_THROW(table.add(Method{.key = "mine"}), InputError);
+  EXPECT_THROW(table.add(Method{.key = "gpo"}), InputError);
+  table.add(table.find("mine"));
+  EXPECT_EQ(table.own().size(), 1U);
+}
+
 }  // namespace
 }  // namespace gpo

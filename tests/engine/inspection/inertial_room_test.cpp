@@ -105,11 +105,11 @@ TEST_P(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
 
 // The others' uncertainty is not that of the problem that they solved.
 TEST_P(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
-  const Settings after{.start = 20, .frames = 20, .method = "ba"};
+  const Settings after{.start = 20, .frames = 20, .options = {.method = "ba"}};
   const auto joint = inspected(with_setting(after, "gravity", "joint"));
   ASSERT_TRUE(joint->inertial && joint->inertial->ok);
   EXPECT_FALSE(joint->inertial->joint);
-  EXPECT_EQ(settings_used(*joint).gravity, Gravity::after);
+  EXPECT_EQ(settings_used(*joint).options.gravity, Gravity::after);
   EXPECT_EQ(joint->initialization->plane.normal, inspected(after)->initialization->plane.normal);
 }
 

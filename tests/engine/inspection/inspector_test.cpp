@@ -28,7 +28,7 @@ TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
   Settings settings;
   settings.frames = 12;
   const auto first = inspector.inspect(settings);
-  settings.ransac_threshold_px = 1.0;
+  settings.options.ransac_threshold_px = 1.0;
   const auto threshold = inspector.inspect(settings);
   EXPECT_EQ(first->tracks, threshold->tracks);
   EXPECT_EQ(first->truth, threshold->truth);
@@ -63,22 +63,22 @@ TEST(Inspector, KeepsTheTracksOfBothTrackings) {
 TEST(Inspector, TellsInliersAsChosen) {
   Inspector inspector(desk());
   Settings settings{.frames = 12};
-  settings.inliers = Inliers::per_frame;
+  settings.options.inliers = Inliers::per_frame;
   const auto per_frame = inspector.inspect(settings);
-  settings.inliers = Inliers::consistent;
+  settings.options.inliers = Inliers::consistent;
   const auto consistent = inspector.inspect(settings);
   EXPECT_EQ(consistent->tracks, per_frame->tracks);
   EXPECT_NE(consistent->window->inlier, per_frame->window->inlier);
   EXPECT_EQ(to_json(*per_frame)["settings"]["inliers"], "per-frame");
   EXPECT_EQ(to_json(*consistent)["settings"]["inliers"], "consistent");
   EXPECT_THAT(to_text(*consistent), HasSubstr("tracks, consistent"));
-  settings.inliers.reset();
+  settings.options.inliers.reset();
   const auto planes = inspector.inspect(settings);
   EXPECT_EQ(to_json(*planes)["settings"]["inliers"], "planes");
   EXPECT_EQ(planes->window->planes[0].tracks.size(),
             to_json(*planes)["planes"][0]["tracks"].size());
-  settings.inliers = Inliers::consistent;
-  settings.ransac = false;
+  settings.options.inliers = Inliers::consistent;
+  settings.options.ransac = false;
   const auto all = inspector.inspect(settings);
   EXPECT_EQ(inliers_note(*all), "tracks");
   EXPECT_EQ(to_json(*all)["settings"]["inliers"], "per-frame");
@@ -89,9 +89,9 @@ TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
   Inspector used(recording);
   Settings settings;
   settings.frames = 12;
-  settings.ransac = false;
+  settings.options.ransac = false;
   used.inspect(settings);
-  settings.ransac = true;
+  settings.options.ransac = true;
   const auto kept = used.inspect(settings);
   const auto fresh = Inspector(recording).inspect(settings);
   EXPECT_EQ(kept->initialization->plane.normal, fresh->initialization->plane.normal);
@@ -189,7 +189,7 @@ TEST(Inspector, LeavesOutTracksByHandAndTakesThemBack) {
 /// The recording with tracks of its own, of which a few jump.
 std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int64_t>& wrong) {
   Recording recording = *desk();
-  const auto inspection = Inspector(desk()).inspect({.frames = 12, .method = "gpo"});
+  const auto inspection = Inspector(desk()).inspect({.frames = 12, .options = {.method = "gpo"}});
   const Tracks& tracks = *inspection->tracks;
   for (int i = 0; i < 12; ++i) {
     for (int j = 0; j < tracks.track_count(); ++j) {
@@ -203,12 +203,13 @@ std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int6
 }
 
 TEST(Inspector, IsBetterWithoutAGrossOutlierAndAsGoodAsIfItHadNeverBeen) {
-  const auto clean = Inspector(with_gross_outliers({})).inspect({.frames = 12, .ransac = false});
+  const auto clean =
+      Inspector(with_gross_outliers({})).inspect({.frames = 12, .options = {.ransac = false}});
   const std::vector<std::int64_t> ids(clean->tracks->ids.begin() + 5,
                                       clean->tracks->ids.begin() + 8);
   for (const Method& method : methods()) {
     SCOPED_TRACE(method.key);
-    Settings settings{.frames = 12, .method = method.key, .ransac = false};
+    Settings settings{.frames = 12, .options = {.method = method.key, .ransac = false}};
     Inspector inspector(with_gross_outliers(ids));
     const auto spoiled = inspector.inspect(settings);
     settings.exclude = ids;
@@ -253,13 +254,13 @@ TEST(Inspector, AStoppedGrowthIsNotKept) {
   const auto alone = Inspector(desk()).inspect(settings);
   Inspector inspector(desk());
   std::stop_source source;
-  settings.method = "ba";
+  settings.options.method = "ba";
   const auto stopped =
       inspector.inspect(settings, source.get_token(), [&](const std::string& stage, int, int) {
         if (stage == "initializing") source.request_stop();
       });
   EXPECT_EQ(stopped, nullptr);
-  settings.method = "gpo";
+  settings.options.method = "gpo";
   const auto next = inspector.inspect(settings);
   ASSERT_EQ(next->growth.size(), 11U);
   for (int k = 0; k < 11; ++k) EXPECT_EQ(next->growth[k].reason, alone->growth[k].reason);
@@ -280,7 +281,7 @@ TEST(Inspector, TrueCubeIsWhereTheMovedOneIs) {
   Settings settings;
   settings.start = 20;
   settings.frames = 30;
-  settings.method = "ba";  // the best one here
+  settings.options.method = "ba";  // the best one here
   Inspection inspection = *Inspector(desk()).inspect(settings);
   ASSERT_TRUE(inspection.cube && inspection.true_cube);
   const Camera& camera = inspection.recording->camera;
@@ -311,7 +312,7 @@ TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
   const auto recording = desk();
   Inspector inspector(recording);
   const auto window = [&](RotationSource source) {
-    return inspector.inspect({.frames = 16, .rotations = source})->window;
+    return inspector.inspect({.frames = 16, .options = {.rotations = source}})->window;
   };
   const Eigen::Vector3d own = recording->gyroscope->bias_rad_s;
   const auto gyro = window(RotationSource::gyro);
@@ -340,11 +341,12 @@ TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
   const std::string reason = to_json(*automatic)["rotations_note"];
   EXPECT_THAT(reason, HasSubstr("five-point rotations: nearly all tracks lie on one plane"));
   EXPECT_THAT(to_text(*automatic), HasSubstr("averaging (" + reason + ")"));
-  const auto asked = inspector.inspect({.frames = 16, .rotations = RotationSource::averaging});
+  const auto asked =
+      inspector.inspect({.frames = 16, .options = {.rotations = RotationSource::averaging}});
   EXPECT_EQ(asked->window->R_wc, automatic->window->R_wc);
   EXPECT_FALSE(to_json(*asked).contains("rotations_note"));
   for (const auto source : {RotationSource::five_point, RotationSource::direct}) {
-    const auto refused = inspector.inspect({.frames = 16, .rotations = source});
+    const auto refused = inspector.inspect({.frames = 16, .options = {.rotations = source}});
     EXPECT_EQ(refused->rotations_used, source);
     EXPECT_FALSE(refused->initialization->ok);
     EXPECT_THAT(refused->initialization->reason, HasSubstr("on which they are ambiguous"));
@@ -367,9 +369,9 @@ TEST(Inspector, SaysWhatARecordingLacks) {
   bare.board.reset();
   const auto recording = std::make_shared<const Recording>(bare);
   Settings settings;
-  settings.rotations = RotationSource::gyro;
+  settings.options.rotations = RotationSource::gyro;
   EXPECT_EQ(message(recording, settings), "rotations: gyro: desk has no gyroscope");
-  settings.rotations = RotationSource::truth;
+  settings.options.rotations = RotationSource::truth;
   EXPECT_THAT(message(recording, settings),
               HasSubstr("rotations: truth: desk has no ground truth"));
   bare.pictures.reset();
@@ -389,7 +391,7 @@ TEST(Inspector, NamesTheFrameWithoutTruth) {
   Recording holed = *desk();
   holed.truth->poses[7].reset();
   Settings settings;
-  settings.rotations = RotationSource::truth;
+  settings.options.rotations = RotationSource::truth;
   EXPECT_THAT(message(std::make_shared<const Recording>(holed), settings),
               HasSubstr("frame 7 has no ground truth"));
 }

@@ -31,7 +31,7 @@ class CompareWindow : public DrawingTest {
   void SetUp() override {
     DrawingTest::SetUp();
     auto own = std::make_shared<Inspection>(made_inspection());
-    own->settings.method = "gpo";
+    own->settings.options.method = "gpo";
     state_.settings = own->settings;
     adopt(state_, own->recording);
     state_.inspection = own;
@@ -105,7 +105,7 @@ TEST_F(CompareWindow, AHeadingMakesItsMethodTheCurrentOne) {
   const Commands commands =
       click(layout_.views.x + layout_.views.width * 0.75F, layout_.views.y + 90);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
-  EXPECT_EQ(find<ChangeSettings>(commands)->settings.method, "ba");
+  EXPECT_EQ(find<ChangeSettings>(commands)->settings.options.method, "ba");
 }
 
 TEST_F(CompareWindow, TheWheelZoomsAllColumnsAroundTheSamePoint) {
@@ -183,7 +183,7 @@ TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
   for (float y = layout.drawer.y + 30; y < layout.drawer.bottom() && !chosen; y += 8) {
     const Commands commands = click(layout.drawer.x + 60, y);
     const auto* change = find<ChangeSettings>(commands);
-    chosen = change != nullptr && change->settings.method == "ba";
+    chosen = change != nullptr && change->settings.options.method == "ba";
   }
   EXPECT_TRUE(chosen);
   view("table", "table.png");

@@ -40,11 +40,11 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
   run_line(state, "frame 40");
   EXPECT_EQ(state.frame, 40);
   run_line(state, "method pba");
-  EXPECT_EQ(state.settings.method, "pba");
+  EXPECT_EQ(state.settings.options.method, "pba");
   run_line(state, "set ransac_threshold_px 3.5");
-  EXPECT_EQ(state.settings.ransac_threshold_px, 3.5);
+  EXPECT_EQ(state.settings.options.ransac_threshold_px, 3.5);
   run_line(state, "ransac_threshold_px 2.5");  // a setting's name is enough
-  EXPECT_EQ(state.settings.ransac_threshold_px, 2.5);
+  EXPECT_EQ(state.settings.options.ransac_threshold_px, 2.5);
   run_line(state, "exaggerate");
   EXPECT_EQ(state.view.exaggeration, 5);
   run_line(state, "exaggerate 100");

@@ -74,7 +74,7 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
   for (const Configuration& one : parse_configurations("all"))
     EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
   Settings settings;
-  settings.ransac = true;  // as gpo_joint does by default
+  settings.options.ransac = true;  // as gpo_joint does by default
   EXPECT_EQ(key_of(configuration_of(settings)), "gpo_joint");
 }
 
@@ -92,22 +92,22 @@ TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run_line(state, "compare gpo,gpo+no-ransac");
-  state.settings.ransac = false;  // as a click on the second makes it
+  state.settings.options.ransac = false;  // as a click on the second makes it
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
   run_line(state, "compare gpo,gpo+anchored");  // the same by default, and not here
   EXPECT_THAT(state.compared, ElementsAre("gpo"));
   run_line(state, "compare gpo+anchored");
-  state.settings.ransac.reset();
+  state.settings.options.ransac.reset();
   EXPECT_THAT(keys(), ElementsAre("gpo"));
 }
 
 TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   WorkbenchState state;
-  state.settings.method = "gpo";
+  state.settings.options.method = "gpo";
   EXPECT_EQ(flipped(state), std::nullopt);
   run_line(state, "flip on");
   EXPECT_EQ(flipped(state), "pnp_ba");
-  state.settings.method = "ba";
+  state.settings.options.method = "ba";
   EXPECT_EQ(flipped(state), "gpo");
   run_line(state, "compare ba");
   EXPECT_EQ(flipped(state), std::nullopt);
@@ -120,12 +120,12 @@ TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
 TEST(Compared, FlipAsksForWhatItShows) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  state.settings.method = "gpo";
+  state.settings.options.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
   run_line(state, "flip on");
   const auto wanted = wanted_inspections(state);
   ASSERT_EQ(wanted.size(), 1U);
-  EXPECT_EQ(wanted[0].method, "pnp_ba");
+  EXPECT_EQ(wanted[0].options.method, "pnp_ba");
   EXPECT_EQ(wanted[0].frames, state.settings.frames);
 }
 
@@ -188,7 +188,7 @@ TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(key_of(all[0].configuration), "gpo");
   EXPECT_NE(all[0].inspection, nullptr);
-  state.settings.ransac_threshold_px += 1;  // its result is of earlier settings now
+  state.settings.options.ransac_threshold_px += 1;  // its result is of earlier settings now
   EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
   run_line(state, "compare ba,gpo");
   all = compared_with_current(state);

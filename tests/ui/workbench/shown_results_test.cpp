@@ -14,7 +14,7 @@ TEST(ShownResults, AreTheCurrentOneAndTheComparedOnesThatExist) {
   WorkbenchState state;
   EXPECT_TRUE(shown_results(state).empty());
   Inspection made = made_inspection();
-  made.settings.method = "gpo";
+  made.settings.options.method = "gpo";
   const auto current = std::make_shared<const Inspection>(made);
   state.inspection = current;
   state.compared = {"gpo", "ba", "gpo+no-ransac"};

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
@@ -65,12 +66,12 @@ TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
   Settings chosen = state.settings;
   chosen.start = 180;
   chosen.frames = 47;
-  chosen.method = "ba";
+  chosen.options.method = "ba";
   apply(state, ChangeSettings{chosen});
   adopt(state, room);
   EXPECT_EQ(state.settings.start, 0);
   EXPECT_EQ(state.settings.frames, 30);
-  EXPECT_EQ(state.settings.method, "gpo_joint");
+  EXPECT_EQ(state.settings.options.method, "gpo_joint");
   EXPECT_EQ(state.frame, 29);
   adopt(state, desk);
   EXPECT_EQ(state.settings, chosen);
@@ -178,9 +179,9 @@ TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
 TEST(Workbench, RansacIsSwitched) {
   WorkbenchState state = opened();
   run(state, "ransac");
-  EXPECT_FALSE(uses_ransac(state.settings));
+  EXPECT_FALSE(uses_ransac(state.settings.options));
   run(state, "ransac");
-  EXPECT_TRUE(uses_ransac(state.settings));
+  EXPECT_TRUE(uses_ransac(state.settings.options));
 }
 
 TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
@@ -189,7 +190,7 @@ TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
     const Action* action = action_of_character(U'1' + i);
     ASSERT_NE(action, nullptr);
     run(state, action->name);
-    EXPECT_EQ(state.settings.method, methods()[i].key);
+    EXPECT_EQ(state.settings.options.method, methods()[i].key);
     EXPECT_TRUE(action->checked(state));
   }
 }
@@ -340,7 +341,7 @@ TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
   const Settings second = state.settings;
   for (const double px : {2.1, 2.2, 2.3}) {
     Settings settings = state.settings;
-    settings.ransac_threshold_px = px;
+    settings.options.ransac_threshold_px = px;
     apply(state, ChangeSettings{settings, true});
   }
   run(state, "undo");
@@ -351,7 +352,7 @@ TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
   EXPECT_EQ(state.settings, first);
   run(state, "redo");
   run(state, "redo");
-  EXPECT_EQ(state.settings.ransac_threshold_px, 2.3);
+  EXPECT_EQ(state.settings.options.ransac_threshold_px, 2.3);
 }
 
 TEST(Workbench, UndoTakesBackTheCubesPlace) {
@@ -373,7 +374,7 @@ TEST(Workbench, RansacSwitchedTwiceIsLeftToTheMethodAgain) {
   WorkbenchState state = opened(60);
   const Settings first = state.settings;
   run(state, "ransac");
-  EXPECT_EQ(state.settings.ransac, false);
+  EXPECT_EQ(state.settings.options.ransac, false);
   run(state, "ransac");
   EXPECT_EQ(state.settings, first);
 }

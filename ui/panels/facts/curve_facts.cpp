@@ -100,7 +100,7 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
     truth = truth || row.pne_deg || row.ate_m;
     if (std::ranges::find(keys, row.configuration) != keys.end()) continue;
     keys.push_back(row.configuration);
-    facts.configurations.push_back(parse_configuration(row.configuration));
+    facts.configurations.push_back(parse_configuration(row.configuration, state.methods));
   }
   const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
   if (plan.configurations.empty()) return facts;

@@ -79,14 +79,14 @@ void submenu(const Submenu& shown,
              const PanelInput& input,
              Commands& commands) {
   if (!ImGui::BeginMenu(shown.title)) return;
-  for (const Action& action : actions())
+  for (const Action& action : all_actions(input.state))
     if (action.menu == menu && submenu_of(action) == &shown) menu_item(action, input, commands);
   ImGui::EndMenu();
 }
 
 void draw_menu(const std::string& menu, const PanelInput& input, Commands& commands) {
   std::vector<const Submenu*> drawn;
-  for (const Action& action : actions()) {
+  for (const Action& action : all_actions(input.state)) {
     if (action.menu != menu) continue;
     const Submenu* within = submenu_of(action);
     if (within == nullptr) menu_item(action, input, commands);

@@ -40,16 +40,16 @@ void draw_row(const Action& action, bool chosen, float width, float scale) {
 }
 
 /// Rows that fit, the chosen one lit. The one that was clicked, or null.
-const Action* draw_rows(const std::vector<const Action*>& found, int chosen, float scale) {
+const Action* draw_rows(const std::vector<Action>& found, int chosen, float scale) {
   const Action* clicked = nullptr;
   const float width = ImGui::GetContentRegionAvail().x;
   const int first = std::max(0, chosen - kMostRows + 1);
   const int last = std::min(static_cast<int>(found.size()), first + kMostRows);
   for (int i = first; i < last; ++i) {
-    draw_row(*found[i], i == chosen, width, scale);
+    draw_row(found[i], i == chosen, width, scale);
     ImGui::PushID(i);
-    if (hit_area("row", {width, ImGui::GetTextLineHeight() + 8 * scale})) clicked = found[i];
-    tooltip(found[i]->tooltip);
+    if (hit_area("row", {width, ImGui::GetTextLineHeight() + 8 * scale})) clicked = &found[i];
+    tooltip(found[i].tooltip);
     ImGui::PopID();
   }
   return clicked;
@@ -85,10 +85,10 @@ void accept(PaletteEntry& entry, const Action* chosen, Commands& commands) {
 }
 
 /// The actions that the text finds; of a whole command its own, whose usage is then on display.
-std::vector<const Action*> offered(const std::string& text) {
+std::vector<Action> offered(const std::string& text, const WorkbenchState& state) {
   const auto call = match_line(text);
-  if (call && !call->arguments.empty()) return {call->action};
-  return find_actions(text);
+  if (call && !call->arguments.empty()) return {*call->action};
+  return find_actions(text, state);
 }
 
 int move_cursor_to_end(ImGuiInputTextCallbackData* data) {
@@ -129,11 +129,11 @@ void palette_overlay(const PanelInput& input,
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways,
       move_cursor_to_end,
       &entry);
-  const std::vector<const Action*> found = offered(entry.text.data());
+  const std::vector<Action> found = offered(entry.text.data(), input.state);
   move_choice(entry, static_cast<int>(found.size()));
   const Action* clicked = draw_rows(found, entry.chosen, s);
   if (clicked != nullptr) accept(entry, clicked, commands);
-  if (entered) accept(entry, found.empty() ? nullptr : found[entry.chosen], commands);
+  if (entered) accept(entry, found.empty() ? nullptr : &found[entry.chosen], commands);
   if (found.empty()) ImGui::TextUnformatted("No command has such a name; F1 lists the keys");
   ImGui::End();
   ImGui::PopStyleVar();

@@ -68,7 +68,7 @@ struct SettingRows {
   }
 
   void change(const Setting& setting, const SettingValue& value) {
-    setting.set(settings, value);
+    set_value(settings, setting, value, input.state.methods);
     changed = true;
   }
 
@@ -140,10 +140,11 @@ struct SettingRows {
   }
 
   void combo(const Setting& setting, const std::string& chosen) {
-    const auto now = std::ranges::find(setting.choices, chosen, &SettingChoice::key);
-    const std::string title = now == setting.choices.end() ? chosen : title_of(*now);
+    const std::vector<SettingChoice> choices = choices_of(setting, input.state.methods);
+    const auto now = std::ranges::find(choices, chosen, &SettingChoice::key);
+    const std::string title = now == choices.end() ? chosen : title_of(*now);
     if (!ImGui::BeginCombo(("##" + setting.key).c_str(), title.c_str())) return explain(setting);
-    for (const SettingChoice& one : setting.choices) {
+    for (const SettingChoice& one : choices) {
       const std::string lacks = why_not(setting, one);
       if (one.rgb != 0) {
         ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(one.rgb));

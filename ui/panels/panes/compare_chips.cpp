@@ -3,6 +3,7 @@
 #include "ui/panels/panes/compare_chips.h"
 
 #include "engine/experiment/configuration.h"
+#include "engine/initialize/method_defaults.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
@@ -71,7 +72,7 @@ void chip(const std::string& key,
 /// The current settings, as they are or with the other RANSAC, beside what is compared.
 Configuration current(const WorkbenchState& state, std::optional<bool> ransac) {
   Settings settings = state.settings;
-  if (ransac) settings.ransac = ransac;
+  if (ransac) settings.options.ransac = ransac;
   return called_among_compared(state, settings);
 }
 
@@ -98,14 +99,14 @@ void list_of_all(const PanelInput& input, Commands& commands) {
   const WorkbenchState& state = input.state;
   const Configuration now = current(state, {});
   entry(input, now, title_of(configuration_of(state.settings)), commands);
-  const bool ransac = uses_ransac(state.settings);
+  const bool ransac = uses_ransac(state.settings.options);
   entry(input,
         current(state, !ransac),
         fmt::format("the same {} RANSAC", ransac ? "without" : "with"),
         commands);
   ImGui::Separator();
   heading("METHODS AND ABLATIONS");
-  for (const Configuration& one : parse_configurations("all"))
+  for (const Configuration& one : parse_configurations("all", state.methods))
     entry(input, one, title_of(one), commands);
   ImGui::Separator();
   if (ImGui::MenuItem("The paper's four")) push(commands, RunAction{"compare paper"});

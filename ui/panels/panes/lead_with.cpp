@@ -11,7 +11,7 @@ void lead_with(const WorkbenchState& state, std::int64_t id, Commands& commands)
   const auto plane = to_lead(*state.inspection, id);
   if (!plane) return;
   Settings settings = state.settings;
-  settings.plane = *plane;
+  settings.options.plane = *plane;
   push(commands, ChangeSettings{settings});
 }
 

@@ -4,7 +4,6 @@
 
 #include "engine/geometry/statistics.h"
 #include "engine/initializers/common/window_checks.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/studies/residuals.h"
 #include "ui/context/theme.h"
 #include "ui/views/charts/axis_ticks.h"
@@ -72,7 +71,7 @@ Chart residual_histogram(const WindowResiduals& residuals,
   if (all.empty()) return chart;
   const double width = bin_width(all);
   chart.curves.push_back(steps(fmt::format("window, {} inliers", all.size()),
-                               find_method(inspection.settings.method).rgb,
+                               inspection.settings.options.method.row().rgb,
                                all,
                                width));
   const int i = frame - inspection.window->start;
@@ -89,7 +88,7 @@ Chart rms_chart(const WindowResiduals& residuals,
                 const TrackLife* track) {
   Chart chart{"Frame by frame", "frame", "residual [px]", false, {}};
   Curve rms{
-      "RMS of the inliers", find_method(inspection.settings.method).rgb, false, {}, {}, {}, {}};
+      "RMS of the inliers", inspection.settings.options.method.row().rgb, false, {}, {}, {}, {}};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     rms.x.push_back(inspection.window->start + static_cast<double>(i));
     rms.y.push_back(residuals[i].empty() ? NAN : root_mean_square(residuals[i]));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare/compare_caption.h"
 
+#include "engine/initialize/method_defaults.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/overlay_text.h"
@@ -19,7 +20,7 @@ using Eigen::Vector2d;
 
 std::string conditions(const Inspection& inspection, double width) {
   const Window& window = *inspection.window;
-  const bool ransac = uses_ransac(inspection.settings);
+  const bool ransac = uses_ransac(inspection.settings.options);
   const std::string rotations = to_string(inspection.rotations_used);
   const int inliers = window.inlier_count(0), all = window.track_count();
   const std::string tracks = ransac ? fmt::format("RANSAC on · {} of {} tracks", inliers, all)

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/picture/image_view.h"
 
-#include "engine/initializers/methods.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
@@ -262,7 +261,7 @@ std::string heading(const Inspection& inspection, int frame, bool undistorted) {
   return fmt::format("frame {} · {:.3f} s · {}{}",
                      frame,
                      seconds,
-                     find_method(inspection.settings.method).title,
+                     inspection.settings.options.method.row().title,
                      undistorted ? " · undistorted" : "");
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_moment.h"
 
-#include "engine/initializers/methods.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
@@ -95,7 +94,7 @@ struct MarkedFrustum {
   }
 };
 MarkedFrustum marked_frustum(const Inspection& inspection, int frame_in_window) {
-  const std::uint32_t method = find_method(inspection.settings.method).rgb;
+  const std::uint32_t method = inspection.settings.options.method.row().rgb;
   const auto corners = frustum(inspection.recording->camera,
                                inspection.initialization->cameras[frame_in_window],
                                frustum_depth(inspection));

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initializers/methods.h"
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
@@ -120,7 +119,7 @@ std::string side_text(const Inspection& inspection, const SceneViewOptions& opti
 std::vector<LegendRow> legend_rows(const Inspection& inspection,
                                    int frame_in_window,
                                    const SceneViewOptions& options) {
-  const Method& method = find_method(inspection.settings.method);
+  const Method& method = inspection.settings.options.method.row();
   std::vector<LegendRow> rows;
   if (inspection.initialization->ok) {
     rows.push_back({Sign::frustum, method.rgb, method.title + " cameras"});

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_view.h"
 
-#include "engine/initializers/methods.h"
 #include "engine/inspection/studies/plane_patches.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
@@ -64,7 +63,7 @@ void add_cameras(const Stage& stage) {
   const std::vector<Pose>& cameras = found_cameras(*inspection.initialization);
   if (cameras.empty()) return;
   const std::uint32_t rgb = inspection.initialization->ok
-                                ? find_method(inspection.settings.method).rgb
+                                ? inspection.settings.options.method.row().rgb
                                 : color_of(Role::bad);
   const double depth = frustum_depth(inspection);
   const Camera& camera = inspection.recording->camera;

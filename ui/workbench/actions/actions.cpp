@@ -56,6 +56,18 @@ std::span<const Action> actions() {
   return table;
 }
 
+std::vector<Action> all_actions(const WorkbenchState& state) {
+  std::vector<Action> all(actions().begin(), actions().end());
+  const auto last = std::find_if(all.rbegin(), all.rend(), [](const Action& action) {
+    return action.name.starts_with("method ");
+  });
+  std::vector<Action> own;
+  for (const auto& method : state.methods.own())
+    own.push_back(choice_of_method(MethodChoice(method)));
+  all.insert(last.base(), own.begin(), own.end());
+  return all;
+}
+
 const Action* find_action(const std::string& name) {
   const auto table = actions();
   const auto found = std::ranges::find(table, name, &Action::name);
@@ -88,14 +100,14 @@ bool takes_a_file(const Action& action) {
          action.arguments.starts_with("[FILE");
 }
 
-std::vector<const Action*> find_actions(const std::string& text) {
+std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state) {
   const std::vector<std::string> words = words_of(lower_case(text));
-  std::vector<const Action*> found;
-  for (const Action& action : actions())
-    if (has_all_words(lower_case(action.name + " " + action.title + " " + action.menu), words))
-      found.push_back(&action);
-  std::stable_partition(found.begin(), found.end(), [&](const Action* action) {
-    return action->name.starts_with(lower_case(text));
+  std::vector<Action> found = all_actions(state);
+  std::erase_if(found, [&](const Action& action) {
+    return !has_all_words(lower_case(action.name + " " + action.title + " " + action.menu), words);
+  });
+  std::stable_partition(found.begin(), found.end(), [&](const Action& action) {
+    return action.name.starts_with(lower_case(text));
   });
   return found;
 }

@@ -12,8 +12,10 @@
 
 namespace gpo {
 
-/// The table of all of them.
+/// The table of all of them, without those that choose a method of the user's own.
 std::span<const Action> actions();
+/// The table with these.
+std::vector<Action> all_actions(const WorkbenchState& state);
 
 /// Null where no action has that name.
 const Action* find_action(const std::string& name);
@@ -30,7 +32,7 @@ bool enabled(const Action& action, const WorkbenchState& state);
 bool takes_a_file(const Action& action);
 
 /// The actions whose name or title has all words of a text, those that begin with it first.
-std::vector<const Action*> find_actions(const std::string& text);
+std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state);
 
 /// A line taken apart.
 struct ActionCall {

@@ -19,29 +19,31 @@ constexpr const char* kOfThePaper = "gpo,pnp_ba,ba,pba";
 
 void compare_these(State& state, const std::string& list) {
   std::vector<std::string> keys;
-  for (const Configuration& one : parse_configurations(list)) keys.push_back(key_of(one));
+  for (const Configuration& one : parse_configurations(list, state.methods))
+    keys.push_back(key_of(one));
   state.compared = std::move(keys);
 }
 
 /// Without what only repeats a default of the method.
-std::string shortest_key(const std::string& text) {
-  return key_of(configuration_of(apply(parse_configuration(text), {})));
+std::string shortest_key(const std::string& text, const MethodTable& methods) {
+  return key_of(configuration_of(apply(parse_configuration(text, methods), {})));
 }
 
 /// The compared one that comes to the same by default.
 auto find_compared(State& state, const std::string& text) {
-  return std::ranges::find(state.compared, shortest_key(text), shortest_key);
+  const auto key_of_one = [&](const std::string& one) { return shortest_key(one, state.methods); };
+  return std::ranges::find(state.compared, key_of_one(text), key_of_one);
 }
 
 void compare_also(State& state, const std::string& list) {
-  for (const Configuration& one : parse_configurations(list)) {
+  for (const Configuration& one : parse_configurations(list, state.methods)) {
     const std::string key = key_of(one);
     if (find_compared(state, key) == state.compared.end()) state.compared.push_back(key);
   }
 }
 
 void compare_no_longer(State& state, const std::string& text) {
-  const std::string key = key_of(parse_configuration(text));
+  const std::string key = key_of(parse_configuration(text, state.methods));
   const auto found = find_compared(state, text);
   if (found == state.compared.end())
     throw InputError(fmt::format("compare remove: '{}' is not among the compared ones: {}",
@@ -131,7 +133,7 @@ void add_looks(std::vector<Action>& table) {
 
 void switch_curve(State& state, const Arguments& arguments) {
   expect_count("curve", arguments, 1, 2);
-  const std::string key = shortest_key(arguments[0]);
+  const std::string key = shortest_key(arguments[0], state.methods);
   const auto found = std::ranges::find(state.hidden_curves, key);
   const bool shown = found == state.hidden_curves.end();
   const bool show = switched("curve", {arguments.begin() + 1, arguments.end()}, shown);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/look/method_help.h"
@@ -20,22 +21,8 @@ using State = WorkbenchState;
 
 void add_choices_of_method(std::vector<Action>& table) {
   for (std::size_t i = 0; i < methods().size(); ++i) {
-    const Method& method = methods()[i];
-    std::vector<Shortcut> shortcuts;
-    if (i < 9) shortcuts.push_back(letter(static_cast<char>('1' + i)));
-    Action action = plain("method " + method.key,
-                          method.title,
-                          "Method",
-                          shortcuts,
-                          method_help(method.key),
-                          [key = method.key](State& s) {
-                            Settings settings = s.settings;
-                            settings.method = key;
-                            change_settings(s, settings);
-                          });
-    action.checked = [key = method.key](const State& s) { return s.settings.method == key; };
-    action.needs_recording = false;
-    table.push_back(action);
+    table.push_back(choice_of_method(methods()[i].key));
+    if (i < 9) table.back().shortcuts.push_back(letter(static_cast<char>('1' + i)));
   }
 }
 
@@ -48,7 +35,7 @@ std::vector<Action> settings_by_name() {
     std::size_t least;
     std::size_t most;
     const char* tooltip;
-    Settings (*changed)(const Settings&, const Arguments&);
+    Settings (*changed)(const State&, const Arguments&);
   };
   const std::array rows = {
       Row{"set",
@@ -57,15 +44,17 @@ std::vector<Action> settings_by_name() {
           2,
           2,
           "Gives a setting another value",
-          [](const Settings& s, const Arguments& a) { return with_setting(s, a[0], a[1]); }},
+          [](const State& s, const Arguments& a) {
+            return with_setting(s.settings, a[0], a[1], s.methods);
+          }},
       Row{"preset",
           "Choose a preset",
           "best|paper",
           1,
           1,
           "All settings but the window: the best that we have, or what the paper does",
-          [](const Settings& s, const Arguments& a) {
-            return with_preset(s, choice<Preset>(a[0]));
+          [](const State& s, const Arguments& a) {
+            return with_preset(s.settings, choice<Preset>(a[0]));
           }},
       Row{"reset",
           "Reset settings",
@@ -73,8 +62,8 @@ std::vector<Action> settings_by_name() {
           0,
           1,
           "Gives a setting, or all of them with window and method, its default value",
-          [](const Settings& s, const Arguments& a) {
-            return a.empty() ? Settings{} : with_default(s, a[0]);
+          [](const State& s, const Arguments& a) {
+            return a.empty() ? Settings{} : with_default(s.settings, a[0]);
           }},
   };
   std::vector<Action> actions;
@@ -84,7 +73,7 @@ std::vector<Action> settings_by_name() {
     action.needs_recording = false;
     action.run = [row](State& s, const Arguments& arguments) {
       expect_count(row.name, arguments, row.least, row.most);
-      change_settings(s, row.changed(s.settings, arguments));
+      change_settings(s, row.changed(s, arguments));
     };
     actions.push_back(std::move(action));
   }
@@ -99,9 +88,9 @@ void add_settings(std::vector<Action>& table) {
             {letter('R')},
             "Rejects outliers by a homography from the reference frame",
             [](State& s) {
-              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings)));
+              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings.options)));
             });
-  ransac.checked = [](const State& s) { return uses_ransac(s.settings); };
+  ransac.checked = [](const State& s) { return uses_ransac(s.settings.options); };
   ransac.needs_recording = false;
   table.push_back(ransac);
   for (Action& action : settings_by_name()) table.push_back(std::move(action));
@@ -122,6 +111,22 @@ void wish_start(State& s) {
 }
 
 }  // namespace
+
+Action choice_of_method(const MethodChoice& method) {
+  Action action = plain("method " + method.key(),
+                        method.row().title,
+                        "Method",
+                        {},
+                        method_help(method.key()),
+                        [method](State& s) {
+                          Settings settings = s.settings;
+                          settings.options.method = method;
+                          change_settings(s, settings);
+                        });
+  action.checked = [method](const State& s) { return s.settings.options.method == method; };
+  action.needs_recording = false;
+  return action;
+}
 
 void add_method_actions(std::vector<Action>& table) {
   add_choices_of_method(table);

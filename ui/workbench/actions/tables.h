@@ -18,6 +18,8 @@ void add_compare_actions(std::vector<Action>& table);  ///< a part of the views'
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
+/// The row that chooses a method.
+Action choice_of_method(const MethodChoice& method);
 
 // How rows are written.
 

@@ -115,6 +115,7 @@ struct ToJson {
 /// The same, read; within limits, where there are any. Throws InputError that names the key.
 struct FromJson {
   const SessionReader& read;
+  const MethodTable& methods;  ///< in which methods are found
 
   template <class T>
   void operator()(const char* key, T& value, auto... limits) const {
@@ -128,7 +129,7 @@ struct FromJson {
   void operator()(const char* key, T& value) const {
     const SessionReader parts = read.object(key);
     each_part(value, [&](const char* part_key, auto& part, auto... limits) {
-      FromJson{parts}(part_key, part, limits...);
+      FromJson{parts, methods}(part_key, part, limits...);
     });
     if constexpr (std::same_as<T, NormalsZoom>) value = within_limits(value);
   }
@@ -137,7 +138,7 @@ struct FromJson {
     for (const auto& [one, value] : all.json().items()) {
       if (!value.is_string()) all.refuse(one.c_str());
       try {
-        settings = with_setting(settings, one, value.template get<std::string>());
+        settings = with_setting(settings, one, value.template get<std::string>(), methods);
       } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", all.where(), error.what()));
       }
@@ -215,25 +216,27 @@ SessionField field(const char* key, T State::*member, auto... limits) {
   return {key,
           [member](const State& state) { return ToJson{}(state.*member); },
           [key, member, limits...](const SessionReader& read, State& state) {
-            FromJson{read}(key, state.*member, limits...);
+            FromJson{read, state.methods}(key, state.*member, limits...);
           },
           [member](const State& from, State& to) { to.*member = from.*member; }};
 }
 
 /// ... that is put right once it is read.
 template <class T>
-SessionField field_with(const char* key, T State::*member, void (*put_right)(T&)) {
+SessionField field_with(const char* key,
+                        T State::*member,
+                        void (*put_right)(T&, const MethodTable&)) {
   SessionField made = field(key, member);
   made.read = [read = made.read, member, put_right](const SessionReader& from, State& state) {
     read(from, state);
-    put_right(state.*member);
+    put_right(state.*member, state.methods);
   };
   return made;
 }
 
 /// As keys are written today. Throws InputError for one that is unknown.
-void rewrite_keys(std::vector<std::string>& compared) {
-  for (std::string& one : compared) one = key_of(parse_configuration(one));
+void rewrite_keys(std::vector<std::string>& compared, const MethodTable& methods) {
+  for (std::string& one : compared) one = key_of(parse_configuration(one, methods));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "engine/commands/spelled_methods.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/session/session_fields.h"
 #include "ui/workbench/window_span.h"
@@ -14,7 +13,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -26,35 +24,12 @@ constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
 
 /// The user's own methods, for whoever opens the session to start them or not.
-void write_own_methods(Json& json) {
-  const SpelledMethods& own = spelled_methods();
+void write_own_methods(const MethodTable& methods, Json& json) {
+  const SpelledMethods own = spelled_in(methods);
   if (!own.commands.empty()) json["method_commands"] = own.commands;
   std::vector<std::string> results;
   for (const std::string& one : own.results) results.push_back(with_whole_paths(one));
   if (!results.empty()) json["results"] = results;
-}
-
-/// Those that were not there when the program began, after which the table of methods is fixed.
-std::vector<std::string> unknown_methods(const fs::path& file) {
-  std::vector<std::string> unknown = names_of(methods_in_session(file));
-  std::erase_if(unknown, [](const std::string& name) {
-    return std::ranges::find(methods(), name, &Method::key) != methods().end();
-  });
-  return unknown;
-}
-
-void read_fields(const SessionReader& read, const fs::path& file, WorkbenchState& state) {
-  const std::vector<std::string> unknown = unknown_methods(file);
-  try {
-    for (const SessionField& field : session_fields())
-      if (read.has(field.key)) field.read(read, state);
-  } catch (const InputError&) {
-    if (unknown.empty()) throw;
-    throw InputError(fmt::format("{}: has methods of its own ({}): start with --session {}",
-                                 file.string(),
-                                 fmt::join(unknown, ", "),
-                                 file.string()));
-  }
 }
 
 }  // namespace
@@ -62,12 +37,12 @@ void read_fields(const SessionReader& read, const fs::path& file, WorkbenchState
 std::string session_text(const WorkbenchState& state) {
   Json json = {{"kind", kKind}, {"version", kVersion}};
   json["recording"] = state.recording ? Json(fs::absolute(state.recording->path).string()) : Json();
-  write_own_methods(json);
+  write_own_methods(state.methods, json);
   for (const SessionField& field : session_fields()) json[field.key] = field.write(state);
   return json_text(json, 2);
 }
 
-SavedSession read_session(const fs::path& file) {
+SavedSession read_session(const fs::path& file, const MethodTable& methods) {
   const Json json = read_json(file);
   if (json.is_discarded()) throw InputError(file.string() + ": not valid JSON; expected a session");
   const SessionReader read(json, file.string());
@@ -82,7 +57,9 @@ SavedSession read_session(const fs::path& file) {
     throw InputError(fmt::format("{}: version: {}, expected {}", file.string(), version, kVersion));
   SavedSession session;
   auto state = std::make_shared<WorkbenchState>();
-  read_fields(read, file, *state);
+  state->methods = methods;
+  for (const SessionField& field : session_fields())
+    if (read.has(field.key)) field.read(read, *state);
   session.state = state;
   session.recording = recording;
   std::error_code none;

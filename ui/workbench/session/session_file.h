@@ -15,8 +15,8 @@ std::string session_text(const WorkbenchState& state);
 /// Reads what `session_text` wrote. What a session does not name stays at its default. The
 /// recording is named by `session.path` alone; what depends on it waits for `continue_session`.
 /// Throws InputError that names the file and the key. `file` is for messages and for recordings
-/// that have moved together with it.
-SavedSession read_session(const std::filesystem::path& file);
+/// that have moved together with it. Methods are found in the table.
+SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
 
 /// Takes over a session whose recording the state has just adopted.
 void continue_session(WorkbenchState& state, const SavedSession& session);

@@ -17,15 +17,16 @@ void change_span(WorkbenchState& state, const Recording& to) {
   const Settings& now = state.settings;
   const auto& from = state.recording->path;
   std::erase_if(state.spans, [&](const KeptSpan& one) { return one.recording == from; });
-  state.spans.push_back({from, now.start, now.frames, now.method});
+  state.spans.push_back({from, now.start, now.frames, now.options.method});
   const auto kept = std::ranges::find(state.spans, to.path, &KeptSpan::recording);
   const Settings standard;
-  const KeptSpan span = kept == state.spans.end()
-                            ? KeptSpan{to.path, standard.start, standard.frames, standard.method}
-                            : *kept;
+  const KeptSpan span =
+      kept == state.spans.end()
+          ? KeptSpan{to.path, standard.start, standard.frames, standard.options.method}
+          : *kept;
   state.settings.start = span.start;
   state.settings.frames = span.frames;
-  state.settings.method = span.method;
+  state.settings.options.method = span.method;
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
 /// Shows the figures of a results.csv.
 void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   try {
-    state.experiment = std::make_shared<const std::vector<Row>>(read_results(file));
+    state.experiment = std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
   } catch (const InputError& error) {
     return say(state, error.what(), Severity::error);
   }
@@ -122,7 +122,10 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
 
 /// A session's recording is opened first; one that has moved is asked for. Whether the worker has
 /// something to do.
-bool open_path(WorkbenchState& state, Worker& worker, const std::filesystem::path& path) {
+bool open_path(WorkbenchState& state,
+               const WorkerLink& link,
+               Worker& worker,
+               const std::filesystem::path& path) {
   if (is_results(path)) {
     open_results(state, path);
     return false;
@@ -132,7 +135,8 @@ bool open_path(WorkbenchState& state, Worker& worker, const std::filesystem::pat
   std::filesystem::path recording = path;
   try {
     if (is_session(path)) {
-      state.waiting_session = read_session(path);
+      if (link.add_methods) link.add_methods(path, state);
+      state.waiting_session = read_session(path, state.methods);
       recording = state.waiting_session->recording;
     }
   } catch (const InputError& error) {
@@ -174,7 +178,7 @@ void synchronize(WorkbenchState& state,
   }
   const bool compute = state.recording && (opened || again || state.settings != link.requested);
   if (open_example) worker.open(example);
-  const bool opening = open && open_path(state, worker, *open);
+  const bool opening = open && open_path(state, link, worker, *open);
   if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);

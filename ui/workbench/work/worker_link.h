@@ -8,6 +8,7 @@
 #include "ui/workbench/state.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 namespace gpo {
@@ -26,7 +27,10 @@ struct WorkerLink {
   bool calibrating = false;       ///< until there is a camera, a reason why not, or another wish
   bool calibrates = false;        ///< whatever is opened with a guessed camera
   bool finding_start = false;     ///< until the scan has found one, or another wish
-  bool survey_canceled = false;   ///< and the scan; until something else is computed
+  /// Called before a session is read: adds the methods that it names to the state's table. May
+  /// throw InputError; null: none are added.
+  std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
+  bool survey_canceled = false;  ///< and the scan; until something else is computed
 
   bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };

@@ -124,21 +124,21 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   const auto why = [](const Settings& settings, const std::string& key) {
     return why_idle(find_setting(key), settings, nullptr);
   };
-  Settings settings{.method = "gpo"};
+  Settings settings{.options = {.method = "gpo"}};
   for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"})
     EXPECT_EQ(why(settings, key), "") << key;
   for (const char* key : {"error", "loss", "shutter", "planes", "time_offset"})
     EXPECT_EQ(why(settings, key), "Only gpo_joint lets one choose this") << key;
-  settings.ransac = false;
+  settings.options.ransac = false;
   EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
   EXPECT_THAT(why(settings, "inliers"), HasSubstr("RANSAC"));
-  settings.method = "ba";  // takes all tracks, and still counts inliers
+  settings.options.method = "ba";  // takes all tracks, and still counts inliers
   EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
   EXPECT_EQ(why(settings, "solver"), "Only gpo and gpo_joint let one choose this");
   EXPECT_EQ(why(settings, "gravity"), "");
-  settings.gravity = Gravity::joint;
+  settings.options.gravity = Gravity::joint;
   EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint takes gravity"));
-  EXPECT_EQ(as_used(settings).gravity, Gravity::after);
+  EXPECT_EQ(as_used(settings).options.gravity, Gravity::after);
   Recording recording;
   EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");
   recording.tracks.emplace_back();
@@ -146,27 +146,29 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
 }
 
 TEST(SettingValues, AsUsedAreEqualWhereTheyComeToTheSame) {
-  Settings said{.method = "ba"};
-  said.ransac = false;
-  said.inliers = Inliers::planes;
-  said.initializer.loss = Loss::squared;
-  EXPECT_EQ(as_used(said), as_used({.method = "ba"}));
-  said.method = "gpo_joint";
-  EXPECT_EQ(as_used(said).initializer.loss, Loss::squared);
+  Settings said{.options = {.method = "ba"}};
+  said.options.ransac = false;
+  said.options.inliers = Inliers::planes;
+  said.options.initializer.loss = Loss::squared;
+  EXPECT_EQ(as_used(said), as_used({.options = {.method = "ba"}}));
+  said.options.method = "gpo_joint";
+  EXPECT_EQ(as_used(said).options.initializer.loss, Loss::squared);
 }
 
 TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
   using enum SettingStage;
   for (const Setting& setting : settings_table()) {
     if (setting.key == "method") continue;  // chooses RANSAC and inliers, too
-    const Settings base{.method = "gpo_joint"};
+    const Settings base{.options = {.method = "gpo_joint"}};
     const Settings changed = with_setting(base, setting.key, other_value(setting, base));
     for (const SettingStage stage : {tracks, inliers, rotations, initialization})
       EXPECT_EQ(acting_until(stage, changed) != acting_until(stage, base), setting.stage <= stage)
           << setting.key;
   }
-  EXPECT_EQ(acting_until(rotations, {.method = "gpo"}), acting_until(rotations, {.method = "pnp"}));
-  EXPECT_NE(acting_until(inliers, {.method = "gpo"}), acting_until(inliers, {.method = "ba"}));
+  EXPECT_EQ(acting_until(rotations, {.options = {.method = "gpo"}}),
+            acting_until(rotations, {.options = {.method = "pnp"}}));
+  EXPECT_NE(acting_until(inliers, {.options = {.method = "gpo"}}),
+            acting_until(inliers, {.options = {.method = "ba"}}));
 }
 
 TEST(RotationSources, WhatTheRecordingLacksIsExplained) {
@@ -196,7 +198,7 @@ TEST(Presets, AreTheDefaultsAndThePaper) {
   EXPECT_EQ(preset_of({}), Preset::best);
   const Settings paper = with_preset({}, Preset::paper);
   EXPECT_EQ(preset_of(paper), Preset::paper);
-  EXPECT_EQ(paper.method, "gpo");
+  EXPECT_EQ(paper.options.method, "gpo");
   EXPECT_EQ(setting_text(paper, "tracking"), "frame-to-frame");
   EXPECT_EQ(setting_text(paper, "inliers"), "per-frame");
   EXPECT_EQ(setting_text(paper, "rotations"), "raw");
@@ -207,7 +209,7 @@ TEST(Presets, AreTheDefaultsAndThePaper) {
 TEST(Presets, LeaveTheWindowAlone) {
   Settings settings{.start = 7, .frames = 12};
   settings.exclude = {3};
-  settings.seed = 5;
+  settings.options.seed = 5;
   const Settings paper = with_preset(settings, Preset::paper);
   EXPECT_EQ(paper.start, 7);
   EXPECT_EQ(paper.frames, 12);

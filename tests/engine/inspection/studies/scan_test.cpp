@@ -66,9 +66,10 @@ TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
 
 TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
   std::vector<ScannedStart> found;
-  scan_starts(desk(), {.frames = 20, .method = "gpoo"}, std::vector{3}, 1, {}, [&](auto one) {
-    found.push_back(one);
-  });
+  scan_starts(
+      desk(), {.frames = 20, .options = {.method = "gpoo"}}, std::vector{3}, 1, {}, [&](auto one) {
+        found.push_back(one);
+      });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].start, 3);
   EXPECT_FALSE(found[0].ok);

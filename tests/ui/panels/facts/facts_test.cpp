@@ -86,7 +86,7 @@ TEST(RecordingFacts, SayWhatIsMissing) {
 
 TEST(Results, SayHowInliersWereTold) {
   Inspection inspection = inspected();
-  inspection.settings.inliers = Inliers::consistent;
+  inspection.settings.options.inliers = Inliers::consistent;
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, per frame: too few are consistent");
   Window window = *inspection.window;
   window.inliers = Inliers::consistent;

@@ -26,10 +26,11 @@ class CompareView : public DrawingTest {};
 constexpr int kFrame = 24;
 using Inspections = std::vector<std::shared_ptr<const Inspection>>;
 
-std::shared_ptr<const Inspection> made(const MadeOptions& options, const Settings& other = {}) {
+std::shared_ptr<const Inspection> made(const MadeOptions& options,
+                                       const InitializeOptions& other = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
-  inspection->settings.ransac = other.ransac;
-  inspection->settings.rotations = other.rotations;
+  inspection->settings.options.ransac = other.ransac;
+  inspection->settings.options.rotations = other.rotations;
   if (inspection->evaluation) {
     inspection->evaluation->pne_deg = options.estimate_error;
     inspection->evaluation->ate_m = 0.0042;

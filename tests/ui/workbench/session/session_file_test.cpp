@@ -57,6 +57,18 @@ class SessionFile : public testing::Test {
   WorkbenchState state_;
 };
 
+TEST_F(SessionFile, FindsTheUsersOwnMethods) {
+  state_.methods.add(Method{.key = "mine", .title = "mine", .command = "mine=cat"});
+  state_.settings.options.method = state_.methods.find("mine");
+  state_.compared = {"mine+no-ransac", "gpo"};
+  const std::string text = session_text(state_);
+  EXPECT_NE(text.find("mine=cat"), std::string::npos);
+  const auto read = read_session(write(text), state_.methods).state;
+  EXPECT_EQ(read->settings, state_.settings);
+  EXPECT_EQ(read->compared, state_.compared);
+  EXPECT_THAT(refusal(text), HasSubstr("unknown value 'mine'"));
+}
+
 TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
   for (const char* line : {"method pba",
                            "set ransac_threshold_px 3.5",
