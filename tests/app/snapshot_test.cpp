@@ -24,9 +24,8 @@ Outcome snapshot(const std::string& view, const fs::path& output, const std::str
 }
 
 /// A view's baseline: the one picture of all suites, or where the suite has one, its own. Debian 13
-/// needs some because its Mesa fills round points otherwise, its Dear ImGui draws small circles
-/// with other corners and its OpenCV rounds the edges of smooth lines otherwise: a fifth of a
-/// percent of the pixels.
+/// needs some because its Mesa fills round points otherwise and its Dear ImGui draws small circles
+/// with other corners: a fifth of a percent of the pixels.
 fs::path baseline_of(const std::string& view) {
   const fs::path all = fs::path(GPO_SOURCE_DIR) / "tests/snapshots";
   const fs::path own = all / GPO_SUITE / (view + ".png");

@@ -14,7 +14,7 @@ cv::Rect covered(const Text& text) {
       drawn_picture({1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text); });
   cv::Mat gray;
   cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
-  return cv::boundingRect(gray < 128);
+  return cv::boundingRect(gray < 250);
 }
 
 TEST(CairoDrawing, TextIsAsWideAsMeasured) {
