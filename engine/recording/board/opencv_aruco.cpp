@@ -10,8 +10,8 @@ namespace gpo {
 namespace {
 
 using Quads = std::vector<std::vector<cv::Point2f>>;
-constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;  // any will do to look for quads
-constexpr double kMostCorrected = 0.4;                   // of the bits that the family can correct
+constexpr int kAnyFamily = cv::aruco::DICT_APRILTAG_36h11;  // any will do to look for quads
+constexpr double kMostCorrected = 0.4;  // of the bits that the family can correct
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Quads dark_quads(const cv::Mat& gray) {
   Quads quads, others;
   std::vector<int> ids;
   cv::aruco::detectMarkers(
-      gray, cv::aruco::getPredefinedDictionary(kFamily), quads, ids, parameters, others);
+      gray, cv::aruco::getPredefinedDictionary(kAnyFamily), quads, ids, parameters, others);
   quads.insert(quads.end(), others.begin(), others.end());
   return quads;
 }
@@ -60,7 +60,7 @@ Quads dark_quads(const cv::Mat& gray) {
   parameters.cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
   Quads quads, others;
   std::vector<int> ids;
-  cv::aruco::ArucoDetector(cv::aruco::getPredefinedDictionary(kFamily), parameters)
+  cv::aruco::ArucoDetector(cv::aruco::getPredefinedDictionary(kAnyFamily), parameters)
       .detectMarkers(gray, quads, ids, others);
   quads.insert(quads.end(), others.begin(), others.end());
   return quads;

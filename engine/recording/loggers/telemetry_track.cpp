@@ -51,7 +51,7 @@ using Bytes = std::string_view;
 constexpr std::uint64_t kMostBoxBytes = 1 << 20;
 constexpr int kMostBoxes = 10'000;
 
-std::uint64_t big_endian(Bytes bytes) { return gpo::big_endian(bytes, 0, bytes.size()); }
+std::uint64_t number_of(Bytes bytes) { return big_endian(bytes, 0, bytes.size()); }
 
 /// Its length and its kind, or of a key its namespace, go before what a box holds.
 struct MemoryBox {
@@ -63,7 +63,7 @@ struct MemoryBox {
 std::optional<MemoryBox> take_box(Bytes& rest) {
   constexpr std::size_t kHead = 8;
   if (rest.size() < kHead) return std::nullopt;
-  const std::uint64_t length = big_endian(rest.substr(0, 4));
+  const std::uint64_t length = number_of(rest.substr(0, 4));
   if (length < kHead || length > rest.size()) return std::nullopt;
   const MemoryBox box{rest.substr(4, 4), rest.substr(kHead, length - kHead)};
   rest.remove_prefix(length);
@@ -90,7 +90,7 @@ std::uint64_t place_of(Bytes keys, Bytes key) {
 /// By the table of "well-known types".
 std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   enum { kUtf8 = 1, kSigned = 21, kUnsigned = 22, kFloat = 23, kDouble = 24 };
-  const std::uint64_t bits = big_endian(value.substr(0, 8));
+  const std::uint64_t bits = number_of(value.substr(0, 8));
   const bool is_number = !value.empty() && value.size() <= 8;
   if (type == kUtf8) return std::string(value.substr(0, value.find('\0')));
   if (type == kUnsigned && is_number) return std::to_string(bits);
@@ -179,10 +179,10 @@ std::optional<MovieBox> MovieFile::box_in(MovieBox outer, std::string_view kind)
     file_.clear();
     file_.seekg(static_cast<std::streamoff>(outer.begin));
     if (!file_.read(head.data(), 8)) return std::nullopt;
-    std::uint64_t length = big_endian({head.data(), 4});
+    std::uint64_t length = number_of({head.data(), 4});
     std::uint64_t head_length = 8;
     if (length == 1 && file_.read(head.data() + 8, 8)) {
-      length = big_endian({head.data() + 8, 8});
+      length = number_of({head.data() + 8, 8});
       head_length = 16;
     }
     if (length == 0) length = outer.end - outer.begin;
@@ -216,11 +216,11 @@ std::optional<std::string> metadata_value(Bytes meta, Bytes key) {
   const std::uint64_t place = place_of(data_in(meta, "keys"), key);
   Bytes values = data_in(meta, "ilst");
   while (const auto value = place > 0 ? take_box(values) : std::nullopt) {
-    if (big_endian(value->kind) != place) continue;
+    if (number_of(value->kind) != place) continue;
     const Bytes data = data_in(value->data, "data");
     constexpr std::size_t kTypeAndLocale = 8;
     if (data.size() < kTypeAndLocale) return std::nullopt;
-    return text_of(big_endian(data.substr(0, 4)), data.substr(kTypeAndLocale));
+    return text_of(number_of(data.substr(0, 4)), data.substr(kTypeAndLocale));
   }
   return std::nullopt;
 }
