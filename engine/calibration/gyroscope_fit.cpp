@@ -63,12 +63,10 @@ Eigen::Matrix3Xd residuals(const Observed& observed, const State& state) {
   gyroscope.bias_rad_s = state.bias;
   gyroscope.time_offset_ns = to_ns(state.offset_s + state.drift * observed.from_middle_s);
   const auto& window = *observed.window;
-  std::vector<Matrix3d> R_wc;
-  try {
-    R_wc = gyro_rotations(gyroscope, window.timestamps_ns);
-  } catch (const std::exception&) {
-    return {};
-  }
+  const std::int64_t first_ns = window.timestamps_ns.front() + gyroscope.time_offset_ns;
+  const std::int64_t last_ns = window.timestamps_ns.back() + gyroscope.time_offset_ns;
+  if (!why_not_covered(gyroscope, first_ns, last_ns).empty()) return {};
+  const std::vector<Matrix3d> R_wc = gyro_rotations(gyroscope, window.timestamps_ns);
   Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(R_wc.size()) - 1);
   for (std::size_t i = 1; i < R_wc.size(); ++i)
     all.col(static_cast<Eigen::Index>(i) - 1) = so3_log(window.R_wc[i].transpose() * R_wc[i]);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/statistics.h"
+#include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/common/window_checks.h"
 
 #include <cmath>

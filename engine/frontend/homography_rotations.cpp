@@ -6,6 +6,7 @@
 #include "engine/geometry/homography.h"
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -65,9 +66,7 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
 /// is ill-posed.
 Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
   Matrix3d from;
-  from.col(0) = normal.unitOrthogonal();
-  from.col(1) = normal.cross(from.col(0));
-  from.col(2) = normal;
+  from << normal_tangents(normal), normal;
   Matrix3d to = H_ji * from;
   to.col(2) = to.col(0).cross(to.col(1)).normalized();
   return nearest_rotation(to) * from.transpose();

@@ -218,8 +218,6 @@ std::vector<double> sampson_weights(const Matrix3d& E,
 
 }  // namespace
 
-Matrix3d essential_matrix(const RelativePose& pose) { return skew(pose.direction) * pose.R_ij; }
-
 ArrayXd squared_sampson_distances(const Matrix3d& E, const RayPairs& rays) {
   const Eigen::Matrix3Xd lines_i = E * rays.j;
   const Eigen::Matrix3Xd lines_j = E.transpose() * rays.i;

@@ -43,9 +43,6 @@ std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePo
 
 inline constexpr int kLeastPairRays = 12;
 
-/// E with x_i^T E x_j = 0.
-Eigen::Matrix3d essential_matrix(const RelativePose& pose);
-
 /// Squared first-order distances to the epipolar geometry, one a track (Hartley & Zisserman, 11.9).
 Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
 

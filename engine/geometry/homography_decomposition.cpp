@@ -6,8 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -90,72 +88,11 @@ std::vector<HomographyMotion> malis_vargas(const Matrix3d& H) {
   return motions;
 }
 
-std::vector<HomographyMotion> faugeras(const Matrix3d& H) {
-  const Eigen::JacobiSVD<Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double d1 = svd.singularValues()(0);
-  const double d3 = svd.singularValues()(2);
-  const double x1 = root((d1 * d1 - 1) / (d1 * d1 - d3 * d3));
-  const double x3 = root((1 - d3 * d3) / (d1 * d1 - d3 * d3));
-  std::vector<HomographyMotion> motions;
-  for (const double side : {1.0, -1.0}) {  // d' = side * d_2
-    for (const double sign : {1.0, -1.0}) {
-      // In the axes of the SVD: diag(d) = d' R + t n^T.
-      const Vector3d n(x1, 0, sign * x3);
-      const Vector3d t = (d1 - side * d3) * Vector3d(x1, 0, -side * sign * x3);
-      const double sine = (d1 - side * d3) * sign * x1 * x3;
-      const double cosine = d3 * x1 * x1 + side * d1 * x3 * x3;
-      Matrix3d R;
-      R << cosine, 0, -side * sine, 0, side, 0, sine, 0, side * cosine;
-      const Matrix3d R_21 = svd.matrixU() * R * svd.matrixV().transpose();
-      const Vector3d tau = -side * (svd.matrixV() * R.transpose() * t);
-      add(motions, R_21, tau, svd.matrixV() * n);
-    }
-  }
-  return motions;
-}
-
-std::vector<HomographyMotion> zhang(const Matrix3d& H) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(H.transpose() * H);
-  const double l1 = root(eigen.eigenvalues()(2));
-  const double l3 = root(eigen.eigenvalues()(0));
-  const double difference = l1 - l3;
-  const double product = l1 * l3;
-  const double ratio = std::sqrt(1 + 4 * product / (difference * difference));
-  const double zeta1 = (-1 + ratio) / (2 * product);
-  const double zeta3 = (-1 - ratio) / (2 * product);
-  const auto length = [&](double zeta) {
-    return root(zeta * zeta * difference * difference + 2 * zeta * (product - 1) + 1);
-  };
-  const Vector3d v1 = length(zeta1) * eigen.eigenvectors().col(2);
-  const Vector3d v3 = length(zeta3) * eigen.eigenvectors().col(0);
-  std::vector<HomographyMotion> motions;
-  for (const double sign : {1.0, -1.0}) {
-    const Vector3d t = (v1 - sign * v3) / (zeta1 - zeta3);
-    const Vector3d n = (zeta1 * sign * v3 - zeta3 * v1) / (zeta1 - zeta3);
-    add_factored(motions, H, t, n);
-  }
-  return motions;
-}
-
 }  // namespace
 
-const char* key_of(Decomposition algorithm) {
-  return algorithm == Decomposition::malis_vargas ? "malis_vargas"
-         : algorithm == Decomposition::faugeras   ? "faugeras"
-                                                  : "zhang";
-}
-
-const char* title_of(Decomposition algorithm) {
-  return algorithm == Decomposition::malis_vargas ? "Malis-Vargas"
-         : algorithm == Decomposition::faugeras   ? "Faugeras"
-                                                  : "Zhang";
-}
-
-std::vector<HomographyMotion> decompose_homography(const Matrix3d& H, Decomposition algorithm) {
+std::vector<HomographyMotion> decompose_homography(const Matrix3d& H) {
   const auto unit = normalized(H);
-  if (!unit) return {};
-  if (algorithm == Decomposition::faugeras) return faugeras(*unit);
-  return algorithm == Decomposition::zhang ? zhang(*unit) : malis_vargas(*unit);
+  return unit ? malis_vargas(*unit) : std::vector<HomographyMotion>{};
 }
 
 int points_behind(const HomographyMotion& motion, const Eigen::Matrix3Xd& rays_1) {
@@ -175,7 +112,7 @@ std::vector<HomographyMotion> decompose_homography(const Matrix3d& H,
                                                    const Eigen::Matrix2Xd& visible_px) {
   const Matrix3d K_inverse = K.inverse();
   const Eigen::Matrix3Xd rays = K_inverse * visible_px.colwise().homogeneous();
-  auto motions = decompose_homography(K_inverse * H * K, Decomposition::malis_vargas);
+  auto motions = decompose_homography(K_inverse * H * K);
   std::erase_if(motions, [&](const auto& motion) { return points_behind(motion, rays) > 0; });
   return motions;
 }

@@ -16,35 +16,22 @@ struct HomographyMotion {
   Eigen::Vector3d normal;  ///< in frame 1
 };
 
-/// malis_vargas: analytic, no SVD (Malis & Vargas 2007, INRIA RR-6303; what OpenCV has). faugeras:
-/// from the SVD of H (Faugeras & Lustman 1988). zhang: from the eigenvectors of H^T H (Zhang &
-/// Hanson 1996).
-enum class Decomposition { malis_vargas, faugeras, zhang };
-inline constexpr Decomposition kDecompositions[] = {
-    Decomposition::malis_vargas, Decomposition::faugeras, Decomposition::zhang};
-
-/// malis_vargas | faugeras | zhang.
-const char* key_of(Decomposition algorithm);
-/// As people write it.
-const char* title_of(Decomposition algorithm);
-
-/// All motions behind x_2 ~ H x_1 (rays; any scale and sign of H), possible or not: the true one
-/// and its twin, each also as (-n, -tau), in this order: a, -a, b, -b. faugeras adds four with the
-/// plane between the cameras (n.tau > 1, its case d' = -d_2), which no camera can see.
+/// Returns all motions behind x_2 ~ H x_1 (rays; any scale and sign of H), possible or not: the
+/// true one and its twin, each also as (-n, -tau), in this order: a, -a, b, -b. Analytic, no SVD
+/// (Malis & Vargas 2007, INRIA RR-6303; OpenCV has the same).
 ///
-/// Degenerate cases: a rotation alone (|tau| below about 5e-4) gives nothing, as any plane would
+/// Degenerate cases: a rotation alone (|tau| below about 5e-4) gives no motion, as any plane would
 /// do; where the camera moves along the normal, two singular values coincide and so do the true
 /// motion and its twin, each accurate to the square root of the error of H. A singular or
-/// non-finite H gives nothing.
-std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H,
-                                                   Decomposition algorithm);
+/// non-finite H gives no motion.
+std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H);
 
 /// How many of the points the motion puts behind a camera or onto the plane's far side. Rays of
 /// frame 1, 3 x n.
 int points_behind(const HomographyMotion& motion, const Eigen::Matrix3Xd& rays_1);
 
-/// The physically possible motions (at most two) behind p_2 ~ H p_1, by Malis-Vargas: those that
-/// have all of the points in front of both cameras. `visible_px` are points of frame 1, 2 x n.
+/// The physically possible motions (at most two) behind p_2 ~ H p_1: those that have all of the
+/// points in front of both cameras. `visible_px` are points of frame 1, 2 x n.
 std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H,
                                                    const Eigen::Matrix3d& K,
                                                    const Eigen::Matrix2Xd& visible_px);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace gpo {
 
 Plane facing_origin(const Plane& plane) {
@@ -12,6 +14,13 @@ Plane facing_origin(const Plane& plane) {
 
 Plane plane_in_camera(const Plane& plane_w, const Pose& pose) {
   return {pose.R_wc.transpose() * plane_w.normal, plane_w.distance + plane_w.normal.dot(pose.p_wc)};
+}
+
+Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal) {
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents.col(0) = normal.unitOrthogonal();
+  tangents.col(1) = normal.cross(tangents.col(0));
+  return tangents;
 }
 
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,

@@ -23,6 +23,9 @@ Plane facing_origin(const Plane& plane);
 /// The plane in the camera's frame (not flipped).
 Plane plane_in_camera(const Plane& plane_w, const Pose& pose);
 
+/// Two orthonormal directions in which a normal moves, of unit length.
+Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
+
 /// Where the ray from the camera center along `ray_c` (camera frame) meets the plane, in the
 /// world; nothing where it does not meet it in front of the camera.
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,

@@ -3,6 +3,7 @@
 #include "engine/inertial/alignment_problem.h"
 
 #include "engine/geometry/decompositions.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 
 #include <cmath>
@@ -49,19 +50,11 @@ VectorXd linear_solution(const AlignmentProblem& problem, const Vector3d& g_0, c
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 2> gravity_tangents(const Vector3d& gravity) {
-  const Vector3d g = gravity.normalized();
-  Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = g.unitOrthogonal();
-  tangents.col(1) = g.cross(tangents.col(0));
-  return tangents;
-}
-
 AlignmentState stepped(const AlignmentState& state, const VectorXd& step) {
   AlignmentState next = state;
   next.velocity += step.head<3>();
-  const Vector3d turned =
-      state.gravity.normalized() + gravity_tangents(state.gravity) * step.segment<2>(3);
+  const Vector3d down = state.gravity.normalized();
+  const Vector3d turned = down + normal_tangents(down) * step.segment<2>(3);
   next.gravity = state.gravity.norm() * turned.normalized();
   next.log_scale += step(kScaleUnknown);
   next.bias += step.segment<3>(6);
@@ -84,7 +77,7 @@ MatrixXd jacobian(const AlignmentProblem& problem,
                   const AlignmentState& state,
                   const VectorXd& meters) {
   MatrixXd J(meters.size(), kAlignmentUnknowns);
-  const auto tangents = gravity_tangents(state.gravity);
+  const auto tangents = normal_tangents(state.gravity.normalized());
   J.col(kScaleUnknown) = meters;
   for (std::size_t k = 1; k < problem.path.size(); ++k) {
     const InertialFrame& frame = problem.path[k];
@@ -115,7 +108,7 @@ AlignmentState linear_start(const AlignmentProblem& problem, double gravity_m_s2
   VectorXd x = linear_solution(problem, Vector3d::Zero(), Matrix3d::Identity());
   Vector3d g = gravity_m_s2 * x.tail<3>().normalized();
   for (int round = 0; round < kRounds; ++round) {
-    const MatrixXd B = gravity_m_s2 * gravity_tangents(g);
+    const MatrixXd B = gravity_m_s2 * normal_tangents(g.normalized());
     x = linear_solution(problem, g, B);
     g = gravity_m_s2 * (g + B * x.tail<2>()).normalized();
   }

@@ -26,7 +26,7 @@ struct AlignmentProblem {
   double bias_sigma_m_s2 = 0;
 };
 
-/// The unknowns; a step over them is (v, two tangents of g, log s, b_a, t).
+/// The unknowns; a step over them is (v, two `normal_tangents` of g, log s, b_a, t).
 struct AlignmentState {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the sensor at the first frame [m/s]
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();   ///< of fixed length [m/s^2]
@@ -37,8 +37,6 @@ struct AlignmentState {
 inline constexpr int kAlignmentUnknowns = 12;
 inline constexpr int kScaleUnknown = 5;
 
-/// Two unit vectors that are normal to gravity and each other.
-Eigen::Matrix<double, 3, 2> gravity_tangents(const Eigen::Vector3d& gravity);
 /// A state after a step; gravity turns.
 AlignmentState stepped(const AlignmentState& state, const Eigen::VectorXd& step);
 

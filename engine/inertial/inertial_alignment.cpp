@@ -3,6 +3,7 @@
 #include "engine/inertial/inertial_alignment.h"
 
 #include "engine/geometry/decompositions.h"
+#include "engine/geometry/plane.h"
 #include "engine/inertial/alignment_problem.h"
 #include "engine/inertial/imu_intervals.h"
 #include "engine/inertial/inertial_path.h"
@@ -179,7 +180,7 @@ void tell_certainty(const Refinement& refined,
   const double scatter = 2 * std::sqrt(0.5 * std::max(0.0, by_noise));
   const double spread = std::max(1.0, result.misfit);
   const MatrixXd covariance = spread * rough;
-  const auto tangents = gravity_tangents(refined.state.gravity);
+  const auto tangents = normal_tangents(refined.state.gravity.normalized());
   result.direction_covariance = tangents * covariance.block<2, 2>(3, 3) * tangents.transpose();
   result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));
   result.accelerometer_bias_covariance = covariance.block<3, 3>(6, 6);
@@ -305,6 +306,7 @@ Alignment alignment_of(const UncertainPoses& poses,
   if (static_cast<int>(poses.cameras.size()) < kLeastFrames)
     return {refused(fmt::format(
         "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames))};
+  if (poses.covariance.size() == 0) return {refused("the uncertainty of the poses is unknown")};
   const std::int64_t offset_ns =
       gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
   const ImuNoise noise = noise_of(gyroscope, poses, offset_ns, options);

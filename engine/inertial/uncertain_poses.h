@@ -23,7 +23,7 @@ struct UncertainPoses {
   Eigen::MatrixXd covariance;
   std::optional<Eigen::Vector3d> bias_rad_s = {};  ///< the gyroscope's, with which they go
   double time_offset_s = 0;                        ///< beyond what the gyroscope says of its clock
-  /// Where the rows of `covariance` stand in the result's joint one; empty: there is none.
+  /// Where the rows of `covariance` are in the result's joint one; empty if that is missing.
   std::vector<int> joint_rows = {};
 
   Eigen::Index center_rows() const { return 3 * (static_cast<Eigen::Index>(cameras.size()) - 1); }
@@ -34,14 +34,7 @@ struct UncertainPoses {
 inline constexpr int kMostAlignedFrames = 60;
 
 /// Of a result that is ok, of every second, third, ... frame where there are too many. Without the
-/// covariance of all its centers at once it is made from each one's own
-/// (`covariance_from_single_ones`), without those from what its residuals say.
+/// joint covariance of its centers the covariance is empty.
 UncertainPoses uncertain_poses(const Window& window, const Initialization& result);
-
-/// Neighbors' errors are alike: what the centers share (normal, bias, lens) grows smoothly with the
-/// motion. The least of the first few covariances is taken as each frame's own noise, and what a
-/// frame has beyond that as moving with all others; nothing of a frame without any. Of all frames
-/// but the first, stacked.
-Eigen::MatrixXd covariance_from_single_ones(const std::vector<Eigen::Matrix3d>& of_centers);
 
 }  // namespace gpo

@@ -136,8 +136,7 @@ const HomographyCandidate* indistinct_twin(const HomographyCandidate& best,
 std::vector<int> widest_first(const Window& window) {
   std::vector<double> parallax(window.frame_count(), 0.0);
   for (int i = 1; i < window.frame_count(); ++i) {
-    const auto motions = decompose_homography(window.K.inverse() * window.H_i1[i] * window.K,
-                                              Decomposition::malis_vargas);
+    const auto motions = decompose_homography(window.K.inverse() * window.H_i1[i] * window.K);
     if (!motions.empty()) parallax[i] = motions.front().tau.norm();
   }
   std::vector<int> frames(window.frame_count() - 1);

@@ -5,7 +5,7 @@
 #include "engine/initializers/plane/delivery.h"
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/residuals/ceres_solver.h"
-#include "engine/initializers/residuals/transfer.h"
+#include "engine/initializers/residuals/direction.h"
 
 #include <memory>
 

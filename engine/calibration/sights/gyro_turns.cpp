@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/sights/gyro_turns.h"
 
-#include "engine/base/error.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 
@@ -28,14 +27,11 @@ GyroTurns gyro_turns(const Gyroscope& gyroscope,
       const int from = plane.sights[i - 1].frame;
       const int to = plane.sights[i].frame;
       const std::array times{frame_times_ns[from], frame_times_ns[to]};
-      try {
-        const Rotations turn = sensitive_gyro_rotations(gyroscope, times);
-        if (turn.R_wc.size() != 2 || !turn.gyro) continue;
-        const double sigma_rad = std::hypot(kNoise_rad, kScale * so3_log(turn.R_wc[1]).norm());
-        gyro.turns.push_back({from, to, turn.R_wc[1], turn.gyro->d_bias[1], sigma_rad});
-      } catch (const InputError&) {
-        continue;  // no samples there
-      }
+      const std::int64_t offset_ns = gyroscope.time_offset_ns;
+      if (!why_not_covered(gyroscope, times[0] + offset_ns, times[1] + offset_ns).empty()) continue;
+      const Rotations turn = sensitive_gyro_rotations(gyroscope, times);
+      const double sigma_rad = std::hypot(kNoise_rad, kScale * so3_log(turn.R_wc[1]).norm());
+      gyro.turns.push_back({from, to, turn.R_wc[1], turn.gyro->d_bias[1], sigma_rad});
     }
   }
   return gyro;

@@ -4,9 +4,9 @@
 
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/initializers/residuals/ceres_solver.h"
+#include "engine/initializers/residuals/direction.h"
 #include "engine/initializers/residuals/point_view.h"
 #include "engine/initializers/residuals/pose_block.h"
-#include "engine/initializers/residuals/transfer.h"
 
 #include <utility>
 

@@ -13,15 +13,9 @@ namespace {
 
 /// Share of the points that noise may carry over the horizon of the right reading.
 constexpr double kMostBehind = 0.02;
-/// Two algorithms' readings closer than this are one; they differ by rounding only.
-constexpr double kSameDeg = 0.1;
 
 double rotation_angle_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return degrees(so3_log(a.transpose() * b).norm());
-}
-
-bool same_reading(const HomographyMotion& a, const HomographyMotion& b) {
-  return angle_deg(a.normal, b.normal) < kSameDeg && rotation_angle_deg(a.R_21, b.R_21) < kSameDeg;
 }
 
 Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
@@ -30,19 +24,8 @@ Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
 }
 
 std::string reason_of_sight(const HomographyCandidate& candidate) {
-  if (candidate.motion.normal.dot(candidate.motion.tau) >= 1)
-    return "the plane between the cameras";
   if (candidate.behind <= kMostBehind * candidate.of) return "";
   return fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of);
-}
-
-/// What an SVD algorithm says once more.
-std::string reason_of_repetition(const HomographyCandidate& candidate,
-                                 std::span<const HomographyCandidate> before) {
-  if (candidate.algorithm == Decomposition::malis_vargas) return "";
-  const bool same = std::ranges::any_of(
-      before, [&](const auto& other) { return same_reading(candidate.motion, other.motion); });
-  return same ? "same as the Malis-Vargas one" : "not found by Malis-Vargas";
 }
 
 }  // namespace
@@ -51,19 +34,14 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
   const Eigen::Matrix3d H = window.K.inverse() * window.H_i1[frame] * window.K;
   const Eigen::Matrix3Xd rays_1 = inlier_rays(window, frame);
   std::vector<HomographyCandidate> candidates;
-  for (const Decomposition algorithm : kDecompositions) {
-    for (const HomographyMotion& motion : decompose_homography(H, algorithm)) {
-      const double score = rotation_angle_deg(motion.R_21, window.R_wc[frame].transpose());
-      HomographyCandidate candidate{frame, algorithm, motion, score};
-      candidate.behind = points_behind(motion, rays_1);
-      candidate.of = static_cast<int>(rays_1.cols());
-      if (std::string reason = reason_of_sight(candidate); !reason.empty()) {
-        candidate.reject(Rejection::sight, std::move(reason));
-      } else if (reason = reason_of_repetition(candidate, candidates); !reason.empty()) {
-        candidate.reject(Rejection::repetition, std::move(reason));
-      }
-      candidates.push_back(std::move(candidate));
-    }
+  for (const HomographyMotion& motion : decompose_homography(H)) {
+    const double score = rotation_angle_deg(motion.R_21, window.R_wc[frame].transpose());
+    HomographyCandidate candidate{.frame = frame, .motion = motion, .score = score};
+    candidate.behind = points_behind(motion, rays_1);
+    candidate.of = static_cast<int>(rays_1.cols());
+    if (std::string reason = reason_of_sight(candidate); !reason.empty())
+      candidate.reject(Rejection::sight, std::move(reason));
+    candidates.push_back(std::move(candidate));
   }
   return candidates;
 }

@@ -16,9 +16,8 @@ namespace gpo {
 inline constexpr double kClearlyWorseDeg = 0.5;
 inline constexpr double kClearlyWorseFactor = 2;
 
-/// All readings of the homography from frame 0 to `frame` by every algorithm, scored. Rejected are
-/// those that put points behind a camera and, of the SVD algorithms, those that repeat one of
-/// Malis-Vargas; at most two stay.
+/// Returns all readings of the homography from frame 0 to `frame`, scored; those that put points
+/// behind a camera are rejected, which leaves at most two.
 std::vector<HomographyCandidate> read_homography(const Window& window, int frame);
 
 /// Rejects readings whose rotation is clearly worse than that of another one in `candidates` (of

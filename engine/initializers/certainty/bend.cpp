@@ -40,17 +40,12 @@ std::vector<Height> heights_of(const PlaneObservations& observations,
     const FrameObservations& f = of_plane(observations, plane)[i];
     const FrameState state = frame_state(observations, motion, i, m);
     for (int k = 0; k < f.count; ++k) {
-      const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
-      const double inverse_depth = -m.dot(ray);
-      const Vector3d y = state.R_cw * ray + state.tau_c * inverse_depth;
-      const Vector3d dy = state.tau_c * inverse_depth;
-      const Vector2d dp = Vector2d(state.fx * (dy.x() - y.x() / y.z() * dy.z()),
-                                   state.fy * (dy.y() - y.y() / y.z() * dy.z())) /
-                          y.z();
+      const Transfer transfer = transfer_of(f, state, k);
+      const Vector2d dp = transfer.d_normal() * m;
       const double weight = f.mask[k] * f.mask[k];
       Height& height = heights[f.track[k]];
-      height.place = tangents.transpose() * ray / inverse_depth;
-      height.gradient += weight * dp.dot(transfer_error_px(f, state, k));
+      height.place = tangents.transpose() * transfer.ray_1 / -transfer.height;
+      height.gradient += weight * dp.dot(transfer.pixel - Vector2d(f.u[k], f.v[k]));
       height.information += weight * dp.squaredNorm();
     }
   }

@@ -69,11 +69,7 @@ bool linearize(const Window& window,
     motion.tau[0] += R_wc * step;
   }
   const Eigen::Matrix<double, 3, 2> N = normal_tangents(normal);
-  const auto& JtJ = f.normals.JtJ;
-  const Eigen::Matrix<double, 2, 3> nt = JtJ.topRightCorner<2, 3>();
-  const Eigen::Matrix2d reduced =
-      JtJ.topLeftCorner<2, 2>() -
-      nt * solve_symmetric(JtJ.bottomRightCorner<3, 3>(), nt.transpose());
+  const Eigen::Matrix2d reduced = frame_information(window, frame, f.normals, RotationModel::known);
   f.normal = normal;
   f.tau = motion.tau[0];
   f.hessian = N * reduced * N.transpose();

@@ -94,21 +94,10 @@ std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
 Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
                                         const FrameState& state,
                                         int k,
-                                        Eigen::Vector2d r) {
-  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
-  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
-  const double x = y.x() / y.z();
-  const double v = y.y() / y.z();
-  r = f.weight.empty() ? Eigen::Vector2d(f.mask[k] * f.mask[k] * r)
-                       : Eigen::Vector2d(f.weight[k] * r);
-  // dp/dy, transposed, times r; then dy/du = -tau_c (x_1.N), dy/dphi = [y]x, dy/dt = -n.x_1.
-  const double a = state.fx * r.x() / y.z();
-  const double b = state.fy * r.y() / y.z();
-  const Vector3d g(a, b, -(a * x + b * v));
-  Eigen::Matrix<double, 8, 1> gradient;
-  gradient << -state.tau_c.dot(g) * (state.tangents.transpose() * ray), g.cross(y),
-      -state.normal.dot(ray) * g;
-  return gradient;
+                                        const Eigen::Vector2d& r) {
+  const Eigen::Matrix<double, 2, 8> J = transfer_of(f, state, k).jacobian(state.tangents);
+  return f.weight.empty() ? (f.mask[k] * f.mask[k] * (J.transpose() * r)).eval()
+                          : (J.transpose() * (f.weight[k] * r)).eval();
 }
 
 int own_size(RotationModel model, const PlaneMotion& motion) {

@@ -46,7 +46,7 @@ std::optional<FrameObservations> curvature_weights(const FrameObservations& f,
 Eigen::Matrix<double, 8, 1> gradient_of(const FrameObservations& f,
                                         const FrameState& state,
                                         int k,
-                                        Eigen::Vector2d r);
+                                        const Eigen::Vector2d& r);
 
 struct Linearization {
   std::vector<std::vector<FrameNormals>> planes;  ///< the leading one first; one a frame

@@ -4,6 +4,7 @@
 
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
+#include "engine/initializers/plane/plane_motion.h"
 
 namespace gpo {
 namespace {
@@ -55,6 +56,21 @@ std::optional<double> normal_sigma_deg(const SharedInformation& information, dou
   const auto covariance = inverse_information(information);
   if (!covariance) return std::nullopt;
   return degrees(sigma_px * std::sqrt(covariance->topLeftCorner<2, 2>().trace()));
+}
+
+std::optional<double> normal_bound_deg(const Window& window,
+                                       const Plane& plane,
+                                       std::span<const Pose> cameras,
+                                       double sigma_px) {
+  const PlaneObservations observations = plane_observations(window);
+  const PlaneMotion motion = motion_of(plane, cameras);
+  SharedInformation information = SharedInformation::Zero(2, 2);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const FrameNormals normals =
+        frame_normals(observations.frames[i], frame_state(observations, motion, i), Rotating::no);
+    information += frame_information(window, i, normals, RotationModel::known);
+  }
+  return normal_sigma_deg(information, sigma_px);
 }
 
 std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& information) {

@@ -23,8 +23,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMostJointFrames = 121;  // 360 rows; the time grows with their square
-
 int tracks_of(const PlaneObservations& observations) {
   std::set<int> tracks;
   for (int k = 0; k <= static_cast<int>(observations.others.size()); ++k)
@@ -88,9 +86,7 @@ std::optional<double> bound_deg(const Window& window,
                                 const Linearization& linearized,
                                 RotationModel model) {
   const Bread plain = bread_of(window, motion, linearized, model);
-  const auto covariance = inverse_information(plain.information);
-  if (!covariance) return std::nullopt;
-  return degrees(linearized.sigma_px * std::sqrt(covariance->topLeftCorner<2, 2>().trace()));
+  return normal_sigma_deg(plain.information, linearized.sigma_px);
 }
 
 /// All that is wrong and moves single frames, too.
@@ -191,7 +187,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < frames; ++i) add_frame(motion, i, bread.frames[i], spread, result);
-  if (centers == Centers::jointly && frames <= kMostJointFrames) {
+  if (centers == Centers::jointly) {
     const auto moves = all_moves(window, observations, motion, bread, *inverse, degrees_of_freedom);
     result.joint_covariance = joint_covariance(motion, bread, moves, covariance);
     result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;

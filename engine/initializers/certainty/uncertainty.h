@@ -17,7 +17,7 @@
 namespace gpo {
 
 /// Whether the covariance of all centers at once is computed, too, which takes a millisecond or
-/// two; not of windows of more than 121 frames.
+/// two of 30 frames and grows with the square of their number.
 enum class Centers { one_by_one, jointly };
 
 /// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.

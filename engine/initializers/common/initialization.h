@@ -63,18 +63,16 @@ void continue_trace(const SolverReport& before, SolverReport& next);
 
 /// Why a reading of a homography was not taken.
 enum class Rejection {
-  none,        ///< it was
-  sight,       ///< it puts points behind a camera, or the plane between the cameras
-  repetition,  ///< another algorithm's reading is the same, or has none like it
-  rotation,    ///< its rotation, or its score, is worse than its twin's
-  normal,      ///< its normal is far from where all others gather
-  pair         ///< the pair of frames that it is of will not do
+  none,      ///< it was
+  sight,     ///< it puts points behind a camera
+  rotation,  ///< its rotation, or its score, is worse than its twin's
+  normal,    ///< its normal is far from where all others gather
+  pair       ///< the pair of frames that it is of will not do
 };
 
 /// One reading of a frame's homography, kept for people to look at.
 struct HomographyCandidate {
   int frame;  ///< of the window; the homography is from frame 0 to it
-  Decomposition algorithm;
   HomographyMotion motion;
   double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
   Rejection rejection = Rejection::none;

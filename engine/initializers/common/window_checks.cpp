@@ -3,6 +3,7 @@
 #include "engine/initializers/common/window_checks.h"
 
 #include "engine/geometry/statistics.h"
+#include "engine/geometry/transfer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,14 +80,19 @@ std::vector<double> reprojection_errors_px(const Window& window,
   const Matrix3d K_inverse = window.K.inverse();
   std::vector<double> errors;
   for (int i = 1; i < window.frame_count(); ++i) {
-    const Eigen::Vector3d tau = -cameras[i].p_wc / plane.distance;
-    const Matrix3d KR = window.K * cameras[i].R_wc.transpose();
+    const Matrix3d R_cw = cameras[i].R_wc.transpose();
+    const FrameState state{.R_cw = R_cw,
+                           .tau_c = -(R_cw * cameras[i].p_wc) / plane.distance,
+                           .normal = plane.normal,
+                           .fx = window.K(0, 0),
+                           .fy = window.K(1, 1)};
     for (int j = 0; j < window.track_count(); ++j) {
       if (!window.inlier[i][j]) continue;
       const Eigen::Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
-      const Eigen::Vector3d seen = KR * (ray_1 - tau * plane.normal.dot(ray_1));
-      errors.push_back(seen.z() > 0 ? (seen.hnormalized() - window.points_px[i].col(j)).norm()
-                                    : std::numeric_limits<double>::infinity());
+      const Transfer seen = transfer_on_plane(state, ray_1);
+      const Eigen::Vector2d pixel = seen.pixel + window.K.topRightCorner<2, 1>();
+      errors.push_back(seen.in_front() ? (pixel - window.points_px[i].col(j)).norm()
+                                       : std::numeric_limits<double>::infinity());
     }
   }
   return errors;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/initializers/plane/plane_solver.h"
+#include "engine/initializers/plane/plane_weights.h"
 #include "engine/initializers/residuals/ceres_solver.h"
-#include "engine/initializers/residuals/transfer.h"
+#include "engine/initializers/residuals/direction.h"
 #include "engine/window/window.h"
 
 #include <cstddef>
@@ -91,7 +92,6 @@ class FrameCost : public ceres::CostFunction {
       : window_(window),
         observations_(observations),
         unknowns_(unknowns),
-        focal_(Vector3d(window.K(0, 0), window.K(1, 1), 1).asDiagonal()),
         R_wc_(R_wc),
         frame_(frame),
         block_(block) {
@@ -115,10 +115,15 @@ class FrameCost : public ceres::CostFunction {
       d_m = direction_jacobian(q);
     }
     const Rotation rotation = rotation_at(window_, unknowns_, R_wc_, frame_, parameters + 2);
+    const Matrix3d R_cw = rotation.R_wc.transpose();
+    const FrameState state{.R_cw = R_cw,
+                           .tau_c = R_cw * tau,
+                           .normal = m,
+                           .fx = window_.K(0, 0),
+                           .fy = window_.K(1, 1)};
     for (int k = 0; k < observations_.count; ++k) {
-      const Vector3d ray_1(observations_.ray_x[k], observations_.ray_y[k], 1);
-      const Transfer transfer = transfer_on_plane(focal_, rotation.R_wc, ray_1, m, tau);
-      if (!transfer.in_front) return false;
+      const Transfer transfer = transfer_of(observations_, state, k);
+      if (!transfer.in_front()) return false;
       const double weight = observations_.mask[k];
       Eigen::Map<Eigen::Vector2d> residual(residuals + std::ptrdiff_t{2} * k);
       residual =
@@ -128,10 +133,10 @@ class FrameCost : public ceres::CostFunction {
         Eigen::Map<RowMajor<2, Eigen::Dynamic>>(jacobians[block] + 2 * J.cols() * k, 2, J.cols()) =
             weight * J;
       };
-      write(0, (transfer.d_normal * d_m).eval());
-      write(1, transfer.d_tau);
+      write(0, (transfer.d_normal() * d_m).eval());
+      write(1, (transfer.d_translation() * R_cw).eval());
       for (std::size_t r = 0; r < rotation.moves.size(); ++r)
-        write(2 + static_cast<int>(r), (transfer.d_rotation * rotation.moves[r]).eval());
+        write(2 + static_cast<int>(r), (transfer.d_rotation() * rotation.moves[r]).eval());
     }
     return true;
   }
@@ -140,7 +145,6 @@ class FrameCost : public ceres::CostFunction {
   const Window& window_;
   const FrameObservations& observations_;
   const PlaneUnknowns& unknowns_;
-  Matrix3d focal_;
   Matrix3d R_wc_;
   int frame_;
   PlaneBlock block_;

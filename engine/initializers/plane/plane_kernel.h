@@ -2,20 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/transfer.h"
 #include "engine/initializers/plane/plane_observations.h"
 
 #include <Eigen/Core>
 
 namespace gpo {
-
-/// Where a frame's transfer error is linearized.
-struct FrameState {
-  Eigen::Matrix3d R_cw = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d tau_c = Eigen::Vector3d::Zero();  ///< R_cw tau, in the frame's camera axes [d]
-  Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  Eigen::Matrix<double, 3, 2> tangents;  ///< orthonormal, in which the normal moves
-  double fx = 1, fy = 1;                 ///< [px]
-};
 
 /// Gauss-Newton's normal equations of one frame's transfer errors (engine/method.md, eq. 7) over
 /// (u, phi, t), of 2, 3 and 3 numbers: normal [+] tangents u, R_wc exp(phi), tau + R_wc t.

@@ -89,13 +89,6 @@ FrameState frame_state(const PlaneObservations& observations,
   return state;
 }
 
-Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal) {
-  Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = normal.unitOrthogonal();
-  tangents.col(1) = normal.cross(tangents.col(0));
-  return tangents;
-}
-
 Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2d& u_rad) {
   const double angle = u_rad.norm();
   const double sinc = angle < 1e-8 ? 1.0 : std::sin(angle) / angle;

@@ -64,8 +64,7 @@ FrameState frame_state(const PlaneObservations& observations,
                        int frame,
                        const Eigen::Vector3d& m);
 
-/// Two orthonormal directions in which a normal moves, and where it comes to.
-Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
+/// A normal after a step over its `normal_tangents`.
 Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2d& u_rad);
 
 }  // namespace gpo

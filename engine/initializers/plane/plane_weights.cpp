@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/plane/plane_weights.h"
 
-#include "engine/initializers/residuals/transfer.h"
-
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -19,22 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kHuberSigmas = 1.345;
 
-Matrix3d focal(const FrameState& state) { return Vector3d(state.fx, state.fy, 1).asDiagonal(); }
-
-Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k) {
-  return transfer_on_plane(focal(state),
-                           state.R_cw.transpose(),
-                           Vector3d(f.ray_x[k], f.ray_y[k], 1),
-                           state.normal,
-                           state.R_cw.transpose() * state.tau_c);
-}
-
 /// dp_i/dp_1: the homography's slope where it takes the point.
-Matrix2d slope(const FrameObservations& f, const FrameState& state, int k) {
-  const Matrix3d H =
-      focal(state) * (state.R_cw - state.tau_c * state.normal.transpose()) * focal(state).inverse();
-  const Vector3d y = H * Vector3d(state.fx * f.ray_x[k], state.fy * f.ray_y[k], 1);
-  return (H.topLeftCorner<2, 2>() - y.hnormalized() * H.bottomLeftCorner<1, 2>()) / y.z();
+Matrix2d slope(const FrameState& state, const Transfer& transfer) {
+  const Matrix3d A = state.R_cw - state.tau_c * state.normal.transpose();
+  return transfer.d_y * A.leftCols<2>() * Vector2d(1 / state.fx, 1 / state.fy).asDiagonal();
 }
 
 double huber_weight(double length_px, double sigma_px) {
@@ -54,20 +40,22 @@ void reweigh(const FrameState& state,
   if (options.error == ErrorModel::transfer) return reweigh_by_huber(state, sigma_px, f);
   f.weight.assign(f.count, Matrix2d::Identity());
   for (int k = 0; k < f.count; ++k) {
-    const Matrix2d J = slope(f, state, k);
+    const Matrix2d J = slope(state, transfer_of(f, state, k));
     f.weight[k] = 2 * (Matrix2d::Identity() + J * J.transpose()).inverse();
     if (options.loss != Loss::huber) continue;
-    const Vector2d r = transfer_of(f, state, k).pixel - Vector2d(f.u[k], f.v[k]);
+    const Vector2d r = transfer_error_px(f, state, k);
     f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), sigma_px);
   }
 }
 
 }  // namespace
 
+Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k) {
+  return transfer_on_plane(state, Vector3d(f.ray_x[k], f.ray_y[k], 1));
+}
+
 Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k) {
-  const Vector3d ray(f.ray_x[k], f.ray_y[k], 1);
-  const Vector3d y = state.R_cw * ray - state.tau_c * state.normal.dot(ray);
-  return {state.fx * y.x() / y.z() - f.u[k], state.fy * y.y() / y.z() - f.v[k]};
+  return transfer_of(f, state, k).pixel - Vector2d(f.u[k], f.v[k]);
 }
 
 bool is_weighted(const InitializerOptions& options) {
@@ -112,14 +100,12 @@ FrameNormals frame_normals_by_matrix(const FrameObservations& f, const FrameStat
   normals.in_front = true;
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
-    Eigen::Matrix<double, 2, 8> J;
-    J << transfer.d_normal * state.tangents, transfer.d_rotation,
-        transfer.d_tau * state.R_cw.transpose();
+    const Eigen::Matrix<double, 2, 8> J = transfer.jacobian(state.tangents);
     const Vector2d r = transfer.pixel - Vector2d(f.u[k], f.v[k]);
     normals.JtJ += J.transpose() * f.weight[k] * J;
     normals.Jtr += J.transpose() * f.weight[k] * r;
     normals.cost += 0.5 * r.dot(f.weight[k] * r);
-    normals.in_front = normals.in_front && transfer.in_front;
+    normals.in_front = normals.in_front && transfer.in_front();
   }
   return normals;
 }

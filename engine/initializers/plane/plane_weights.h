@@ -11,7 +11,9 @@ namespace gpo {
 /// Root of what Huber's weights leave of the mean square of two-dimensional Gaussian noise.
 inline constexpr double kSigmaOfHuber = 0.8636;
 
-/// Of an observation of a frame.
+/// Transfer of a frame's observation `k`.
+Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k);
+/// Its distance from where the observation is.
 Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
 
 /// Whether the options ask for weights other than one.

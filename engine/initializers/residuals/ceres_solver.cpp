@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/residuals/ceres_solver.h"
 
-#include "engine/initializers/residuals/transfer.h"
+#include "engine/initializers/residuals/direction.h"
 
 #include <utility>
 #include <vector>

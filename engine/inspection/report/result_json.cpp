@@ -100,7 +100,7 @@ ordered_json candidates_json(const Inspection& inspection) {
   for (const HomographyCandidate& candidate : inspection.initialization->candidates) {
     const HomographyMotion& motion = candidate.motion;
     candidates.push_back({{"frame", inspection.window->start + candidate.frame},
-                          {"decomposition", key_of(candidate.algorithm)},
+                          {"decomposition", "malis_vargas"},
                           {"normal", vector_json(motion.normal)},
                           {"tau", vector_json(motion.tau)},
                           {"q_21_xyzw", vector_json(quaternion_xyzw(motion.R_21))},

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/evaluation/bound.h"
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/statistics.h"
 #include "engine/initializers/common/map_points.h"

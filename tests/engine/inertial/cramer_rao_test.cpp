@@ -73,8 +73,8 @@ TEST(InertialAlignment, MediansAreNearTheCramerRaoBound) {
               align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);
           ASSERT_TRUE(result.ok) << result.reason;
           const Bound bound = bound_of(pace, sensor, seconds, seed);
-          const Eigen::Vector2d error =
-              gravity_tangents(made.gravity).transpose() * result.gravity_m_s2.normalized();
+          const Eigen::Vector2d error = normal_tangents(made.gravity.normalized()).transpose() *
+                                        result.gravity_m_s2.normalized();
           of_gravity.push_back(std::sqrt(error.dot(bound.gravity.inverse() * error)));
           of_scale.push_back(std::abs(std::log(result.scale / made.scale)) / bound.log_scale);
         }

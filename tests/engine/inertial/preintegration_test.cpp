@@ -12,13 +12,14 @@
 #include <random>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using ::testing::HasSubstr;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 constexpr double kStep_s = 0.005;
@@ -207,17 +208,15 @@ TEST(ImuIntervals, SayWhyThereAreNone) {
     return imu_intervals(sensor, times, offset_ns, Vector3d::Zero(), {}).reason;
   };
   EXPECT_EQ(reason(some_sensor()), "");
-  EXPECT_EQ(reason(some_sensor(), 2000000000),
-            "the accelerometer ends before the window's last frame");
-  EXPECT_EQ(reason(some_sensor(), -2000000000),
-            "the accelerometer starts after the window's first frame");
+  EXPECT_THAT(reason(some_sensor(), 2000000000), HasSubstr("before the window's last frame"));
+  EXPECT_THAT(reason(some_sensor(), -2000000000), HasSubstr("after the window's first frame"));
   Gyroscope sensor = some_sensor();
   sensor.accelerations_m_s2[12].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(reason(sensor), "the accelerometer has values in the window that are no numbers");
   sensor = some_sensor();
   for (std::size_t k = 12; k < sensor.timestamps_ns.size(); ++k)
     sensor.timestamps_ns[k] += 40000000;
-  EXPECT_EQ(reason(sensor), "the accelerometer has a gap of 0.045 s in the window");
+  EXPECT_THAT(reason(sensor), HasSubstr("gap of 0.045 s"));
   sensor.accelerations_m_s2.clear();
   EXPECT_EQ(reason(sensor), "the recording has no accelerometer");
 }

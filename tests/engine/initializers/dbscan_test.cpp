@@ -52,13 +52,9 @@ TEST(Dbscan, GivenRotationsTellTheFalseTwin) {
 TEST(Dbscan, KeepsAllReadingsOfAllFrames) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_dbscan(truth.window, {});
-  // 4 of Malis-Vargas, 8 of Faugeras, 4 of Zhang; frames that hardly moved have none.
-  EXPECT_EQ(result.candidates.size() % 16, 0U);
-  EXPECT_GT(result.candidates.size(), 16U * 25);
-  for (const Decomposition algorithm : kDecompositions) {
-    EXPECT_TRUE(std::ranges::any_of(result.candidates,
-                                    [&](const auto& c) { return c.algorithm == algorithm; }));
-  }
+  // Four a frame; frames that hardly moved have none.
+  EXPECT_EQ(result.candidates.size() % 4, 0U);
+  EXPECT_GT(result.candidates.size(), 4U * 25);
   EXPECT_TRUE(std::ranges::any_of(result.candidates, [](const auto& c) { return c.taken(); }));
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/gpo.h"
 
-#include "engine/evaluation/bound.h"
 #include "engine/geometry/statistics.h"
+#include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/common/window_checks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

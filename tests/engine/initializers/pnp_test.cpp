@@ -89,20 +89,18 @@ TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
   const Initialization result = initialize_pnp(truth.window, {});
   EXPECT_FALSE(result.ok);
   EXPECT_THAT(result.reason, HasSubstr("no pair to start from: frame 129: rotation 11."));
-  EXPECT_GE(result.candidates.size(), 16U * 28);
+  EXPECT_GE(result.candidates.size(), 4U * 28);
   for (const HomographyCandidate& candidate : result.candidates) EXPECT_FALSE(candidate.taken());
 }
 
 TEST(Pnp, ReasonsAreForPeople) {
   const Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   const Initialization result = initialize_pnp(truth.window, {});
-  ASSERT_EQ(result.candidates.size(), 16U);
+  ASSERT_EQ(result.candidates.size(), 4U);
   std::string reasons;
   for (const HomographyCandidate& candidate : result.candidates)
     reasons += candidate.rejected + "\n";
   EXPECT_THAT(reasons, HasSubstr("points behind the camera (150 of 150)"));
-  EXPECT_THAT(reasons, HasSubstr("same as the Malis-Vargas one"));
-  EXPECT_THAT(reasons, HasSubstr("the plane between the cameras"));
   EXPECT_THAT(reasons, HasSubstr("deg from the given rotation's"));
 }
 

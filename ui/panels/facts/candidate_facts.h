@@ -16,7 +16,7 @@ std::string candidates_sentence(std::span<const HomographyCandidate> candidates)
 /// Why a frame (counts in the window, may be outside of it) has no readings; empty where it has.
 std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
 
-/// Algorithm, normal, tilt, rotation, |tau|, score, points behind.
+/// Normal, tilt, rotation, |tau|, score, points behind.
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
 
 }  // namespace gpo

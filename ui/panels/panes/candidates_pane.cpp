@@ -14,7 +14,6 @@ namespace gpo {
 namespace {
 
 constexpr ColumnText kReadingColumns[] = {
-    {"algorithm", "Which decomposition of the homography gives this reading"},
     {"verdict", "Taken, or why not"},
     {"normal (x, y, z)", "Of the plane, in the reference camera; unit length"},
     {"tilt [\u00b0]",
@@ -46,13 +45,11 @@ void draw_row(const HomographyCandidate& candidate, float scale) {
   ImGui::TableNextRow();
   const bool taken = candidate.taken();
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(taken ? Role::text : Role::text_dim));
-  const std::vector<std::string> cells = candidate_cells(candidate);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  ImGui::TableNextColumn();
+  draw_verdict(candidate, scale);
+  for (const std::string& cell : candidate_cells(candidate)) {
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(cells[i].c_str());
-    if (i > 0) continue;
-    ImGui::TableNextColumn();
-    draw_verdict(candidate, scale);
+    ImGui::TextUnformatted(cell.c_str());
   }
   ImGui::PopStyleColor();
 }

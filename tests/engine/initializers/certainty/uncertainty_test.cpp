@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/uncertainty.h"
 
-#include "engine/evaluation/bound.h"
 #include "engine/geometry/plane.h"
+#include "engine/initializers/certainty/shared_information.h"
 #include "engine/initializers/gpo.h"
 #include "engine/initializers/methods.h"
 #include "engine/window/window.h"

@@ -6,12 +6,10 @@
 #include "engine/initializers/plane/plane_motion.h"
 #include "engine/initializers/plane/plane_observations.h"
 #include "engine/initializers/plane/plane_weights.h"
-#include "engine/initializers/residuals/transfer.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 namespace gpo::test {
@@ -44,15 +42,14 @@ struct Disturbed {
 
   /// Half the summed squares by another way, after a step over (u, phi, t).
   double cost_after(const Vector8d& step) const {
-    const Vector3d normal = moved_normal(motion.normal, step.head<2>());
-    const Eigen::Matrix3d R_wc = motion.R_wc[frame] * so3_exp(step.segment<3>(2));
-    const Vector3d tau = motion.tau[frame] + motion.R_wc[frame] * step.tail<3>();
+    PlaneMotion moved = motion;
+    moved.normal = moved_normal(motion.normal, step.head<2>());
+    moved.R_wc[frame] *= so3_exp(step.segment<3>(2));
+    moved.tau[frame] += motion.R_wc[frame] * step.tail<3>();
+    const FrameState after = frame_state(observations, moved, frame);
     double cost = 0;
-    for (int j = 0; j < window.track_count(); ++j) {
-      const Vector3d ray = window.K.inverse() * window.points_px[0].col(j).homogeneous();
-      const Transfer t = transfer_on_plane(window.K, R_wc, ray, normal, tau);
-      cost += 0.5 * (t.pixel - window.points_px[frame].col(j)).squaredNorm();
-    }
+    for (int k = 0; k < observations.frames[frame].count; ++k)
+      cost += 0.5 * transfer_error_px(observations.frames[frame], after, k).squaredNorm();
     return cost;
   }
 };
@@ -60,16 +57,12 @@ struct Disturbed {
 /// The Jacobian of `transfer_on_plane`, whose own test takes finite differences.
 FrameNormals by_transfer(const Disturbed& d, Rotating rotating) {
   FrameNormals sum;
-  const auto tangents = normal_tangents(d.motion.normal);
-  for (int j = 0; j < d.window.track_count(); ++j) {
-    const Vector3d ray = d.window.K.inverse() * d.window.points_px[0].col(j).homogeneous();
-    const Eigen::Matrix3d& R = d.motion.R_wc[d.frame];
-    const Transfer t =
-        transfer_on_plane(d.window.K, R, ray, d.motion.normal, d.motion.tau[d.frame]);
-    Eigen::Matrix<double, 2, 8> J;
-    J << t.d_normal * tangents, t.d_rotation, t.d_tau * R;
+  const FrameObservations& f = d.observations.frames[d.frame];
+  const FrameState state = d.state();
+  for (int k = 0; k < f.count; ++k) {
+    Eigen::Matrix<double, 2, 8> J = transfer_of(f, state, k).jacobian(state.tangents);
     if (rotating == Rotating::no) J.middleCols<3>(2).setZero();
-    const Eigen::Vector2d r = t.pixel - d.window.points_px[d.frame].col(j);
+    const Eigen::Vector2d r = transfer_error_px(f, state, k);
     sum.JtJ += J.transpose() * J;
     sum.Jtr += J.transpose() * r;
     sum.cost += 0.5 * r.squaredNorm();

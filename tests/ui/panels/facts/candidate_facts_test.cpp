@@ -17,7 +17,6 @@ HomographyCandidate reading(double tilt_deg, const std::string& rejected = "") {
   const double tilt = radians(tilt_deg);
   const Eigen::Vector3d normal(0, -std::sin(tilt), -std::cos(tilt));
   return {5,
-          Decomposition::faugeras,
           {so3_exp({0, 0.1, 0}), {0.3, 0, 0.4}, normal},
           0.25,
           rejected.empty() ? Rejection::none : Rejection::sight,
@@ -35,9 +34,9 @@ TEST(CandidateFacts, SayHowManyReadingsArePossibleAndWhatPartsThem) {
 }
 
 TEST(CandidateFacts, CellsAreTheNumbersOfTheReading) {
-  EXPECT_THAT(candidate_cells(reading(30)),
-              testing::ElementsAre(
-                  "Faugeras", "0.000, -0.500, -0.866", "30.0", "5.73", "0.500", "0.25", "2 of 80"));
+  EXPECT_THAT(
+      candidate_cells(reading(30)),
+      testing::ElementsAre("0.000, -0.500, -0.866", "30.0", "5.73", "0.500", "0.25", "2 of 80"));
 }
 
 TEST(CandidateFacts, SayWhyThereAreNone) {

@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initializers/residuals/transfer.h"
-
-#include "engine/geometry/pose.h"
+#include "engine/initializers/residuals/direction.h"
 
 #include <cmath>
 
@@ -24,27 +22,6 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_rad) {
 }
 
 }  // namespace
-
-Transfer transfer_on_plane(const Eigen::Matrix3d& K,
-                           const Eigen::Matrix3d& R_wci,
-                           const Eigen::Vector3d& ray_1,
-                           const Eigen::Vector3d& normal,
-                           const Eigen::Vector3d& tau) {
-  const double height = normal.dot(ray_1);
-  const Eigen::Vector3d y = R_wci.transpose() * (ray_1 - tau * height);
-  const Eigen::Vector2d x = y.hnormalized();
-  Eigen::Matrix<double, 2, 3> d_y;  // of the pixel
-  d_y << 1, 0, -x.x(), 0, 1, -x.y();
-  d_y = K.topLeftCorner<2, 2>() * d_y / y.z();
-  const Eigen::Matrix<double, 2, 3> d_world = d_y * R_wci.transpose();
-  Transfer transfer;
-  transfer.pixel = K.topLeftCorner<2, 2>() * x + K.topRightCorner<2, 1>();
-  transfer.d_tau = -height * d_world;
-  transfer.d_normal = -(d_world * tau) * ray_1.transpose();
-  transfer.d_rotation = d_y * skew(y);
-  transfer.in_front = y.z() > 0;
-  return transfer;
-}
 
 Eigen::Vector3d direction(const Eigen::Quaterniond& q) {
   return {2 * (q.x() * q.z() + q.w() * q.y()),
