@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::cerr.setstate(std::ios::failbit);  // OpenCV would tell each failure
   const auto file = gpo::fuzz::file_of(gpo::fuzz::bytes_of(data, size));
   gpo::fuzz::parse([&] {
-    const auto recording = gpo::read_bag(file, {}, std::size_t{1} << 20, {});
+    const auto recording = gpo::read_bag(file, {.tracks = {}, .cache_bytes = std::size_t{1} << 20});
     recording.pictures->bgr(recording.frame_count() - 1);
   });
   return 0;
