@@ -103,7 +103,7 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
                   frame,
                   shown_picture(views),
                   {},
-                  image_options(other ? showing(input.state, *other) : input.state, views));
+                  view_options(other ? showing(input.state, *other) : input.state, views));
   if (other)
     draw_flip_label(*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}, *other);
 }
@@ -112,8 +112,8 @@ void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
 void draw_compare(const PanelInput& input, cv::Size size, Views& views) {
   const WorkbenchState& state = input.state;
   const int frame = update_picture(input, views);
-  CompareOptions options = compare_options(state, views);
-  options.top_line = true;
+  ViewOptions options = view_options(state, views);
+  options.compare_zoom = state.compare_zoom;
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
                     {{0, 0}, {size.width, size.height}},
                     compare_columns(compared_results(state)),

@@ -12,12 +12,12 @@
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
 #include "ui/look/picture_zoom.h"
+#include "ui/look/view_toggles.h"
 #include "ui/look/viewpoint.h"
 #include "ui/workbench/division.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 #include "ui/workbench/time_span.h"
-#include "ui/workbench/view_toggles.h"
 
 #include <filesystem>
 #include <memory>

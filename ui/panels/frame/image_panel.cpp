@@ -137,8 +137,8 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
-  ImageViewOptions options = image_options(state, views);
-  options.legend = options.legend && room_for_legend(place, input.scale);
+  ViewOptions options = view_options(state, views);
+  options.show.legend &= room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
                   input.inspection() ? *input.inspection() : waiting,

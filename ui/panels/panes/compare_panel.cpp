@@ -114,7 +114,9 @@ void draw_columns(const PanelInput& input,
   const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves as one scrolls
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
-  const CompareOptions options = compare_options(state, views);
+  ViewOptions options = view_options(state, views);
+  options.compare_zoom = state.compare_zoom;
+  options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_compare_view(list, rect, columns, *state.recording, frame, shown_picture(views), options);
   const auto places =

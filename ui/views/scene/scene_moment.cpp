@@ -112,7 +112,7 @@ void draw_scene_moment(ImDrawList& list,
                        const Inspection& inspection,
                        int frame_in_window,
                        const OrbitCamera& camera,
-                       const SceneViewOptions& options) {
+                       const ViewOptions& options) {
   const Projection projection{list, rect, camera};
   const bool in_window = frame_in_window >= 0 && frame_in_window < inspection.window->frame_count();
   if (!in_window) return;
@@ -122,9 +122,9 @@ void draw_scene_moment(ImDrawList& list,
     marked = marked_frustum(inspection, frame_in_window);
   // Faces first: they would hide the lines behind them.
   if (marked) marked->draw_faces(projection);
-  if (options.truth) draw_true_camera(projection, inspection, frame_in_window);
+  if (options.show.truth) draw_true_camera(projection, inspection, frame_in_window);
   if (marked && shows_uncertainty(inspection, options))
-    draw_uncertainty(projection, inspection, frame_in_window, options.uncertainty);
+    draw_uncertainty(projection, inspection, frame_in_window, options.show.uncertainty);
   if (marked) marked->draw_lines(projection);
 }
 

@@ -14,6 +14,6 @@ void draw_scene_moment(ImDrawList& list,
                        const Inspection& inspection,
                        int frame_in_window,
                        const OrbitCamera& camera,
-                       const SceneViewOptions& options);
+                       const ViewOptions& options);
 
 }  // namespace gpo

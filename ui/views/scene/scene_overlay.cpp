@@ -87,8 +87,8 @@ void draw_up(ImDrawList& list,
   draw_label(list, tip + 11 * s * along, color_of(Role::gravity), "up");
 }
 
-bool shows_up(const Inspection& inspection, const SceneViewOptions& options) {
-  return options.gravity && inspection.inertial && inspection.inertial->ok;
+bool shows_up(const Inspection& inspection, const ViewOptions& options) {
+  return options.show.gravity && inspection.inertial && inspection.inertial->ok;
 }
 
 std::optional<double> shown_scale(const Inspection& inspection) {
@@ -104,14 +104,14 @@ std::string bar_text(double length, bool meters) {
   return fmt::format("{:g} m", length);
 }
 
-std::string cell_text(const Inspection& inspection, const SceneViewOptions& options) {
+std::string cell_text(const Inspection& inspection, const ViewOptions& options) {
   const auto meters = shown_scale(inspection);
   const double cell = plane_grid(inspection, cube_side(inspection, options.cube_side)).cell;
   return bar_text(meters.value_or(1) * cell, meters.has_value());
 }
 
 /// In meters, where the accelerometer tells them.
-std::string side_text(const Inspection& inspection, const SceneViewOptions& options) {
+std::string side_text(const Inspection& inspection, const ViewOptions& options) {
   const auto scale = known_scale(inspection);
   if (!scale) return "";
   return ", " + length_text(*scale * cube_side(inspection, options.cube_side));
@@ -119,7 +119,7 @@ std::string side_text(const Inspection& inspection, const SceneViewOptions& opti
 
 std::vector<LegendRow> legend_rows(const Inspection& inspection,
                                    int frame_in_window,
-                                   const SceneViewOptions& options) {
+                                   const ViewOptions& options) {
   const Method& method = find_method(inspection.settings.method);
   std::vector<LegendRow> rows;
   if (inspection.initialization->ok) {
@@ -134,7 +134,7 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
                     fmt::format("{} map points", inspection.initialization->points.size())});
     if (options.colors)
       for (LegendRow& row : legend_rows(*options.colors)) rows.push_back(std::move(row));
-    if (options.cube && inspection.cube)
+    if (options.show.cube && inspection.cube)
       rows.push_back(
           {Sign::square, color_of(Role::cube_base), "cube" + side_text(inspection, options)});
     if (shows_up(inspection, options))
@@ -146,13 +146,13 @@ std::vector<LegendRow> legend_rows(const Inspection& inspection,
     rows.push_back(
         {Sign::frustum, color_of(Role::bad), "what " + method.title + " found, refused"});
   if (shows_uncertainty(inspection, options)) {
-    const int times = options.uncertainty;
+    const int times = options.show.uncertainty;
     rows.push_back({Sign::circle,
                     color_of(Role::uncertain),
                     "95 % of centers and normal" +
                         (times > 1 ? fmt::format(", enlarged {}\u00d7", times) : "")});
   }
-  if (options.truth && estimate_from_truth(inspection))
+  if (options.show.truth && estimate_from_truth(inspection))
     rows.push_back({Sign::frustum,
                     color_of(Role::truth),
                     inspection.initialization->ok && inspection.truth->plane
@@ -196,7 +196,7 @@ void draw_scene_view(ImDrawList& list,
                      const Inspection& inspection,
                      int frame,
                      const OrbitCamera& camera,
-                     const SceneViewOptions& options) {
+                     const ViewOptions& options) {
   const unsigned texture = view.render(inspection,
                                        camera,
                                        options,
@@ -213,11 +213,11 @@ void draw_scene_view(ImDrawList& list,
       !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);
   if (shows_something) draw_axes(list, rect, inspection, camera);
   if (shows_up(inspection, options)) draw_up(list, rect, inspection, camera);
-  if (options.legend)
+  if (options.show.legend)
     draw_legend_strip(list, rect, legend_rows(inspection, frame_in_window, options));
   if (shows_something) draw_scale_bar(list, rect, inspection, camera);
   if (!inspection.initialization->ok) {
-    const Vector2d legend(0, options.legend ? 20 * overlay_scale() : 0);
+    const Vector2d legend(0, options.show.legend ? 20 * overlay_scale() : 0);
     draw_badge(list,
                {rect.min, rect.size - legend},
                color_of(Role::warning),

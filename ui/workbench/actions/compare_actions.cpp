@@ -166,9 +166,10 @@ void add_compare_actions(std::vector<Action>& table) {
                          {letter('C')},
                          "The compared methods side by side on the same frame",
                          [](State& s) -> bool& { return s.panes.compare; }));
-  add_choice(table);
-  add_looks(table);
-  add_curves(table);
+  table.back().submenu = "Open";
+  add_submenu(table, "Compare", add_choice);
+  add_submenu(table, "Compare", add_looks);
+  add_submenu(table, "Compare", add_curves);
 }
 
 }  // namespace gpo

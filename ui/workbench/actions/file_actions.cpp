@@ -56,6 +56,7 @@ void export_video(State& state, const Arguments& arguments) {
 /// A file of the current inspection.
 Action export_of(const std::string& what, std::string title, std::string (*text)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, ""};
+  action.submenu = "Export";
   action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
   action.arguments = "FILE";
   action.run = [what, text](State& state, const Arguments& arguments) {
@@ -74,6 +75,7 @@ Action trajectory_export(const std::string& what,
                          std::string tooltip,
                          CameraPath (*path)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, std::move(tooltip)};
+  action.submenu = "Export";
   action.arguments = "FILE [tum|euroc|kitti]";
   action.run = [what, path](State& state, const Arguments& arguments) {
     expect_count(("export " + what).c_str(), arguments, 1, 2);

@@ -23,7 +23,7 @@ WindowPart part_in(const Arguments& arguments, WindowPart now) {
   return choice<WindowPart>(arguments[0]);
 }
 
-void add_maximize(std::vector<Action>& table) {
+Action maximize_part() {
   Action maximize{
       "maximize",
       "Maximize the picture",
@@ -38,10 +38,11 @@ void add_maximize(std::vector<Action>& table) {
   maximize.checked = [](const State& s) { return s.division.maximized != WindowPart::none; };
   maximize.value = [](const State& s) { return std::string(to_string(s.division.maximized)); };
   maximize.needs_recording = false;
-  table.push_back(maximize);
+  return maximize;
 }
 
 void add_parts(std::vector<Action>& table) {
+  table.push_back(maximize_part());
   table.push_back(toggle("column",
                          "Left column",
                          {key(GLFW_KEY_F9, "F9")},
@@ -113,9 +114,8 @@ void add_text_sizes(std::vector<Action>& table) {
 }  // namespace
 
 void add_layout_actions(std::vector<Action>& table) {
-  add_maximize(table);
-  add_parts(table);
-  add_text_sizes(table);
+  add_submenu(table, "Parts of the window", add_parts);
+  add_submenu(table, "Theme and text", add_text_sizes);
 }
 
 }  // namespace gpo

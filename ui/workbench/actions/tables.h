@@ -19,6 +19,9 @@ void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
 
+/// The rows that `add` appends are in a submenu of their menu.
+void add_submenu(std::vector<Action>& table, const char* title, void (*add)(std::vector<Action>&));
+
 // How rows are written.
 
 /// A key without modifiers, or with Shift.

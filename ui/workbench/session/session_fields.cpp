@@ -24,7 +24,8 @@ using State = WorkbenchState;
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 template <class T>
-concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> || Is<T, Division>;
+concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
+    Is<T, Division> || Is<T, ViewToggles>;
 
 void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
   use("factor", zoom.factor, 1, 64);
@@ -53,6 +54,11 @@ void each_part(Is<Division> auto& division, auto&& use) {
   use("drawer_share", division.drawer_share, 0, 1);
   use("column", division.column);
   use("timeline", division.timeline);
+}
+
+void each_part(Is<ViewToggles> auto& view, auto&& use) {
+  for (const ViewToggle& one : kViewToggles) use(one.key, view.*one.shown);
+  for (const ViewNumber& one : kViewNumbers) use(one.key, view.*one.value, one.least, one.most);
 }
 
 /// Each kind of value as a session writes it.
@@ -87,14 +93,6 @@ struct ToJson {
   }
   Json operator()(Coloring coloring) const {
     return std::ranges::find(kColorings, coloring, &ColoringRow::coloring)->key;
-  }
-  Json operator()(const ViewToggles& view) const {
-    Json json;
-    for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
-    json["uncertainty"] = view.uncertainty;
-    json["exaggeration"] = view.exaggeration;
-    json["point_size_px"] = view.point_size_px;
-    return json;
   }
   Json operator()(const Panes& panes) const {
     Json json = {{"side", panes.side->key}, {"compare", panes.compare}};
@@ -162,13 +160,6 @@ struct FromJson {
     const auto found = std::ranges::find(kColorings, name, &ColoringRow::key);
     if (found == kColorings.end()) read.refuse(key);
     coloring = found->coloring;
-  }
-  void operator()(const char* key, ViewToggles& view) const {
-    const SessionReader toggles = read.object(key);
-    for (const ViewToggle& one : kViewToggles) toggles(one.key, view.*one.shown);
-    toggles("uncertainty", view.uncertainty, 0, 100);
-    toggles("exaggeration", view.exaggeration, 1, 100);
-    toggles("point_size_px", view.point_size_px, 1, 20);
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);
