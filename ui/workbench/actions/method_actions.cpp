@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
-#include "ui/look/method_help.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/undo.h"
 
@@ -27,7 +26,7 @@ void add_choices_of_method(std::vector<Action>& table) {
                           method.title,
                           "Method",
                           shortcuts,
-                          method_help(method.key),
+                          method.help,
                           [key = method.key](State& s) {
                             Settings settings = s.settings;
                             settings.method = key;
