@@ -41,7 +41,7 @@ struct LogLine {
 /// A picture of the window, or of one view alone, on its way to the disk.
 struct Screenshot {
   std::filesystem::path file;         ///< .png; empty: a free name in the current folder
-  std::string view = "window";        ///< window | picture | compare | a pane's key
+  std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
 };
 

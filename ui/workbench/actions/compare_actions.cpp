@@ -161,10 +161,11 @@ void add_curves(std::vector<Action>& table) {
 }  // namespace
 
 void add_compare_actions(std::vector<Action>& table) {
-  table.push_back(toggle("view compare",
-                         "Compare",
+  const Pane& pane = *find_pane("compare");
+  table.push_back(toggle(std::string("view ") + pane.key,
+                         pane.title,
                          {letter('C')},
-                         "The compared methods side by side on the same frame",
+                         pane.tooltip,
                          [](State& s) -> bool& { return s.panes.compare; }));
   table.back().submenu = "Open";
   add_submenu(table, "Compare", add_choice);

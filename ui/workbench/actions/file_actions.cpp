@@ -14,6 +14,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -217,9 +218,8 @@ void add_file_actions(std::vector<Action>& table) {
                     "Save a view as a picture",
                     "File",
                     {},
-                    "Writes the window, or one view alone, as a PNG of any size: picture, compare"};
-  for (const auto& panes : {side_panes(), drawers()})
-    for (const Pane& pane : panes) screenshot.tooltip += std::string(", ") + pane.key;
+                    fmt::format("Writes the window, or one view alone, as a PNG of any size: {}",
+                                fmt::join(pane_names(), ", "))};
   screenshot.arguments = "FILE [VIEW] [WxH]";
   screenshot.needs_recording = false;
   screenshot.run = take_screenshot;
