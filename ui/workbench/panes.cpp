@@ -14,12 +14,12 @@ DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_dra
 
 namespace {
 
-constexpr PaneNeeds kCompared = {.compared = true};
-using enum PaneKind;
-
 // Those of a kind stand together.
 // clang-format off
-constexpr auto kPanes = std::to_array<Pane>({
+constexpr auto kPanes = [] {
+  using enum PaneKind;
+  constexpr PaneNeeds kCompared = {.compared = true};
+  return std::to_array<Pane>({
     {picture, "image", "Image", "The frame with its overlays", picture_alone, {}, false, "picture"},
     {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", scene_pane, {}, true},
     {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, answers",
@@ -41,6 +41,7 @@ constexpr auto kPanes = std::to_array<Pane>({
     {drawer, "tracks", "Tracks", "All tracks of the window, to sort and to pick", tracks_drawer},
     {drawer, "log", "Log", "Every message", log_drawer},
     {window, "window", "Window", "All of the workbench", nullptr}});
+}();
 // clang-format on
 
 constexpr std::span<const Pane> of_kind(PaneKind kind) {
@@ -60,8 +61,8 @@ const Pane* find(std::span<const Pane> among, const std::string& name) {
 }  // namespace
 
 std::span<const Pane> panes() { return kPanes; }
-std::span<const Pane> side_panes() { return of_kind(side); }
-std::span<const Pane> drawers() { return of_kind(drawer); }
+std::span<const Pane> side_panes() { return of_kind(PaneKind::side); }
+std::span<const Pane> drawers() { return of_kind(PaneKind::drawer); }
 
 const Pane* find_pane(const std::string& name) { return find(panes(), name); }
 const Pane* find_side_pane(const std::string& name) { return find(side_panes(), name); }
