@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay_text.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/actions/actions.h"
 
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <cmath>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/lead_with.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"

@@ -7,7 +7,7 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 #include <cmath>

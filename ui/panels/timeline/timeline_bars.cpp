@@ -6,7 +6,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/plane_look.h"
-#include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/vtk_text.h"
-#include "ui/views/overlay/dash_pattern.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <array>

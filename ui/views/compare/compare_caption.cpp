@@ -4,8 +4,7 @@
 
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/overlay_text.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 

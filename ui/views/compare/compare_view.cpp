@@ -6,7 +6,6 @@
 #include "ui/context/theme.h"
 #include "ui/views/compare/compare_caption.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/overlay_text.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
 

@@ -8,7 +8,7 @@
 #include "ui/views/charts/chart_plots.h"
 #include "ui/views/charts/chart_ticks.h"
 #include "ui/views/charts/marker_shapes.h"
-#include "ui/views/overlay/dash_pattern.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <array>

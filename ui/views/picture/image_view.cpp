@@ -9,9 +9,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/track_colors.h"
-#include "ui/views/picture/cube_drawing.h"
 #include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/model_drawing.h"
 #include "ui/views/picture/occlusion.h"
 #include "ui/views/picture/picture_drawing.h"
 

@@ -15,7 +15,6 @@
 #include "ui/views/scene/scene_actors.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/uncertainty_geometry.h"
-#include "ui/views/scene/vtk_camera.h"
 
 #include <algorithm>
 #include <cmath>
