@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings/own_files.h"
 
-#include "ui/workbench/session/user_folders.h"
+#include "ui/workbench/session/recent_files.h"
 
 #include <algorithm>
 #include <system_error>

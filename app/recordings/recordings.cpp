@@ -9,7 +9,7 @@
 #include "app/terminal/progress_bar.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesized.h"
-#include "ui/workbench/session/user_folders.h"
+#include "ui/workbench/session/recent_files.h"
 
 #include <string>
 #include <thread>

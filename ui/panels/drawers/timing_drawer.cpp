@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/shown_results.h"
+#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <algorithm>
 #include <array>

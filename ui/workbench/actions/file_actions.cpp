@@ -9,8 +9,8 @@
 #include "engine/inspection/report/result_text.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
-#include "ui/workbench/session/picture_size.h"
 #include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/script.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
