@@ -85,10 +85,7 @@ struct SettingRows {
   /// In the color of what was chosen, where it is `other` than the default.
   void label(const std::string& title, const std::string& help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text,
-                          imgui_color(other ? color_of(Role::accent) : color_of(Role::text)));
-    ImGui::TextUnformatted(title.c_str());
-    ImGui::PopStyleColor();
+    colored_text(other ? color_of(Role::accent) : color_of(Role::text), title);
     tooltip(help);
     ImGui::SameLine(label_width);
     ImGui::SetNextItemWidth(-1);

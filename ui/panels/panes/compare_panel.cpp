@@ -206,13 +206,9 @@ ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawL
                                        first,
                                        last,
                                        state.flip ? " · first two swapped" : "");
-  const ImFont* small = font(Font::small);
-  list.AddText(small,
-               small->FontSize,
-               {std::round(place.x + 12 * s), std::round(place.y + 4 * s)},
-               imgui_color(Role::text_dim),
-               text.c_str());
-  const float width = small->CalcTextSizeA(small->FontSize, 1e6F, 0, text.c_str()).x;
+  const Vector2d at(place.x + 12 * s, place.y + 4 * s);
+  write_text(list, Font::small, at, text, color_of(Role::text_dim));
+  const auto width = static_cast<float>(text_width(Font::small, text));
   const bool truth = state.inspection && state.inspection->truth && state.view.truth;
   if (inside && place.width > width + 330 * s)
     draw_cube_legend(list, {place.x + 42 * s + width, place.y + 3 * s}, truth);

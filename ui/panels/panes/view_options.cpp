@@ -97,11 +97,7 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
   list.AddRectFilled(
       at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
-  list.AddText(bold,
-               bold->FontSize,
-               {std::round(at.x + 20 * s), std::round(at.y + 6 * s)},
-               imgui_color(Role::text),
-               text.c_str());
+  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
 }
 
 Highlight highlight_of(const WorkbenchState& state) {

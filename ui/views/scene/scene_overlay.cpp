@@ -295,14 +295,11 @@ void draw_scale_bar(ImDrawList& list,
   for (const float x : {start.x, end.x})
     list.AddLine(ImVec2(x, end.y - 5 * s), ImVec2(x, end.y + s), color, 2 * s);
   const std::string text = bar_text(length, meters.has_value());
-  const ImFont* f = font(Font::small);
-  const float text_width = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
-  list.AddText(f,
-               f->FontSize,
-               ImVec2(std::round(end.x - width / 2 - text_width / 2),
-                      std::round(end.y - f->FontSize - 7 * s)),
-               color,
-               text.c_str());
+  const auto half = static_cast<float>(text_width(Font::small, text)) / 2;
+  write_text(list,
+             Font::small,
+             {end.x - width / 2 - half, end.y - font(Font::small)->FontSize - 7 * s},
+             text);
 }
 
 }  // namespace

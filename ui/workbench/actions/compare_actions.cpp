@@ -145,17 +145,16 @@ void add_curves(std::vector<Action>& table) {
   curve.needs_recording = false;
   curve.run = switch_curve;
   table.push_back(curve);
-  Action close = plain("close-results",
-                       "Close the opened results",
-                       "View",
-                       {},
-                       "The curves show this recording again, no longer those of a results.csv",
-                       [](State& s) {
-                         s.experiment.reset();
-                         s.experiment_name.clear();
-                       });
-  close.needs_recording = false;
-  table.push_back(close);
+  table.push_back(
+      anytime(plain("close-results",
+                    "Close the opened results",
+                    "View",
+                    {},
+                    "The curves show this recording again, no longer those of a results.csv",
+                    [](State& s) {
+                      s.experiment.reset();
+                      s.experiment_name.clear();
+                    })));
 }
 
 }  // namespace

@@ -146,14 +146,12 @@ void add_open(std::vector<Action>& table) {
     state.wishes.open = arguments[0];
   };
   table.push_back(open);
-  Action example = plain("open-example",
-                         "Open the example",
-                         "File",
-                         {},
-                         "Opens the recording that comes with the program",
-                         [](State& s) { s.wishes.open_example = true; });
-  example.needs_recording = false;
-  table.push_back(example);
+  table.push_back(anytime(plain("open-example",
+                                "Open the example",
+                                "File",
+                                {},
+                                "Opens the recording that comes with the program",
+                                [](State& s) { s.wishes.open_example = true; })));
 }
 
 /// Without a name: where it was saved before; the first time the window asks.
@@ -185,18 +183,16 @@ void add_sessions(std::vector<Action>& table) {
   save.arguments = "[FILE]";
   save.run = save_session;
   table.push_back(save);
-  Action last = plain("continue",
-                      "Continue the last session",
-                      "File",
-                      {},
-                      "Opens what was open when the program was closed",
-                      [](State& s) {
-                        if (!std::filesystem::exists(last_session_file()))
-                          throw InputError("no session was closed yet");
-                        s.wishes.open = last_session_file();
-                      });
-  last.needs_recording = false;
-  table.push_back(last);
+  table.push_back(anytime(plain("continue",
+                                "Continue the last session",
+                                "File",
+                                {},
+                                "Opens what was open when the program was closed",
+                                [](State& s) {
+                                  if (!std::filesystem::exists(last_session_file()))
+                                    throw InputError("no session was closed yet");
+                                  s.wishes.open = last_session_file();
+                                })));
 }
 
 }  // namespace
@@ -251,11 +247,10 @@ void add_file_actions(std::vector<Action>& table) {
                          [](State& s) -> bool& { return s.metric; });
   metric.menu = "File";
   table.push_back(metric);
-  Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
-    s.wishes.quit = true;
-  });
-  quit.needs_recording = false;
-  table.push_back(quit);
+  table.push_back(
+      anytime(plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
+        s.wishes.quit = true;
+      })));
 }
 
 }  // namespace gpo

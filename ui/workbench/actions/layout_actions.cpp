@@ -58,14 +58,13 @@ void add_parts(std::vector<Action>& table) {
                          {key(GLFW_KEY_F11, "F11")},
                          "The window takes the whole screen",
                          [](State& s) -> bool& { return s.fullscreen; }));
-  Action reset = plain("reset-layout",
-                       "Reset the layout",
-                       "View",
-                       {},
-                       "Column, picture, side pane and drawer share the window as at the start",
-                       [](State& s) { s.division = {}; });
-  reset.needs_recording = false;
-  table.push_back(reset);
+  table.push_back(
+      anytime(plain("reset-layout",
+                    "Reset the layout",
+                    "View",
+                    {},
+                    "Column, picture, side pane and drawer share the window as at the start",
+                    [](State& s) { s.division = {}; })));
 }
 
 void set_zoom(State& state, double zoom) {

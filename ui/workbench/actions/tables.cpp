@@ -46,6 +46,11 @@ Action plain(std::string name,
   return action;
 }
 
+Action anytime(Action action) {
+  action.needs_recording = false;
+  return action;
+}
+
 double number_in(const char* action, const Arguments& arguments, std::size_t index) {
   if (index >= arguments.size())
     throw InputError(fmt::format("{}: expected a number after it", action));

@@ -39,6 +39,9 @@ Action plain(std::string name,
              std::string tooltip,
              std::function<void(WorkbenchState&)> run);
 
+/// The same also where no recording is open.
+Action anytime(Action action);
+
 /// Reads the one argument of an action, or the one at `index`, as a number. Throws InputError that
 /// names the action.
 double number_in(const char* action, const Arguments& arguments, std::size_t index = 0);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <tuple>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -134,33 +133,36 @@ void add_panes(std::vector<Action>& table) {
           uncover(s.division, WindowPart::drawer);
         },
         [&pane](const State& s) { return s.panes.drawer == &pane; }));
-  Action shut = plain("view no-drawer",
-                      "Close the drawer",
-                      "View",
-                      {},
-                      "Picture and side pane take all of the height",
-                      [](State& s) { s.panes.drawer = nullptr; });
-  shut.needs_recording = false;
-  table.push_back(shut);
+  table.push_back(anytime(plain("view no-drawer",
+                                "Close the drawer",
+                                "View",
+                                {},
+                                "Picture and side pane take all of the height",
+                                [](State& s) { s.panes.drawer = nullptr; })));
 }
 
-void add_themes(std::vector<Action>& table) {
-  for (const auto& [name, title, theme] : {std::tuple{"theme dark", "Dark theme", Theme::dark},
-                                           {"theme light", "Light theme", Theme::light}}) {
-    Action action = plain(name,
-                          title,
-                          "View",
-                          {},
-                          "Colors of the window; those of methods and data stay",
-                          [theme = theme](State& s) { s.theme = theme; });
-    action.checked = [theme = theme](const State& s) { return s.theme == theme; };
-    action.needs_recording = false;
-    table.push_back(action);
+/// An action a value of what `chosen` returns.
+template <class T>
+void add_choices(std::vector<Action>& table, const std::string& name, T& (*chosen)(State&)) {
+  for (const ChoiceRow<T>& row : choice_rows(T{})) {
+    const auto choose = [&row, chosen](State& s) { chosen(s) = row.value; };
+    table.push_back(anytime(plain(name + row.key, row.title, "View", {}, row.tooltip, choose)));
+    table.back().checked = [&row, chosen](const State& s) {
+      return chosen(const_cast<State&>(s)) == row.value;
+    };
   }
 }
 
+void add_themes(std::vector<Action>& table) {
+  add_choices<Theme>(table, "theme ", [](State& s) -> Theme& { return s.theme; });
+}
+
+void add_colorings(std::vector<Action>& table) {
+  add_choices<Coloring>(table, "color-by ", [](State& s) -> Coloring& { return s.coloring; });
+}
+
 void add_viewpoints(std::vector<Action>& table) {
-  for (const ViewpointRow& row : kViewpoints) {
+  for (const auto& row : kViewpoints) {
     Action action =
         plain(std::string("viewpoint ") + row.key,
               row.title,
@@ -168,22 +170,10 @@ void add_viewpoints(std::vector<Action>& table) {
               {key(GLFW_KEY_KP_0 + row.keypad - '0', std::string("Keypad ") + row.keypad)},
               row.tooltip,
               [&row](State& s) {
-                s.viewpoint = row.viewpoint;
+                s.viewpoint = row.value;
                 s.orbit.reset();
               });
-    action.checked = [&row](const State& s) { return s.viewpoint == row.viewpoint && !s.orbit; };
-    table.push_back(action);
-  }
-}
-
-void add_colorings(std::vector<Action>& table) {
-  for (const ColoringRow& row : kColorings) {
-    Action action = plain(
-        std::string("color-by ") + row.key, row.title, "View", {}, row.tooltip, [&row](State& s) {
-          s.coloring = row.coloring;
-        });
-    action.checked = [&row](const State& s) { return s.coloring == row.coloring; };
-    action.needs_recording = false;
+    action.checked = [&row](const State& s) { return s.viewpoint == row.value && !s.orbit; };
     table.push_back(action);
   }
 }

@@ -27,6 +27,11 @@ template <class T>
 concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
     Is<T, Division> || Is<T, ViewToggles>;
 
+template <class T>
+concept HasChoiceRows = requires {
+  choice_rows(T{});
+};
+
 void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
   use("factor", zoom.factor, 1, 64);
   use("center", zoom.center);
@@ -87,12 +92,9 @@ struct ToJson {
     for (const std::string& key : setting_keys()) json[key] = setting_text(settings, key);
     return json;
   }
-  Json operator()(const Theme& theme) const { return theme == Theme::light ? "light" : "dark"; }
-  Json operator()(Viewpoint viewpoint) const {
-    return std::ranges::find(kViewpoints, viewpoint, &ViewpointRow::viewpoint)->key;
-  }
-  Json operator()(Coloring coloring) const {
-    return std::ranges::find(kColorings, coloring, &ColoringRow::coloring)->key;
+  template <HasChoiceRows T>
+  Json operator()(const T& value) const {
+    return std::ranges::find(choice_rows(value), value, &ChoiceRow<T>::value)->key;
   }
   Json operator()(const Panes& panes) const {
     Json json = {{"side", panes.side->key}, {"compare", panes.compare}};
@@ -141,25 +143,13 @@ struct FromJson {
       }
     }
   }
-  void operator()(const char* key, Theme& theme) const {
+  template <HasChoiceRows T>
+  void operator()(const char* key, T& value) const {
     std::string name;
     read(key, name);
-    if (name != "dark" && name != "light") read.refuse(key);
-    theme = name == "light" ? Theme::light : Theme::dark;
-  }
-  void operator()(const char* key, Viewpoint& viewpoint) const {
-    std::string name;
-    read(key, name);
-    const auto found = std::ranges::find(kViewpoints, name, &ViewpointRow::key);
-    if (found == kViewpoints.end()) read.refuse(key);
-    viewpoint = found->viewpoint;
-  }
-  void operator()(const char* key, Coloring& coloring) const {
-    std::string name;
-    read(key, name);
-    const auto found = std::ranges::find(kColorings, name, &ColoringRow::key);
-    if (found == kColorings.end()) read.refuse(key);
-    coloring = found->coloring;
+    const auto found = std::ranges::find(choice_rows(value), name, &ChoiceRow<T>::key);
+    if (found == choice_rows(value).end()) read.refuse(key);
+    value = found->value;
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);
