@@ -3,16 +3,13 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/configuration.h"
 #include "ui/context/framebuffer.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
-#include "ui/panels/panes/view_options.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/work/adopt.h"
-
-#include <span>
-#include <vector>
 
 #include <GL/glew.h>
 #include <fmt/format.h>
@@ -92,83 +89,42 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
     views.browser.open = false;
 }
 
-void draw_picture(const PanelInput& input, cv::Size size, Views& views) {
-  const auto other = flipped_result(input.state);
-  const Inspection* inspection = other ? other->inspection.get() : input.inspection();
-  const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
-  const int frame = update_picture(input, views);
-  draw_image_view(*ImGui::GetBackgroundDrawList(),
-                  {{0, 0}, {size.width, size.height}},
-                  inspection ? *inspection : waiting,
-                  frame,
-                  shown_picture(views),
-                  {},
-                  image_options(other ? showing(input.state, *other) : input.state, views));
-  if (other)
-    draw_flip_label(*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}, *other);
-}
-
-/// The columns alone, without what one clicks.
-void draw_compare(const PanelInput& input, cv::Size size, Views& views) {
-  const WorkbenchState& state = input.state;
-  const int frame = update_picture(input, views);
-  CompareOptions options = compare_options(state, views);
-  options.top_line = true;
-  draw_compare_view(*ImGui::GetBackgroundDrawList(),
-                    {{0, 0}, {size.width, size.height}},
-                    compare_columns(compared_results(state)),
-                    *state.recording,
-                    frame,
-                    shown_picture(views),
-                    options);
-}
-
 /// One view that fills the framebuffer; between `begin_frame` and `end_frame`.
-void draw_alone(const std::string& view, const PanelInput& input, cv::Size size, Views& views) {
+void draw_alone(const Pane& pane, const PanelInput& input, cv::Size size, Views& views) {
   const Rectangle place{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
   Commands ignored;
-  if (view == "picture") return draw_picture(input, size, views);
-  if (view == "compare") return draw_compare(input, size, views);
   WorkbenchState state = input.state;
   const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
-  if (const Pane* pane = find_side_pane(view)) {
-    state.panes.side = pane;
-    return side_pane(shown, place, views, ignored);
+  if (pane.kind == PaneKind::side) {
+    state.panes.side = &pane;
+    side_pane(shown, place, views, ignored);
+  } else if (pane.kind == PaneKind::drawer) {
+    state.panes.drawer = &pane;
+    drawer(shown, place, views, ignored);
+  } else {
+    pane.draw(input, place, views, ignored);
   }
-  state.panes.drawer = find_drawer(view);
-  drawer(shown, place, views, ignored);
 }
 
-/// The keys of all of them, with commas.
-std::string keys_of(std::span<const Pane> panes) {
-  std::vector<const char*> keys;
-  for (const Pane& pane : panes) keys.push_back(pane.key);
-  return fmt::format("{}", fmt::join(keys, ", "));
+const Pane& pane_named(const std::string& name) {
+  if (const Pane* pane = find_pane(name)) return *pane;
+  throw InputError(fmt::format("screenshot: no view is called '{}', expected one of {}",
+                               name,
+                               fmt::join(pane_names(), ", ")));
 }
 
 /// As large as the view is in a window of that size; the picture as it was recorded.
-cv::Size own_size(const std::string& view, const PanelInput& input, cv::Size window) {
-  if (view == "window") return window;
+cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
+  if (pane.kind == PaneKind::window) return window;
   if (!input.state.recording) throw InputError("no recording is open");
   const Camera& camera = input.state.recording->camera;
-  if (view == "picture") return {camera.width, camera.height};
-  const Pane* side = find_side_pane(view);
-  const Pane* below = find_drawer(view);
-  if (side == nullptr && below == nullptr && view != "compare")
-    throw InputError(
-        fmt::format("screenshot: no view is called '{}', expected window, picture, compare, {} or "
-                    "{}",
-                    view,
-                    keys_of(side_panes()),
-                    keys_of(drawers())));
-  const WindowLayout layout = window_layout(static_cast<float>(window.width),
-                                            static_cast<float>(window.height),
-                                            input.scale,
-                                            {},
-                                            below != nullptr);
-  const Rectangle& place = side != nullptr    ? layout.side
-                           : below != nullptr ? layout.drawer
-                                              : layout.views;
+  if (pane.kind == PaneKind::picture) return {camera.width, camera.height};
+  const bool below = pane.kind == PaneKind::drawer;
+  const WindowLayout layout = window_layout(
+      static_cast<float>(window.width), static_cast<float>(window.height), input.scale, {}, below);
+  const Rectangle& place = below                         ? layout.drawer
+                           : pane.kind == PaneKind::side ? layout.side
+                                                         : layout.views;
   return {static_cast<int>(place.width), static_cast<int>(place.height)};
 }
 
@@ -190,42 +146,52 @@ cv::Mat draw_view(const std::string& view,
                   cv::Size window_size,
                   Gui& gui,
                   Views& views) {
-  const cv::Size size = wanted.value_or(own_size(view, input, window_size));
+  const Pane& pane = pane_named(view);
+  const cv::Size size = wanted.value_or(own_size(pane, input, window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
   use_theme(input, gui, views);
   for (int i = 0; i < kFramesToSettle; ++i) {
-    if (view == "window") {
+    if (pane.kind == PaneKind::window) {
       draw_workbench(input, size, gui, views);
     } else {
       clear(color_of(Role::background));
       gui.begin_frame(size.width, size.height);
-      draw_alone(view, input, size, views);
+      draw_alone(pane, input, size, views);
       gui.end_frame();
     }
   }
   return read_bound_framebuffer(size.width, size.height);
 }
 
-cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
-                        int frame,
-                        cv::Size size) {
+cv::Mat snapshot_pane(const std::string& view,
+                      const std::shared_ptr<const Inspection>& inspection,
+                      int frame,
+                      std::optional<cv::Size> size) {
+  constexpr int kWidth = 1280, kHeight = 720;
   WorkbenchState state;
   state.settings = inspection->settings;
   adopt(state, inspection->recording);
   state.inspection = inspection;
   state.message.clear();
+  const Pane& pane = pane_named(view);
+  if (pane.kind != PaneKind::window) state.compared = {key_of(configuration_of(state.settings))};
+  if (pane.needs.study) state.study = study_normals(*inspection);
   apply(state, GoToFrame{frame});
-  OffscreenContext context(size.width, size.height);
+  const cv::Size window = size.value_or(cv::Size(kWidth, kHeight));
+  const OffscreenContext context(window.width, window.height);
   Gui gui;
   Views views;
   const WorkerStatus idle;
   const SurveyStatus no_survey;
-  context.bind();
-  for (int i = 0; i < kFramesToSettle; ++i) {
-    draw_workbench({state, idle, no_survey, false, gui.scale()}, size, gui, views);
-  }
-  return context.read_bgr();
+  return draw_view(
+      view, size, {state, idle, no_survey, false, gui.scale()}, {kWidth, kHeight}, gui, views);
+}
+
+cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
+                        int frame,
+                        cv::Size size) {
+  return snapshot_pane("window", inspection, frame, size);
 }
 
 }  // namespace gpo

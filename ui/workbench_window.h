@@ -22,9 +22,9 @@ Commands draw_workbench(const PanelInput& input,
                         double delta_seconds = Gui::kFixedFrame_s);
 
 /// One part of it alone, with what the state shows, as large as wanted: CV_8UC3, BGR. `view`:
-/// window, picture (unzoomed, by default as large as the recording's), compare, or the key of a
-/// side pane or a drawer; by default as large as in a window of `window_size`. In the current
-/// OpenGL context. Throws InputError for an unknown view, and where there is nothing to draw yet.
+/// a name of `panes()`; by default as large as in a window of `window_size`, the picture (unzoomed)
+/// as large as the recording's. In the current OpenGL context. Throws InputError for an unknown
+/// view, and where there is nothing to draw yet.
 cv::Mat draw_view(const std::string& view,
                   std::optional<cv::Size> wanted,
                   const PanelInput& input,
@@ -32,9 +32,15 @@ cv::Mat draw_view(const std::string& view,
                   Gui& gui,
                   Views& views);
 
-/// The user interface with this inspection open, without a display: CV_8UC3, BGR. On the same
-/// machine the same bytes every time: milliseconds are left out. Throws InputError where there is
-/// no OpenGL.
+/// A view of the user interface with this inspection open, without a display: CV_8UC3, BGR. On the
+/// same machine the same bytes every time: milliseconds are left out. Throws InputError where there
+/// is no OpenGL.
+cv::Mat snapshot_pane(const std::string& view,
+                      const std::shared_ptr<const Inspection>& inspection,
+                      int frame,
+                      std::optional<cv::Size> size);
+
+/// The same of the whole window.
 cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
                         int frame,
                         cv::Size size = {1280, 720});

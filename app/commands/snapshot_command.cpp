@@ -8,7 +8,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "ui/views/picture_compare.h"
-#include "ui/workbench/session/picture_size.h"
+#include "ui/workbench/session/script.h"
 
 #include <array>
 #include <cstdio>

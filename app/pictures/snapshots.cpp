@@ -12,7 +12,7 @@
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
-#include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -65,25 +65,27 @@ DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
 }
 
 cv::Mat picture_of(const ViewRequest& request,
-                   const std::shared_ptr<const Inspection>& inspection,
-                   int frame) {
+                   const Pane& pane,
+                   const std::shared_ptr<const Inspection>& inspection) {
+  const int frame = frame_to_draw(request, *inspection->recording);
   const auto size = [&](int width, int height) {
     return request.size.value_or(cv::Size(width, height));
   };
-  if (request.view == "image") return snapshot_image(*inspection, frame, request.size);
-  if (request.view == "scene") return snapshot_scene(*inspection, frame, size(960, 720));
-  if (request.view == "normals") return snapshot_normals(inspection, frame, size(720, 760));
-  return snapshot_window(inspection, frame, size(1280, 720));
+  const std::string_view key = pane.key;
+  if (key == "image") return snapshot_image(*inspection, frame, request.size);
+  if (key == "scene") return snapshot_scene(*inspection, frame, size(960, 720));
+  if (key == "normals") return snapshot_normals(inspection, frame, size(720, 760));
+  return snapshot_pane(pane.key, inspection, frame, request.size);
 }
 
 DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
                    const ViewRequest& request,
+                   const Pane& pane,
                    const std::stop_token& stop) {
   const auto inspection = Inspector(recording).inspect(request.compared.window, stop);
   if (!inspection) throw InputError("stopped");
   const Initialization& result = *inspection->initialization;
-  DrawnView drawn{
-      picture_of(request, inspection, frame_to_draw(request, *recording)), result.ok, {inspection}};
+  DrawnView drawn{picture_of(request, pane, inspection), result.ok, {inspection}};
   if (!result.ok)
     drawn.failures.push_back(failure_text(inspection->settings.options.method, result.reason));
   return drawn;
@@ -153,22 +155,18 @@ std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
   return all;
 }
 
-const std::vector<std::string>& view_names() {
-  static const std::vector<std::string> names{
-      "image", "scene", "normals", "compare", "curves", "window"};
-  return names;
-}
-
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,
                     const std::stop_token& stop) {
-  if (std::ranges::find(view_names(), request.view) == view_names().end())
+  const Pane* pane = find_pane(request.view);
+  if (pane == nullptr)
     throw SettingError(
         "view",
-        fmt::format("'{}', expected one of {}", request.view, fmt::join(view_names(), ", ")));
-  if (request.view == "compare") return draw_compare(recording, request);
-  if (request.view == "curves") return draw_curves(recording, request);
-  return draw_one(recording, request, stop);
+        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
+  const std::string_view key = pane->key;
+  if (key == "compare") return draw_compare(recording, request);
+  if (key == "curves") return draw_curves(recording, request);
+  return draw_one(recording, request, *pane, stop);
 }
 
 }  // namespace gpo

@@ -28,7 +28,7 @@ std::vector<Configuration> configurations_of(const ComparisonRequest& request);
 
 /// One picture of one recording.
 struct ViewRequest {
-  std::string view;              ///< image, scene, normals, compare, curves or window
+  std::string view;              ///< a name of `panes()`
   std::optional<int> frame;      ///< counts in the recording; default: the window's last
   std::optional<cv::Size> size;  ///< default: the view's own [px]
   ComparisonRequest compared;    ///< its `window` are the settings of views of one method
@@ -41,9 +41,6 @@ struct DrawnView {
   std::vector<std::shared_ptr<const Inspection>> inspections;  ///< of curves: of the longest window
   std::vector<std::string> failures = {};                      ///< a line each, for people
 };
-
-/// The keys of the views.
-const std::vector<std::string>& view_names();
 
 /// Inspects and draws without a display. A view of one method throws InputError where it is
 /// stopped. Throws InputError.

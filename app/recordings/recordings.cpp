@@ -17,7 +17,7 @@
 #include "engine/recording/file_kinds.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/session/user_folders.h"
+#include "ui/workbench/session/recent_files.h"
 
 #include <algorithm>
 #include <array>

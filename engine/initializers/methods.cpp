@@ -65,16 +65,35 @@ std::vector<Method> our_methods() {
   using enum RotationModel;
   // clang-format off
   return {
-      Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo},
-      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  planes, free,         {}, plain<initialize_pnp>},
-      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>},
-      Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {}, plain<initialize_ba>},
-      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>},
-      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  planes, free,         {}, plain<initialize_pba>},
-      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>},
-      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  planes, known,        {}, plain<initialize_closed_form>},
+      Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo,
+             "Global plane optimization: the plane's normal and all scaled translations in one "
+             "optimization. Assumes one plane, and rotations that are right"},
+      Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  planes, free,         {}, plain<initialize_pnp>,
+             "Decomposes the homography of the widest pair, then PnP and triangulation frame by "
+             "frame. Assumes a plane in that pair alone"},
+      Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>,
+             "The normal where the decomposed homographies of all frames agree most, translations "
+             "by least squares. Assumes one plane, and rotations that are right"},
+      Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {}, plain<initialize_ba>,
+             "Bundle adjustment of poses and free points, from DBSCAN's. Assumes no plane, but "
+             "parallax"},
+      Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>,
+             "Bundle adjustment of poses and free points, from PnP's. Assumes no plane, but "
+             "parallax"},
+      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  planes, free,         {}, plain<initialize_pba>,
+             "Planar bundle adjustment: of poses, a plane and points that stay on it. Assumes one "
+             "plane"},
+      Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>,
+             "Planar bundle adjustment with the normal fixed at DBSCAN's. Assumes one plane, and "
+             "that normal"},
+      Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  planes, known,        {}, plain<initialize_closed_form>,
+             "Normal and translations from all homographies in one singular value decomposition, "
+             "without iterations. Assumes one plane, and rotations that are right"},
       Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  planes, std::nullopt,
-             {"solver", "error", "loss", "shutter", "planes", "time_offset"}, initialize_gpo_joint},
+             {"solver", "error", "loss", "shutter", "planes", "time_offset"}, initialize_gpo_joint,
+             "GPO over all planes of the window, with what is uncertain of the rotations unknown, "
+             "too. Assumes planes, but neither a known bias nor, without a gyroscope, any "
+             "rotation"},
   };
   // clang-format on
 }

@@ -40,6 +40,8 @@ struct Method {
   std::function<Initialization(
       const Window& window, const InitializerOptions& options, const Watch& watch)>
       initialize = {};
+  /// What it does and what it assumes, two sentences for people.
+  std::string help = "Your own initializer, a process beside this one";
   /// Of a user's own: the same for those who have more than the window; empty of ours.
   std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
       initialize_from = {};

@@ -115,7 +115,7 @@ class OnlyScene : public View {
 
  protected:
   OrbitCamera camera_;
-  SceneViewOptions options_;
+  ViewOptions options_;
 };
 
 /// Dragged a little from each frame to the next.

@@ -13,6 +13,8 @@ namespace gpo {
 struct PictureZoom {
   double factor = 1;                                        ///< 1: all of it fits [-]
   Eigen::Vector2d center = Eigen::Vector2d::Constant(0.5);  ///< in the middle [0..1 of the picture]
+
+  bool operator==(const PictureZoom&) const = default;
 };
 
 /// Picture <-> screen. The center of the top-left pixel is (0, 0) in the picture, so its top-left

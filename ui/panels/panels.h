@@ -6,7 +6,6 @@
 #include "engine/inspection/worker.h"
 #include "ui/context/window_picture.h"
 #include "ui/panels/facts/curve_facts.h"
-#include "ui/panels/facts/track_lives.h"
 #include "ui/panels/facts/track_rows.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"

@@ -5,6 +5,7 @@
 #include "engine/inspection/studies/track_life.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
+#include "ui/views/overlay/plane_look.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 namespace gpo {
+
 namespace {
 
 std::string frame_text(const TrackLife& life, int frame) {
@@ -52,6 +54,15 @@ void camera_tooltip(const PanelInput& input, int frame) {
                   center.y(),
                   center.z(),
                   inspection.window->inlier_count(in_window)));
+}
+
+void lead_with(const WorkbenchState& state, std::int64_t id, Commands& commands) {
+  if (!state.inspection) return;
+  const auto plane = to_lead(*state.inspection, id);
+  if (!plane) return;
+  Settings settings = state.settings;
+  settings.options.plane = *plane;
+  push(commands, ChangeSettings{settings});
 }
 
 }  // namespace gpo

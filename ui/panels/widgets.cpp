@@ -29,6 +29,31 @@ PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding,
 
 PanelScope::~PanelScope() { ImGui::End(); }
 
+OverlayScope::OverlayScope(const char* name, const Rectangle& window, float width, float scale) {
+  width = std::min(width, window.width - 16 * scale);
+  ImGui::SetNextWindowFocus();
+  ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * scale)});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * scale);
+  ImGui::Begin(name,
+               nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+}
+
+OverlayScope::~OverlayScope() {
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+}
+
+int moved_choice(int chosen, int first, int rows) {
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++chosen;
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --chosen;
+  return std::clamp(chosen, first, std::max(0, rows - 1));
+}
+
 bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons) {
   return ImGui::InvisibleButton(name, {std::max(1.0F, size.x), std::max(1.0F, size.y)}, buttons);
 }
@@ -54,9 +79,7 @@ void table_header(std::span<const ColumnText> columns) {
   ImGui::TableNextRow();
   for (const ColumnText& column : columns) {
     if (!ImGui::TableNextColumn()) continue;
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-    ImGui::TextUnformatted(column.title);
-    ImGui::PopStyleColor();
+    colored_text(Role::text_dim, column.title);
     tooltip(column.meaning);
   }
 }
@@ -69,11 +92,17 @@ void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float sc
   ImGui::TextUnformatted(name.c_str());
 }
 
+void colored_text(std::uint32_t rgb, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void colored_text(Role role, const std::string& text) { colored_text(color_of(role), text); }
+
 void heading(const char* text) {
   ImGui::PushFont(font(Font::small));
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted(text);
-  ImGui::PopStyleColor();
+  colored_text(Role::text_dim, text);
   ImGui::PopFont();
 }
 
@@ -100,9 +129,7 @@ void clipped_text(const std::string& text, float width, std::uint32_t rgb) {
       shown = shown.substr(0, shown.size() - 4) + "...";
     } while (shown.size() > 4 && too_wide());
   }
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
-  ImGui::TextUnformatted(shown.c_str());
-  ImGui::PopStyleColor();
+  colored_text(rgb, shown);
   if (shown != text) tooltip(text);
 }
 

@@ -23,6 +23,18 @@ class PanelScope {
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
+/// A list in front of everything, in the upper middle of the window, while it lives.
+class OverlayScope {
+ public:
+  OverlayScope(const char* name, const Rectangle& window, float width, float scale);
+  ~OverlayScope();
+  OverlayScope(const OverlayScope&) = delete;
+  OverlayScope& operator=(const OverlayScope&) = delete;
+};
+
+/// Up and Down choose among `rows`, the first of which is `first`.
+int moved_choice(int chosen, int first, int rows);
+
 /// A part of the window that can be hovered and pressed, drawn by whoever calls; whether it was
 /// clicked. At least a pixel each way: Dear ImGui ends the program where a width or height is 0.
 bool hit_area(const char* name,
@@ -42,6 +54,10 @@ void table_header(std::span<const ColumnText> columns);
 
 /// A sign, and a name beside it, in the table's current cell.
 void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale);
+
+/// Text in a color of its own.
+void colored_text(std::uint32_t rgb, const std::string& text);
+void colored_text(Role role, const std::string& text);
 
 /// A small heading in dim capitals.
 void heading(const char* text);

@@ -44,7 +44,7 @@ cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
 cv::Mat snapshot_image(const Inspection& inspection,
                        int frame,
                        std::optional<cv::Size> size,
-                       const ImageViewOptions& options) {
+                       const ViewOptions& options) {
   const Recording& recording = *inspection.recording;
   const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
   using Texture = PictureTexture;
@@ -58,7 +58,7 @@ cv::Mat snapshot_image(const Inspection& inspection,
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        cv::Size size,
-                       const SceneViewOptions& options) {
+                       const ViewOptions& options) {
   const double aspect = static_cast<double>(size.width) / size.height;
   const OrbitCamera camera =
       default_scene_camera(inspection, cube_side(inspection, options.cube_side), aspect);

@@ -22,12 +22,12 @@ namespace gpo {
 cv::Mat snapshot_image(const Inspection& inspection,
                        int frame,
                        std::optional<cv::Size> size = {},
-                       const ImageViewOptions& options = {});
+                       const ViewOptions& options = {});
 
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        cv::Size size = {960, 720},
-                       const SceneViewOptions& options = {});
+                       const ViewOptions& options = {});
 
 /// The disc of normals; studies the window for it.
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,

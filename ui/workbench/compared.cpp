@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
+#include "engine/experiment/configuration.h"
 #include "engine/inspection/moved_cube.h"
 #include "engine/inspection/settings/setting_values.h"
 
@@ -10,6 +11,7 @@
 #include <utility>
 
 namespace gpo {
+
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
@@ -156,6 +158,26 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   for (const int frames : curve_lengths(state.settings.frames))
     if (needs.lengths && frames < state.settings.frames) want_each(frames);
   return wanted;
+}
+
+std::vector<ShownResult> shown_results(const WorkbenchState& state) {
+  std::vector<ShownResult> shown;
+  if (!state.inspection) return shown;
+  const Settings& s = state.inspection->settings;
+  const auto named = [&](const Settings& settings, bool current) {
+    const Configuration one = called_among_compared(state, settings);
+    return ShownResult{title_of(one), color_of(one), nullptr, current};
+  };
+  shown.push_back(named(s, true));
+  shown.back().inspection = state.inspection;
+  for (const Settings& settings : compared_settings(state, s)) {
+    if (as_used(settings) == as_used(s)) continue;
+    const Surveyed* surveyed = find_surveyed(state.surveyed.get(), settings);
+    if (surveyed == nullptr || !surveyed->inspection) continue;
+    shown.push_back(named(settings, false));
+    shown.back().inspection = surveyed->inspection;
+  }
+  return shown;
 }
 
 }  // namespace gpo

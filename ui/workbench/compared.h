@@ -5,6 +5,7 @@
 #include "engine/experiment/configuration.h"
 #include "ui/workbench/state.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,5 +55,17 @@ std::vector<int> curve_lengths(int frames);
 /// The inspections that the open views ask for beside the current one: every compared configuration
 /// in the current window, and with the curves open at shorter lengths, too.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
+
+/// A result of the window that is shown, and how it is told from the others.
+struct ShownResult {
+  std::string name;  ///< for people: "GPO without RANSAC"
+  std::uint32_t rgb = 0;
+  std::shared_ptr<const Inspection> inspection;
+  bool current = false;  ///< the one that the whole window shows
+};
+
+/// The current result first, then the compared ones in the same window that are computed by now.
+/// Empty where nothing is inspected yet.
+std::vector<ShownResult> shown_results(const WorkbenchState& state);
 
 }  // namespace gpo

@@ -3,62 +3,79 @@
 #include "ui/workbench/panes.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gpo {
 
+DrawPane picture_alone, compare_alone;
 DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
 
 namespace {
 
-constexpr Pane kSidePanes[] = {
-    {"scene", "Scene", "Cameras, plane, points and cube in 3-D", scene_pane, {}, true},
-    {"normals",
-     "Normals",
-     "The hemisphere of plane normals: cost, candidates, answers",
-     normals_pane,
-     {.compared = true, .study = true}},
-    {"solver",
-     "Solver",
-     "Cost, gradient and step over the iterations",
-     solver_pane,
-     {.compared = true}},
-    {"candidates",
-     "Candidates",
-     "Every reading of the frame's homography, and why it was rejected",
-     candidates_pane,
-     {.study = true}}};
-
-constexpr Pane kDrawers[] = {
-    {"curves",
-     "Curves",
-     "Errors over the length of the window",
-     curves_drawer,
+// Those of a kind stand together.
+// clang-format off
+constexpr auto kPanes = [] {
+  using enum PaneKind;
+  constexpr PaneNeeds kCompared = {.compared = true};
+  return std::to_array<Pane>({
+    {picture, "image", "Image", "The frame with its overlays", picture_alone, {}, false, "picture"},
+    {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", scene_pane, {}, true},
+    {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, answers",
+     normals_pane, {.compared = true, .study = true}},
+    {side, "solver", "Solver", "Cost, gradient and step over the iterations", solver_pane, kCompared},
+    {side, "candidates", "Candidates",
+     "Every reading of the frame's homography, and why it was rejected", candidates_pane,
+     {.study = true}},
+    {columns, "compare", "Compare", "The compared methods side by side on the same frame",
+     compare_alone, kCompared},
+    {drawer, "curves", "Curves", "Errors over the length of the window", curves_drawer,
      {.compared = true, .lengths = true}},
-    {"table",
-     "Table",
-     "The compared results in numbers, and their differences",
-     table_drawer,
-     {.compared = true}},
-    {"residuals", "Residuals", "Histogram, and root mean square frame by frame", residuals_drawer},
-    {"timing", "Timing", "Where the time went, stage by stage", timing_drawer, {.compared = true}},
-    {"track", "Track", "The whole life of the selected track", track_drawer},
-    {"tracks", "Tracks", "All tracks of the window, to sort and to pick", tracks_drawer},
-    {"log", "Log", "Every message", log_drawer}};
+    {drawer, "table", "Table", "The compared results in numbers, and their differences",
+     table_drawer, kCompared},
+    {drawer, "residuals", "Residuals", "Histogram, and root mean square frame by frame",
+     residuals_drawer},
+    {drawer, "timing", "Timing", "Where the time went, stage by stage", timing_drawer, kCompared},
+    {drawer, "track", "Track", "The whole life of the selected track", track_drawer},
+    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and to pick", tracks_drawer},
+    {drawer, "log", "Log", "Every message", log_drawer},
+    {window, "window", "Window", "All of the workbench", nullptr}});
+}();
+// clang-format on
 
-const Pane* find(std::span<const Pane> panes, const std::string& key) {
-  const auto found = std::ranges::find(panes, key, &Pane::key);
-  return found == panes.end() ? nullptr : &*found;
+constexpr std::span<const Pane> of_kind(PaneKind kind) {
+  const auto first = std::ranges::find(kPanes, kind, &Pane::kind);
+  return {first, std::ranges::find_if(first, kPanes.end(), [=](const Pane& pane) {
+            return pane.kind != kind;
+          })};
+}
+
+const Pane* find(std::span<const Pane> among, const std::string& name) {
+  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
+    return name == pane.key || (!name.empty() && name == pane.alias);
+  });
+  return found == among.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-std::span<const Pane> side_panes() { return kSidePanes; }
-std::span<const Pane> drawers() { return kDrawers; }
+std::span<const Pane> panes() { return kPanes; }
+std::span<const Pane> side_panes() { return of_kind(PaneKind::side); }
+std::span<const Pane> drawers() { return of_kind(PaneKind::drawer); }
 
-const Pane* find_side_pane(const std::string& key) { return find(side_panes(), key); }
-const Pane* find_drawer(const std::string& key) { return find(drawers(), key); }
+const Pane* find_pane(const std::string& name) { return find(panes(), name); }
+const Pane* find_side_pane(const std::string& name) { return find(side_panes(), name); }
+const Pane* find_drawer(const std::string& name) { return find(drawers(), name); }
+
+std::vector<std::string> pane_names() {
+  std::vector<std::string> names;
+  for (const Pane& pane : panes()) {
+    names.emplace_back(pane.key);
+    if (*pane.alias != 0) names.emplace_back(pane.alias);
+  }
+  return names;
+}
 
 PaneNeeds needs_of(const Panes& panes) {
   const PaneNeeds side = panes.side->needs;

@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -24,25 +25,37 @@ struct PaneNeeds {
   bool study = false;     ///< the study of the window's normals
 };
 
-/// One of the views beside the picture (a side pane) or below (a drawer): a row of their tables,
-/// which the tabs, the actions, sessions and snapshots read.
+/// Where in the window a view is.
+enum class PaneKind { picture, side, columns, drawer, window };
+
+/// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
+/// read its row.
 struct Pane {
-  const char* key;      ///< in scripts and sessions, and after "view " the name of its action
+  PaneKind kind;
+  const char* key;      ///< in scripts, in sessions and on the command line
   const char* title;    ///< for people
   const char* tooltip;  ///< one sentence
-  DrawPane* draw;
+  DrawPane* draw;       ///< null: all of the window
   PaneNeeds needs = {};
-  bool covers = false;  ///< draws over all of its background
+  bool covers = false;     ///< draws over all of its background
+  const char* alias = "";  ///< another name for it that commands accept
 };
 
-/// What stands beside the picture, the first one at the start.
+/// All of them.
+std::span<const Pane> panes();
+/// The views beside the picture, the first one at the start.
 std::span<const Pane> side_panes();
-/// What is drawn out below picture and side pane.
+/// The views that are drawn out below picture and side pane.
 std::span<const Pane> drawers();
 
-/// Null where none has that key.
-const Pane* find_side_pane(const std::string& key);
-const Pane* find_drawer(const std::string& key);
+/// By key or alias; null where none has it.
+const Pane* find_pane(const std::string& name);
+/// The same among those beside the picture, or below.
+const Pane* find_side_pane(const std::string& name);
+const Pane* find_drawer(const std::string& name);
+
+/// Their keys and aliases.
+std::vector<std::string> pane_names();
 
 /// Which views are open.
 struct Panes {

@@ -7,17 +7,16 @@
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/survey.h"
 #include "engine/recording/recording.h"
-#include "ui/look/coloring.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
 #include "ui/look/picture_zoom.h"
-#include "ui/look/viewpoint.h"
+#include "ui/look/view_choices.h"
+#include "ui/look/view_toggles.h"
 #include "ui/workbench/division.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 #include "ui/workbench/time_span.h"
-#include "ui/workbench/view_toggles.h"
 
 #include <filesystem>
 #include <memory>
@@ -41,7 +40,7 @@ struct LogLine {
 /// A picture of the window, or of one view alone, on its way to the disk.
 struct Screenshot {
   std::filesystem::path file;         ///< .png; empty: a free name in the current folder
-  std::string view = "window";        ///< window | picture | compare | a pane's key
+  std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
 };
 

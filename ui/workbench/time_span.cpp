@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace gpo {
+
 namespace {
 
 constexpr int kFewest = 10;
@@ -40,6 +41,39 @@ TimeSpan zoomed(const TimeSpan& span, int frames, double share, double factor) {
 TimeSpan holding(TimeSpan span, int frame) {
   if (span.count > 0) span.first = std::clamp(span.first, frame - span.count + 1, frame);
   return span;
+}
+
+namespace {
+
+constexpr int kLeastWindow = 2;
+constexpr int kLongestWindow = 1000;
+
+}  // namespace
+
+Settings fit_window(Settings settings, int frame_count) {
+  const int longest = std::clamp(frame_count, kLeastWindow, kLongestWindow);
+  settings.frames = std::clamp(settings.frames, kLeastWindow, longest);
+  settings.start = std::clamp(settings.start, 0, std::max(0, frame_count - settings.frames));
+  return settings;
+}
+
+Settings start_window_at(Settings settings, int frame, int frame_count) {
+  const int end = settings.start + settings.frames;
+  settings.start = std::clamp(frame, 0, std::max(0, frame_count - kLeastWindow));
+  if (settings.start <= end - kLeastWindow) {
+    settings.frames = end - settings.start;
+  } else {
+    settings.frames = std::min(settings.frames, frame_count - settings.start);
+  }
+  return fit_window(settings, frame_count);
+}
+
+Settings end_window_at(Settings settings, int frame, int frame_count) {
+  const int end = std::clamp(frame + 1, kLeastWindow, std::max(kLeastWindow, frame_count));
+  if (end < settings.start + kLeastWindow) settings.start = std::max(0, end - settings.frames);
+  settings.start = std::max(settings.start, end - kLongestWindow);
+  settings.frames = end - settings.start;
+  return fit_window(settings, frame_count);
 }
 
 }  // namespace gpo

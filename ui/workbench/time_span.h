@@ -26,4 +26,13 @@ TimeSpan zoomed(const TimeSpan& span, int frames, double share, double factor);
 /// Moved as little as needed to hold a frame.
 TimeSpan holding(TimeSpan span, int frame);
 
+/// The nearest settings whose window fits into so many frames (at least two).
+Settings fit_window(Settings settings, int frame_count);
+
+/// The window from `frame` on to its old end, or of its old length where it would end before.
+Settings start_window_at(Settings settings, int frame, int frame_count);
+
+/// The window from its old start up to `frame`, or of its old length where it would start after.
+Settings end_window_at(Settings settings, int frame, int frame_count);
+
 }  // namespace gpo

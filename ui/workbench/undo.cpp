@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/undo.h"
 
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <utility>
 

@@ -177,6 +177,10 @@ TEST_P(EveryMethod, TakesAWindowOfTwoFrames) {
   }
 }
 
+TEST_P(EveryMethod, SaysWhatItDoesAndWhatItAssumes) {
+  EXPECT_THAT(GetParam().help, HasSubstr("Assumes"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Table,
                          EveryMethod,
                          ::testing::ValuesIn(methods().begin(), methods().end()),

@@ -67,12 +67,12 @@ TEST_F(Snapshot, WithoutDistortionIsThePictureAsOpenCvUndistortsIt) {
   const cv::Mat drawn = snapshot_image(inspection,
                                        20,
                                        {},
-                                       {.tracks = false,
-                                        .cube = false,
-                                        .truth = false,
-                                        .gravity = false,
-                                        .undistorted = true,
-                                        .legend = false});
+                                       {.show = {.tracks = false,
+                                                 .cube = false,
+                                                 .truth = false,
+                                                 .gravity = false,
+                                                 .undistorted = true,
+                                                 .legend = false}});
   keep_snapshot("image_undistorted", drawn);
   cv::Mat expected;
   const cv::Mat K =
@@ -85,9 +85,9 @@ TEST_F(Snapshot, WithoutDistortionIsThePictureAsOpenCvUndistortsIt) {
 }
 
 TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
-  keep_snapshot(
-      "image_error",
-      snapshot_image(made_inspection({.estimate_error = 3}), 30, {}, {.residuals = true}));
+  keep_snapshot("image_error",
+                snapshot_image(
+                    made_inspection({.estimate_error = 3}), 30, {}, {.show = {.residuals = true}}));
   keep_snapshot("image_large", snapshot_image(made_inspection(), 20, cv::Size(1280, 720)));
   keep_snapshot("image_reference", snapshot_image(made_inspection(), 5));
   keep_snapshot("image_outside", snapshot_image(made_inspection(), 38));
@@ -97,7 +97,7 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
     keep_snapshot("scene_uncertain_" + std::to_string(times),
-                  snapshot_scene(uncertain, 30, {960, 720}, {.uncertainty = times}));
+                  snapshot_scene(uncertain, 30, {960, 720}, {.show = {.uncertainty = times}}));
   keep_snapshot("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
   keep_snapshot("scene_failed", snapshot_scene(made_inspection({.ok = false}), 20));
   keep_snapshot("scene_refused", snapshot_scene(made_inspection({.refused = true}), 20));

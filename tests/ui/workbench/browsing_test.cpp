@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/browsing.h"
 
 #include "ui/workbench/work/folder_lister.h"
 

@@ -46,6 +46,15 @@ TEST(WorkbenchPanes, AreOpenedByAnActionEachAndToldApart) {
   EXPECT_EQ(find_side_pane("cellar"), nullptr);
 }
 
+TEST(WorkbenchPanes, AreAllInOneTableAndTheImageHasTwoNames) {
+  EXPECT_EQ(panes().size(), 3 + side_panes().size() + drawers().size());
+  EXPECT_THAT(pane_names(),
+              testing::IsSupersetOf({"window", "image", "picture", "compare", "normals", "log"}));
+  EXPECT_EQ(find_pane("picture"), find_pane("image"));
+  EXPECT_EQ(find_pane(""), nullptr);
+  EXPECT_EQ(find_side_pane("image"), nullptr);
+}
+
 TEST(WorkbenchPanes, NeedWhatTheyShow) {
   Panes panes;
   EXPECT_FALSE(needs_of(panes).compared);

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/shown_results.h"
-
 #include "engine/experiment/configuration.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/workbench/compared.h"
 
 #include <gtest/gtest.h>
 

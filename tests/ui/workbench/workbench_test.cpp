@@ -6,7 +6,7 @@
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/playing.h"
 #include "ui/workbench/state.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 #include "ui/workbench/work/adopt.h"
 
 #include <gmock/gmock.h>

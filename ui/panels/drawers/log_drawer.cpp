@@ -24,9 +24,7 @@ void log_drawer(const PanelInput& input,
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginChild("lines", {place.width - 12 * s, place.height - 6 * s});
   for (const LogLine& line : input.state.log) {
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(line.severity)));
-    ImGui::TextUnformatted(line.text.c_str());
-    ImGui::PopStyleColor();
+    colored_text(color_of(line.severity), line.text);
   }
   if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1);
   ImGui::EndChild();

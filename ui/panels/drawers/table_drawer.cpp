@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +22,7 @@ TableOrder clicked(const TableOrder& order, int column) {
 
 void header_cell(const char* title, const char* meaning) {
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted(title);
-  ImGui::PopStyleColor();
+  colored_text(Role::text_dim, title);
   tooltip(meaning);
 }
 
@@ -32,9 +30,7 @@ void header_cell(const char* title, const char* meaning) {
 void number_header(int index, const ComparedColumn& column, TableOrder& order) {
   ImGui::TableNextColumn();
   const bool orders = order.column == index;
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(orders ? Role::accent : Role::text_dim));
-  ImGui::TextUnformatted(column.title);
-  ImGui::PopStyleColor();
+  colored_text(orders ? Role::accent : Role::text_dim, column.title);
   const bool pressed = ImGui::IsItemClicked();
   tooltip(std::string(column.meaning) + ". Click: puts the rows in order");
   if (orders) {
@@ -108,12 +104,7 @@ void draw_name(const ComparedRow& row, bool current, float height, Commands& com
   const ImVec2 name(std::round(at.x + line * 0.7F), at.y);
   list.AddText(name, imgui_color(Role::text), title_of(row.configuration).c_str());
   if (!current) return;
-  const ImFont* small = font(Font::small);
-  list.AddText(small,
-               small->FontSize,
-               {name.x, std::round(at.y + line)},
-               imgui_color(Role::accent),
-               "current");
+  write_text(list, Font::small, {name.x, at.y + line}, "current", color_of(Role::accent));
 }
 
 /// The sign and word of the verdict, or what became of it instead.
@@ -124,9 +115,7 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   const std::uint32_t rgb = failed      ? color_of(Role::bad)
                             : computing ? color_of(Role::accent)
                                         : color_of(Role::good);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
-  ImGui::TextUnformatted(row.status.c_str());
-  ImGui::PopStyleColor();
+  colored_text(rgb, row.status);
   ImGui::PushFont(font(Font::small));
   if (verdict) {
     const ReadinessLook look = look_of(verdict->readiness);
@@ -134,9 +123,7 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
     const float line = ImGui::GetTextLineHeight();
     draw_sign(*ImGui::GetWindowDrawList(), look.sign, {at.x + line / 2, at.y + line / 2}, look.rgb);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + line * 1.2F);
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(look.rgb));
-    ImGui::TextUnformatted(to_string(verdict->readiness));
-    ImGui::PopStyleColor();
+    colored_text(look.rgb, to_string(verdict->readiness));
   }
   ImGui::PopFont();
   ImGui::EndGroup();
@@ -154,15 +141,10 @@ std::uint32_t color_of_difference(double worse) {
 void draw_number(const ComparedNumber& number) {
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
-  ImGui::PushStyleColor(
-      ImGuiCol_Text,
-      imgui_color(number.why_not.empty() ? color_of(Role::text) : color_of(Role::text_dim)));
-  ImGui::TextUnformatted(number.text.c_str());
-  ImGui::PopStyleColor();
+  colored_text(number.why_not.empty() ? color_of(Role::text) : color_of(Role::text_dim),
+               number.text);
   ImGui::PushFont(font(Font::small));
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of_difference(number.worse)));
-  ImGui::TextUnformatted(number.difference.c_str());
-  ImGui::PopStyleColor();
+  colored_text(color_of_difference(number.worse), number.difference);
   ImGui::PopFont();
   ImGui::EndGroup();
   tooltip(number.why_not);

@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/shown_results.h"
+#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <array>
@@ -39,17 +39,11 @@ double sum_ms(const Timing& timing) {
   return sum;
 }
 
-void dim(const char* text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted(text);
-  ImGui::PopStyleColor();
-}
-
 /// The stages' names with their colors are the legend.
 void header(float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  dim("[ms]");
+  colored_text(Role::text_dim, "[ms]");
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     ImGui::TableNextColumn();
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -57,11 +51,11 @@ void header(float scale) {
     ImGui::GetWindowDrawList()->AddRectFilled(
         {at.x, y}, {at.x + side, y + side}, imgui_color(kStages[i].color), 2 * scale);
     ImGui::SetCursorScreenPos({at.x + side + 5 * scale, at.y});
-    dim(kStages[i].title);
+    colored_text(Role::text_dim, kStages[i].title);
     tooltip(kStages[i].meaning);
   }
   ImGui::TableNextColumn();
-  dim("sum");
+  colored_text(Role::text_dim, "sum");
   ImGui::TableNextColumn();
 }
 

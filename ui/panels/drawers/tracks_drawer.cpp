@@ -144,13 +144,11 @@ void tracks_drawer(const PanelInput& input,
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::small));
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted(
+  colored_text(
+      Role::text_dim,
       fmt::format("{} tracks, {} picked \u00b7 a click on the head sorts, right click copies",
                   input.inspection()->tracks->track_count(),
-                  selection.tracks.size())
-          .c_str());
-  ImGui::PopStyleColor();
+                  selection.tracks.size()));
   const float top = ImGui::GetCursorPosY();
   draw_list(input, {place.width - 24 * s, place.height - top}, views, commands);
   ImGui::PopFont();

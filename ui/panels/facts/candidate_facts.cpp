@@ -53,4 +53,11 @@ std::vector<std::string> candidate_cells(const HomographyCandidate& candidate) {
           fmt::format("{} of {}", candidate.behind, candidate.of)};
 }
 
+std::string why_no_study(const WorkbenchState& state, const std::string& doing) {
+  if (!state.study || !state.inspection || state.study->window != state.inspection->window)
+    return doing;
+  if (state.study->error.empty()) return "";
+  return "The window's normals could not be studied: " + state.study->error;
+}
+
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/inspection/studies/normal_study.h"
+#include "ui/workbench/state.h"
 
 #include <span>
 #include <string>
@@ -18,5 +19,9 @@ std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
 
 /// Normal, tilt, rotation, |tau|, score, points behind.
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
+
+/// Why there is no study of the shown window's normals to look at, one sentence: `doing` while it
+/// is computed. Empty where there is one.
+std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 
 }  // namespace gpo

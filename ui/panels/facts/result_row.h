@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gpo {
@@ -19,7 +20,9 @@ struct ResultRow {
   Tone tone = Tone::plain;
 };
 /// The row of a value that is not known.
-ResultRow dash(std::string label, std::string why);
+inline ResultRow dash(std::string label, std::string why) {
+  return {std::move(label), "\u2013", "", std::move(why), Tone::dim};
+}
 
 struct ResultGroup {
   std::string title;

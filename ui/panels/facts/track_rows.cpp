@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 namespace gpo {
+
 namespace {
 
 /// On whatever plane.
@@ -89,6 +90,26 @@ std::string to_csv(std::span<const TrackRow> rows) {
                         verdict);
   }
   return text;
+}
+
+const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
+  constexpr std::size_t kMost = 16;  // a frame of the window shows three at most
+  const auto found = std::ranges::find_if(recent_, [&](const Entry& entry) {
+    return entry.column == column && entry.tracks == inspection.tracks &&
+           entry.window == inspection.window && entry.initialization == inspection.initialization;
+  });
+  if (found != recent_.end()) {
+    recent_.splice(recent_.begin(), recent_, found);
+    return recent_.front().life;
+  }
+  ++computed_;
+  recent_.push_front({inspection.tracks,
+                      inspection.window,
+                      inspection.initialization,
+                      column,
+                      track_life(inspection, column)});
+  if (recent_.size() > kMost) recent_.pop_back();
+  return recent_.front().life;
 }
 
 }  // namespace gpo

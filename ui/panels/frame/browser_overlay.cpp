@@ -164,12 +164,6 @@ bool path_field(BrowserEntry& entry) {
                           &entry);
 }
 
-void move_choice(BrowserEntry& entry, int rows, bool nothing_is_a_choice) {
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++entry.chosen;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --entry.chosen;
-  entry.chosen = std::clamp(entry.chosen, nothing_is_a_choice ? -1 : 0, std::max(0, rows - 1));
-}
-
 }  // namespace
 
 void browser_overlay(const PanelInput& input,
@@ -187,29 +181,17 @@ void browser_overlay(const PanelInput& input,
   if (input.lister != nullptr) entry.listed = input.lister->list(typed.folder);
   const std::vector<FolderEntry> found = matching(entry.listed.entries, typed.name);
 
-  const float width = std::min(760 * s, window.width - 16 * s);
-  ImGui::SetNextWindowFocus();
-  ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * s)});
-  ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::Begin("browser",
-               nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  const OverlayScope overlay("browser", window, 760 * s, s);
   heading(action_named(browse.action).title.c_str());
   const bool entered = path_field(entry);
   places(input, entry);
-  move_choice(entry, static_cast<int>(found.size()), saves);
+  entry.chosen = moved_choice(entry.chosen, saves ? -1 : 0, static_cast<int>(found.size()));
   const int clicked = draw_rows(found, entry.chosen, !saves, s);
   const int row = clicked >= 0 ? clicked : entry.chosen;
   const bool there = row >= 0 && row < static_cast<int>(found.size());
   if (clicked >= 0 || entered)
     accept(input, entry, there ? &found[static_cast<std::size_t>(row)] : nullptr, commands);
   draw_state(entry.listed, typed, saves);
-  ImGui::End();
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
 }
 
 }  // namespace gpo

@@ -49,16 +49,12 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
 void draw_row(const KeyRow& row) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::accent));
-  ImGui::TextUnformatted(row.keys.c_str());
-  ImGui::PopStyleColor();
+  colored_text(Role::accent, row.keys);
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(row.title.c_str());
   tooltip(row.tooltip);
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(row.on ? Role::good : Role::text_dim));
-  ImGui::TextUnformatted(row.value.c_str());
-  ImGui::PopStyleColor();
+  colored_text(row.on ? Role::good : Role::text_dim, row.value);
 }
 
 void draw_table(const char* id, const std::vector<KeyRow>& rows, std::size_t from, std::size_t to) {

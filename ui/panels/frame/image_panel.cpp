@@ -4,7 +4,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/lead_with.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
@@ -137,8 +136,8 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
-  ImageViewOptions options = image_options(state, views);
-  options.legend = options.legend && room_for_legend(place, input.scale);
+  ViewOptions options = view_options(state, views);
+  options.show.legend &= room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
                   input.inspection() ? *input.inspection() : waiting,

@@ -8,6 +8,7 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,57 +44,19 @@ void menu_item(const Action& action, const PanelInput& input, Commands& commands
   tooltip(action.tooltip);
 }
 
-/// Actions that belong together: one entry of the menu opens them.
-struct Submenu {
-  const char* title;
-  std::vector<std::string> names;  ///< of actions; with a blank at the end, of all that begin so
-};
-
-const std::vector<Submenu>& submenus() {
-  static const std::vector<Submenu> all = {
-      {"Looks of the cube", {"wireframe", "tower", "exaggerate", "model"}},
-      {"Colors and sizes", {"color-by ", "point-size"}},
-      {"Open", {"view "}},
-      {"Compare", {"compare", "compare ", "flip", "curve", "close-results"}},
-      {"Zoom", {"fit", "zoom", "zoom-normals"}},
-      {"Look at the scene", {"viewpoint "}},
-      {"Theme and text", {"theme ", "larger", "smaller", "text-size"}},
-      {"Parts of the window", {"maximize", "column", "timeline", "fullscreen", "reset-layout"}},
-      {"Export", {"export "}}};
-  return all;
-}
-
-/// Null where the action stands in the menu itself.
-const Submenu* submenu_of(const Action& action) {
-  const auto holds = [&](const std::string& name) {
-    return name.ends_with(' ') ? action.name.starts_with(name) : action.name == name;
-  };
-  const auto found = std::ranges::find_if(
-      submenus(), [&](const Submenu& one) { return std::ranges::any_of(one.names, holds); });
-  return found == submenus().end() ? nullptr : &*found;
-}
-
-/// Where the first of its actions would stand.
-void submenu(const Submenu& shown,
-             const std::string& menu,
-             const PanelInput& input,
-             Commands& commands) {
-  if (!ImGui::BeginMenu(shown.title)) return;
-  for (const Action& action : all_actions(input.state))
-    if (action.menu == menu && submenu_of(action) == &shown) menu_item(action, input, commands);
-  ImGui::EndMenu();
-}
-
+/// A submenu is where the first of its actions would be.
 void draw_menu(const std::string& menu, const PanelInput& input, Commands& commands) {
-  std::vector<const Submenu*> drawn;
+  std::set<std::string> drawn;
   for (const Action& action : all_actions(input.state)) {
     if (action.menu != menu) continue;
-    const Submenu* within = submenu_of(action);
-    if (within == nullptr) menu_item(action, input, commands);
+    if (action.submenu.empty()) menu_item(action, input, commands);
     if (action.name == "browse") recent_menu(input, commands);
-    if (within == nullptr || std::ranges::find(drawn, within) != drawn.end()) continue;
-    submenu(*within, menu, input, commands);
-    drawn.push_back(within);
+    if (action.submenu.empty() || !drawn.insert(action.submenu).second) continue;
+    if (!ImGui::BeginMenu(action.submenu.c_str())) continue;
+    for (const Action& within : all_actions(input.state))
+      if (within.menu == menu && within.submenu == action.submenu)
+        menu_item(within, input, commands);
+    ImGui::EndMenu();
   }
 }
 

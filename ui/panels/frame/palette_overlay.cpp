@@ -4,7 +4,7 @@
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay_text.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/actions/actions.h"
 
 #include <cmath>
@@ -55,13 +55,6 @@ const Action* draw_rows(const std::vector<Action>& found, int chosen, float scal
   return clicked;
 }
 
-/// Up and Down choose among the rows.
-void move_choice(PaletteEntry& entry, int rows) {
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++entry.chosen;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --entry.chosen;
-  entry.chosen = std::clamp(entry.chosen, 0, std::max(0, rows - 1));
-}
-
 /// As if somebody had typed it.
 void type_out(PaletteEntry& entry, const std::string& text) {
   entry.text.fill('\0');
@@ -109,16 +102,7 @@ void palette_overlay(const PanelInput& input,
   PaletteEntry& entry = views.palette;
   if (!entry.open && !input.state.palette->empty()) type_out(entry, *input.state.palette + " ");
   entry.open = true;
-  ImGui::SetNextWindowFocus();
-  const float width = std::min(640 * s, window.width - 16 * s);
-  ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * s)});
-  ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::Begin("palette",
-               nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  const OverlayScope overlay("palette", window, 640 * s, s);
   ImGui::SetNextItemWidth(-1);
   if (!ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   const bool entered = ImGui::InputTextWithHint(
@@ -130,14 +114,11 @@ void palette_overlay(const PanelInput& input,
       move_cursor_to_end,
       &entry);
   const std::vector<Action> found = offered(entry.text.data(), input.state);
-  move_choice(entry, static_cast<int>(found.size()));
+  entry.chosen = moved_choice(entry.chosen, 0, static_cast<int>(found.size()));
   const Action* clicked = draw_rows(found, entry.chosen, s);
   if (clicked != nullptr) accept(entry, clicked, commands);
   if (entered) accept(entry, found.empty() ? nullptr : &found[entry.chosen], commands);
   if (found.empty()) ImGui::TextUnformatted("No command has such a name; F1 lists the keys");
-  ImGui::End();
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
 }
 
 }  // namespace gpo

@@ -7,7 +7,7 @@
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <cmath>
 
@@ -42,9 +42,7 @@ bool draw_note(const std::string& note, float right, float gap) {
   const bool fits = left > drawn_to + gap;
   if (fits) {
     continue_line_at(left);
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-    ImGui::TextUnformatted(note.c_str());
-    ImGui::PopStyleColor();
+    colored_text(Role::text_dim, note);
   }
   ImGui::PopFont();
   return fits;
@@ -56,9 +54,7 @@ bool draw_value(const ResultRow& row, float right, float gap) {
   const float left = right - ImGui::CalcTextSize(row.value.c_str()).x;
   const bool told = row.note.empty() || draw_note(row.note, left, gap);
   continue_line_at(left);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(color_of(row.tone)));
-  ImGui::TextUnformatted(row.value.c_str());
-  ImGui::PopStyleColor();
+  colored_text(color_of(row.tone), row.value);
   return told;
 }
 
@@ -99,9 +95,7 @@ void draw_verdict(const Initialization& result, float left, float right, float g
   draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
   ImGui::SetCursorPosX(std::round(left + 18 * scale));
   ImGui::PushFont(font(Font::bold));
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(look.rgb));
-  ImGui::TextUnformatted(to_string(verdict.readiness));
-  ImGui::PopStyleColor();
+  colored_text(look.rgb, to_string(verdict.readiness));
   ImGui::PopFont();
   if (sigma_deg) draw_value({"", "\u00b1" + angle_text(*sigma_deg), "normal", ""}, right, gap);
   ImGui::PushFont(font(Font::small));
@@ -118,9 +112,7 @@ void draw_state(const PanelInput& input, float right) {
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
   ImGui::PushFont(font(Font::small));
   continue_line_at(right - ImGui::CalcTextSize(text).x);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::warning));
-  ImGui::TextUnformatted(text);
-  ImGui::PopStyleColor();
+  colored_text(Role::warning, text);
   ImGui::PopFont();
 }
 

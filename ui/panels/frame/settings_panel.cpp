@@ -1,14 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/context/theme.h"
-#include "ui/look/method_help.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,10 +85,7 @@ struct SettingRows {
   /// In the color of what was chosen, where it is `other` than the default.
   void label(const std::string& title, const std::string& help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text,
-                          imgui_color(other ? color_of(Role::accent) : color_of(Role::text)));
-    ImGui::TextUnformatted(title.c_str());
-    ImGui::PopStyleColor();
+    colored_text(other ? color_of(Role::accent) : color_of(Role::text), title);
     tooltip(help);
     ImGui::SameLine(label_width);
     ImGui::SetNextItemWidth(-1);
@@ -154,7 +151,7 @@ struct SettingRows {
       const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
       if (ImGui::Selectable(title_of(one).c_str(), one.key == chosen, flags))
         change(setting, one.key);
-      tooltip(lacks.empty() && setting.key == "method" ? method_help(one.key) : lacks);
+      tooltip(lacks.empty() && setting.key == "method" ? find_method(one.key).help : lacks);
     }
     ImGui::EndCombo();
   }

@@ -52,9 +52,7 @@ float draw_progress(const WorkerStatus& work, float scale) {
   // At a fixed place: a bar that moves with its text is hard to read.
   ImGui::SameLine(std::max(190 * scale, ImGui::CalcTextSize(text.c_str()).x + 24 * scale));
   if (work.of > 0) draw_bar(static_cast<float>(work.done) / static_cast<float>(work.of), scale);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted("Esc cancels");
-  ImGui::PopStyleColor();
+  colored_text(Role::text_dim, "Esc cancels");
   ImGui::SameLine();
   return ImGui::GetCursorPosX() + 12 * scale;
 }

@@ -3,7 +3,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/facts/candidate_facts.h"
-#include "ui/panels/facts/study_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"

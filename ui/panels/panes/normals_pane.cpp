@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/study_facts.h"
+#include "ui/panels/facts/candidate_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/shown_results.h"
+#include "ui/workbench/compared.h"
 
 #include <cmath>
 

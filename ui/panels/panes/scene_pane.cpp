@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/lead_with.h"
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
@@ -97,8 +96,8 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   if (ImGui::IsItemHovered() && hover != state.hover) push(commands, HoverOver{hover});
   click(input, hover, commands);
   move_cube_to(input, rect, camera, commands);
-  SceneViewOptions options = scene_options(state, views);
-  options.legend = options.legend && room_for_legend(place, input.scale);
+  ViewOptions options = view_options(state, views);
+  options.show.legend &= room_for_legend(place, input.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
   draw_scene_view(
       *ImGui::GetWindowDrawList(), rect, views.scene, inspection, state.frame, camera, options);

@@ -8,7 +8,7 @@
 #include "ui/panels/widgets.h"
 #include "ui/views/charts/solver_charts.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/shown_results.h"
+#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <cmath>

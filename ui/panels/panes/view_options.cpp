@@ -51,57 +51,15 @@ double height_sides(const WorkbenchState& state, const KeptModel& kept) {
 
 }  // namespace
 
-ImageViewOptions image_options(const WorkbenchState& state, Views& views) {
+ViewOptions view_options(const WorkbenchState& state, Views& views) {
   const KeptModel& model = model_of(state, views.model);
-  ImageViewOptions options;
-  options.tracks = state.view.tracks;
-  if (!state.view.tails) options.tail_frames = 0;
-  options.residuals = state.view.residuals;
-  options.cube = state.view.cube;
-  options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state, model);
-  options.model = model.model;
-  options.model_error = model.error;
-  options.wireframe = state.view.wireframe;
-  options.exaggeration = state.view.exaggeration;
-  options.truth = state.view.truth;
-  options.gravity = state.view.gravity;
-  options.undistorted = state.view.undistorted;
-  options.colors = colors_of(state, views.colors);
-  options.legend = state.view.legend && state.inspection != nullptr;
-  return options;
-}
-
-SceneViewOptions scene_options(const WorkbenchState& state, Views& views) {
-  const KeptModel& model = model_of(state, views.model);
-  SceneViewOptions options;
-  options.cube = state.view.cube;
-  options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state, model);
-  options.model = model.model;
-  options.truth = state.view.truth;
-  options.gravity = state.view.gravity;
-  options.uncertainty = state.view.uncertainty;
-  options.point_size_px = state.view.point_size_px;
-  options.legend = state.view.legend;
-  options.colors = colors_of(state, views.colors);
-  return options;
-}
-
-CompareOptions compare_options(const WorkbenchState& state, Views& views) {
-  const KeptModel& model = model_of(state, views.model);
-  CompareOptions options;
-  options.zoom = state.compare_zoom;
-  options.cube = state.view.cube;
-  options.cube_side = state.cube_side;
-  options.cube_height_sides = height_sides(state, model);
-  options.model = model.model;
-  options.wireframe = state.view.wireframe;
-  options.undistorted = state.view.undistorted;
-  options.exaggeration = state.view.exaggeration;
-  options.truth = state.view.truth;
-  options.residuals = state.view.residuals;
-  options.top_line = false;
+  ViewOptions options{.show = state.view,
+                      .cube_side = state.cube_side,
+                      .cube_height_sides = height_sides(state, model),
+                      .model = model.model,
+                      .model_error = model.error,
+                      .colors = colors_of(state, views.colors)};
+  options.show.legend &= state.inspection != nullptr;
   return options;
 }
 
@@ -139,11 +97,7 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
   list.AddRectFilled(
       at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
-  list.AddText(bold,
-               bold->FontSize,
-               {std::round(at.x + 20 * s), std::round(at.y + 6 * s)},
-               imgui_color(Role::text),
-               text.c_str());
+  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
 }
 
 Highlight highlight_of(const WorkbenchState& state) {

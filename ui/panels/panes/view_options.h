@@ -16,11 +16,8 @@
 namespace gpo {
 
 /// What the state asks the views to show. Colors and model are made where those kept are others.
-ImageViewOptions image_options(const WorkbenchState& state, Views& views);
-SceneViewOptions scene_options(const WorkbenchState& state, Views& views);
+ViewOptions view_options(const WorkbenchState& state, Views& views);
 
-/// What the state asks the comparison to show, without the line above it; and its columns.
-CompareOptions compare_options(const WorkbenchState& state, Views& views);
 std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results);
 
 /// The state with another's result in place of the current one. While it is computed there is none.

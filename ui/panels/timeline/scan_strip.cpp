@@ -7,7 +7,7 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,18 +43,14 @@ void draw_columns(ImDrawList& list,
 
 void draw_label(ImDrawList& list, const std::string& text, const Rectangle& place, float scale) {
   const ImFont* f = font(Font::small);
-  const float width = f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
+  const auto width = static_cast<float>(text_width(Font::small, text));
   const float gap = 4 * scale;
   if (width + 2 * gap > place.width / 2) return;
   const float left = std::round(place.right() - width - 2 * gap);
   list.AddRectFilled({left, place.y},
                      {place.right(), std::round(place.y + f->FontSize + 2 * scale)},
                      imgui_color(Role::background, 0.75));
-  list.AddText(f,
-               f->FontSize,
-               {std::round(left + gap), std::round(place.y + scale)},
-               imgui_color(Role::text_dim),
-               text.c_str());
+  write_text(list, Font::small, {left + gap, place.y + scale}, text, color_of(Role::text_dim));
 }
 
 }  // namespace

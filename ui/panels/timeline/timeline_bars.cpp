@@ -6,7 +6,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/views/overlay/plane_look.h"
-#include "ui/views/overlay/verdict_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,11 +155,7 @@ namespace {
 void draw_failure(ImDrawList& list, const std::string& reason, float left, float top, float scale) {
   const ImFont* f = font(Font::small);
   draw_sign(list, Sign::cross, {left + 6 * scale, top + f->FontSize / 2}, color_of(Role::bad));
-  list.AddText(f,
-               f->FontSize,
-               {std::round(left + 16 * scale), std::round(top)},
-               imgui_color(Role::text),
-               ("not initialized: " + reason).c_str());
+  write_text(list, Font::small, {left + 16 * scale, top}, "not initialized: " + reason);
 }
 
 }  // namespace
@@ -171,8 +166,8 @@ void draw_verdict_legend(
     return draw_failure(list, inspection.initialization->reason, left, top, scale);
   const ImFont* f = font(Font::small);
   const auto write = [&](const char* text, std::uint32_t rgb) {
-    list.AddText(f, f->FontSize, {std::round(left), std::round(top)}, imgui_color(rgb), text);
-    left += f->CalcTextSizeA(f->FontSize, 1e6F, 0, text).x;
+    write_text(list, Font::small, {left, top}, text, rgb);
+    left += static_cast<float>(text_width(Font::small, text));
   };
   write("window up to here:", color_of(Role::text_dim));
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {

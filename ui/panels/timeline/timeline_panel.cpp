@@ -9,7 +9,7 @@
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <algorithm>
 #include <array>
@@ -229,9 +229,7 @@ void draw_numbers(const PanelInput& input, float left, float top, Commands& comm
       fmt::format("frame {} / {}", state.frame, state.frame_count() - 1).c_str());
   ImGui::SetCursorScreenPos({left, top + ImGui::GetTextLineHeightWithSpacing()});
   const int start = state.settings.start;
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextUnformatted(fmt::format("{:.3f} s", seconds).c_str());
-  ImGui::PopStyleColor();
+  colored_text(Role::text_dim, fmt::format("{:.3f} s", seconds));
   tooltip(
       fmt::format("The window spans frames {} to {}", start, start + state.settings.frames - 1));
   draw_playing(input, commands);

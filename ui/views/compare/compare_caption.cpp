@@ -5,8 +5,7 @@
 #include "engine/initialize/method_defaults.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/overlay_text.h"
-#include "ui/views/overlay/verdict_look.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <algorithm>
 

@@ -6,7 +6,6 @@
 #include "ui/context/theme.h"
 #include "ui/views/compare/compare_caption.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/overlay_text.h"
 #include "ui/views/picture/image_geometry.h"
 #include "ui/views/picture/image_view.h"
 
@@ -82,7 +81,7 @@ double common_cube_side(Columns columns, const Inspection& inspection, double ch
 }
 
 /// What both kinds of cubes cover [raw px].
-Eigen::AlignedBox2d cubes_box(Columns columns, int frame, const CompareOptions& options) {
+Eigen::AlignedBox2d cubes_box(Columns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
   for (const CompareColumn& column : columns) {
     if (!column.inspection) continue;
@@ -145,12 +144,13 @@ void draw_column(ImDrawList& list,
                  int frame,
                  PictureTexture* picture,
                  const PictureZoom& zoom,
-                 const ImageViewOptions& options) {
+                 const ViewOptions& options) {
   const Inspection& inspection = *column.inspection;
   draw_compare_heading(list, place.heading, column);
   draw_image_view(list, place.picture, inspection, frame, picture, zoom, options);
   const int in_window = frame - inspection.window->start;
-  if (options.exaggeration > 1 && in_window >= 0 && in_window < inspection.window->frame_count())
+  if (options.show.exaggeration > 1 && in_window >= 0 &&
+      in_window < inspection.window->frame_count())
     draw_legend(
         list,
         place.picture,
@@ -160,7 +160,7 @@ void draw_column(ImDrawList& list,
           0,
           fmt::format("cube's distance from {} \u00d7 {}",
                       true_cube(inspection, in_window, 1) ? "the true one" : "the first one",
-                      options.exaggeration)}});
+                      options.show.exaggeration)}});
   draw_compare_caption(list, place.caption, inspection, first);
 }
 
@@ -173,8 +173,8 @@ void draw_missing(ImDrawList& list,
                   PictureTexture* picture,
                   const PictureZoom& zoom) {
   draw_compare_heading(list, place.heading, column);
-  ImageViewOptions plain;
-  plain.legend = false;
+  ViewOptions plain;
+  plain.show.legend = false;
   draw_image_view(list, place.picture, nothing, frame, picture, zoom, plain);
   const bool computing = column.missing == "computing";
   draw_badge(list,
@@ -215,8 +215,8 @@ PictureZoom compare_zoom(std::span<const CompareColumn> columns,
                          const Recording& recording,
                          int frame,
                          const Eigen::Vector2d& picture_size,
-                         const CompareOptions& options) {
-  if (options.zoom) return *options.zoom;
+                         const ViewOptions& options) {
+  if (options.compare_zoom) return *options.compare_zoom;
   return zoom_on(cubes_box(columns, frame, options), recording.camera, picture_size);
 }
 
@@ -226,25 +226,18 @@ void draw_compare_view(ImDrawList& list,
                        const Recording& recording,
                        int frame,
                        PictureTexture* picture,
-                       const CompareOptions& options) {
+                       const ViewOptions& options) {
   list.AddRectFilled(to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
   if (columns.empty()) return;
   const Inspection* first = columns.front().inspection.get();
   if (options.top_line) draw_top(list, rect, recording, first, frame);
   // Where there is no picture the tracks say what the cube stands on.
-  ImageViewOptions image{
-      .tracks = !recording.pictures, .tail_frames = 0, .residuals = options.residuals};
-  image.cube = options.cube;
-  image.cube_height_sides = options.cube_height_sides;
-  image.wireframe = options.wireframe;
-  image.model = options.model;
-  image.undistorted = options.undistorted;
-  image.exaggeration = options.exaggeration;
+  ViewOptions image = options;
+  image.show.tracks = !recording.pictures;
+  image.show.tails = image.show.gravity = image.show.legend = false;
+  image.colors = nullptr;
   image.reference = first;
   if (first != nullptr) image.reference_side = common_cube_side(columns, *first, options.cube_side);
-  image.truth = options.truth;
-  image.gravity = false;
-  image.legend = false;
   const auto places = compare_places(
       rect, static_cast<int>(columns.size()), aspect_of(recording.camera), options.top_line);
   const PictureZoom zoom =

@@ -3,11 +3,10 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/picture_zoom.h"
 #include "ui/views/compare/compare_column.h"
+#include "ui/views/overlay/view_options.h"
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,24 +17,9 @@ struct ImDrawList;
 namespace gpo {
 
 class PictureTexture;
-struct SolidModel;
 
 /// Finished inspections of one window of one recording, a method or setting each.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
-
-struct CompareOptions {
-  std::optional<PictureZoom> zoom = {};  ///< of all columns; nothing: around the cubes
-  bool cube = true;
-  double cube_side = 0;          ///< of the first one [unit of its estimate]; 0: the default
-  double cube_height_sides = 1;  ///< more: a tower
-  bool wireframe = false;
-  std::shared_ptr<const SolidModel> model = {};  ///< in the cube's place; null: none
-  bool undistorted = false;
-  int exaggeration = 1;  ///< see `ImageViewOptions`; the reference is the first column
-  bool truth = true;
-  bool residuals = false;
-  bool top_line = true;  ///< which frame of which recording, and what the cubes' colors mean
-};
 
 /// Heading, picture and caption of one column.
 struct ColumnPlace {
@@ -58,7 +42,7 @@ PictureZoom compare_zoom(std::span<const CompareColumn> columns,
                          const Recording& recording,
                          int frame,
                          const Eigen::Vector2d& picture_size,
-                         const CompareOptions& options);
+                         const ViewOptions& options);
 
 /// One column each: heading in the method's color, the picture of frame `frame` (counts in the
 /// recording), the same part in all columns, with that method's cube and thin and gray the true
@@ -70,7 +54,7 @@ void draw_compare_view(ImDrawList& list,
                        const Recording& recording,
                        int frame,
                        PictureTexture* picture,
-                       const CompareOptions& options);
+                       const ViewOptions& options);
 
 /// The same of inspections alone.
 void draw_compare_view(ImDrawList& list,

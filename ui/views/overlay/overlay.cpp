@@ -12,6 +12,7 @@
 #include <imgui.h>
 
 namespace gpo {
+
 namespace {
 
 constexpr float kFontSize = 16;   // of Font::regular at 96 dpi
@@ -214,6 +215,71 @@ void draw_badge(ImDrawList& list,
                ImVec2(at.x, at.y + title.height + gap),
                imgui_color(Role::text),
                lines.c_str());
+}
+
+using Eigen::Vector2d;
+
+void write_text(
+    ImDrawList& list, Font which, const Vector2d& at, const std::string& text, std::uint32_t rgb) {
+  const ImFont* f = font(which);
+  const ImVec2 place(std::round(static_cast<float>(at.x())),
+                     std::round(static_cast<float>(at.y())));
+  list.AddText(f, f->FontSize, place, imgui_color(rgb), text.c_str());
+}
+
+double text_width(Font which, const std::string& text) {
+  const ImFont* f = font(which);
+  return f->CalcTextSizeA(f->FontSize, 1e6F, 0, text.c_str()).x;
+}
+
+std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width) {
+  for (const std::string& text : texts)
+    if (text_width(which, text) <= width) return text;
+  std::string text = *std::prev(texts.end());
+  const auto cut = [&] {
+    do text.pop_back();
+    while (!text.empty() && (text.back() & 0xC0) == 0x80);
+  };
+  while (!text.empty() && text_width(which, text + "\u2026") > width) cut();
+  return text + "\u2026";
+}
+
+using Eigen::Vector2d;
+
+std::vector<Vector2d> points_along(std::span<const Vector2d> line, double spacing) {
+  std::vector<Vector2d> points;
+  double next = 0;  // from the start of the segment
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vector2d step = line[i] - line[i - 1];
+    const double length = step.norm();
+    for (; next <= length && length > 0; next += spacing)
+      points.push_back(line[i - 1] + next / length * step);
+    next -= length;
+  }
+  return points;
+}
+
+std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d> line,
+                                                        std::span<const double> pattern) {
+  std::vector<std::pair<Vector2d, Vector2d>> dashes;
+  std::size_t phase = 0;
+  double left = pattern.front();  // of the pattern's current length
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vector2d step = line[i] - line[i - 1];
+    const double length = step.norm();
+    for (double at = 0; at < length;) {
+      const bool bends = at + left >= length;  // before the pattern goes on
+      const double end = bends ? length : at + left;
+      if (phase % 2 == 0)
+        dashes.emplace_back(line[i - 1] + at / length * step, line[i - 1] + end / length * step);
+      left -= end - at;
+      at = end;
+      if (bends) continue;
+      phase = (phase + 1) % pattern.size();
+      left = pattern[phase];
+    }
+  }
+  return dashes;
 }
 
 }  // namespace gpo

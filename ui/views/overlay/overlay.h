@@ -2,12 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/look/rect.h"
 
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 struct ImDrawList;
 struct ImVec2;
@@ -62,5 +68,26 @@ void draw_badge(ImDrawList& list,
                 std::uint32_t rgb,
                 const std::string& heading,
                 const std::string& text);
+
+/// One line from its upper left corner on, on whole pixels.
+void write_text(ImDrawList& list,
+                Font which,
+                const Eigen::Vector2d& at,
+                const std::string& text,
+                std::uint32_t rgb = color_of(Role::text));
+
+/// [px]
+double text_width(Font which, const std::string& text);
+
+/// The first of the texts that is not wider; else the last one, cut.
+std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width);
+
+/// Points every `spacing` along a polyline, from its start on.
+std::vector<Eigen::Vector2d> points_along(std::span<const Eigen::Vector2d> line, double spacing);
+
+/// The pieces of a polyline that lie under a pattern of lengths, drawn and left out in turn, over
+/// and over. Bends within a piece are kept: two points a straight piece.
+std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> dashes_along(
+    std::span<const Eigen::Vector2d> line, std::span<const double> pattern);
 
 }  // namespace gpo

@@ -8,9 +8,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"
 #include "ui/views/overlay/track_colors.h"
-#include "ui/views/picture/cube_drawing.h"
 #include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/model_drawing.h"
 #include "ui/views/picture/occlusion.h"
 #include "ui/views/picture/picture_drawing.h"
 
@@ -27,6 +25,9 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr int kTailFrames = 10;
+constexpr double kResidualMagnification = 20;
+
 /// One frame of one inspection on its way to the screen.
 struct Canvas {
   ImDrawList& list;
@@ -34,7 +35,7 @@ struct Canvas {
   const Inspection& inspection;
   int frame;  ///< in the window
   PictureMapping mapping;
-  const ImageViewOptions& options;
+  const ViewOptions& options;
   float scale;
   const PictureTexture* picture;  ///< null: none
 
@@ -67,12 +68,12 @@ struct Canvas {
 
 void draw_tails(const Canvas& canvas) {
   const Tracks& tracks = *canvas.inspection.tracks;
-  const int oldest = std::max(0, canvas.frame - canvas.options.tail_frames);
+  const int oldest = std::max(0, canvas.frame - kTailFrames);
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
     const std::uint32_t rgb = canvas.look(canvas.frame, track).rgb;
     for (int i = oldest; i < canvas.frame; ++i) {
-      const double age = static_cast<double>(canvas.frame - i) / canvas.options.tail_frames;
+      const double age = static_cast<double>(canvas.frame - i) / kTailFrames;
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
                           canvas.at(tracks.raw_px[i + 1].col(track)),
                           imgui_color(rgb, 0.15 + 0.6 * (1 - age)),
@@ -95,8 +96,8 @@ void draw_tracks(const Canvas& canvas) {
 
 void draw_residuals(const Canvas& canvas) {
   for (const ResidualVector& residual : residual_vectors(canvas.inspection, canvas.frame)) {
-    const Vector2d tip = residual.observed_px + canvas.options.residual_magnification *
-                                                    (residual.predicted_px - residual.observed_px);
+    const Vector2d tip = residual.observed_px +
+                         kResidualMagnification * (residual.predicted_px - residual.observed_px);
     const ImVec2 from = canvas.at(residual.observed_px), to = canvas.at(tip);
     canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * canvas.scale);
     canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * canvas.scale);
@@ -114,7 +115,7 @@ std::optional<CubePicture> reference_cube(const Canvas& canvas) {
 }
 
 bool exaggerates(const Canvas& canvas) {
-  return canvas.options.exaggeration > 1 && reference_cube(canvas).has_value();
+  return canvas.options.show.exaggeration > 1 && reference_cube(canvas).has_value();
 }
 
 /// What is nearer than the cube comes back over it: the picture, and the tracks that say so.
@@ -129,7 +130,7 @@ void draw_occluders(const Canvas& canvas,
     for (const auto& triangle : occluder.triangles_raw_px)
       draw_part(canvas.list, canvas.camera(), *canvas.picture, canvas.mapping, triangle);
     canvas.list.PopClipRect();
-    if (!canvas.options.tracks) continue;
+    if (!canvas.options.show.tracks) continue;
     for (int track = 0; track < tracks.track_count(); ++track)
       if (tracks.seen(canvas.frame, track) &&
           plane_of_track(*canvas.inspection.window, canvas.frame, track) == occluder.plane)
@@ -158,16 +159,16 @@ void draw_standing(const Canvas& canvas, const CubePicture& cube) {
 }
 
 void draw_cubes(const Canvas& canvas) {
-  const ImageViewOptions& options = canvas.options;
+  const ViewOptions& options = canvas.options;
   auto cube = canvas.estimated_cube();
   const auto reference =
-      options.exaggeration > 1 ? reference_cube(canvas) : std::optional<CubePicture>();
+      options.show.exaggeration > 1 ? reference_cube(canvas) : std::optional<CubePicture>();
   const bool far_off = cube && reference;
-  if (far_off) cube = exaggerated(*cube, *reference, options.exaggeration);
+  if (far_off) cube = exaggerated(*cube, *reference, options.show.exaggeration);
   // A body would hide what it is held against.
-  const bool body = !options.wireframe && !far_off;
+  const bool body = !options.show.wireframe && !far_off;
   if (cube && body) draw_standing(canvas, *cube);
-  if (const auto truth = canvas.true_cube(); truth && options.truth)
+  if (const auto truth = canvas.true_cube(); truth && options.show.truth)
     draw_true_cube(canvas.list, canvas.mapping, *truth);
   if (cube && !body) draw_wireframe(canvas.list, canvas.mapping, *cube);
 }
@@ -175,7 +176,7 @@ void draw_cubes(const Canvas& canvas) {
 /// Of the frame, by its estimated pose; nothing where gravity is not known.
 std::vector<std::vector<Vector2d>> horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
-  if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.gravity) return {};
+  if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
   return horizon_in_picture(canvas.camera(), canvas.pose(), -inspection.inertial->gravity_m_s2);
 }
 
@@ -217,42 +218,41 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
 
 std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
-  const ImageViewOptions& options = canvas.options;
+  const ViewOptions& options = canvas.options;
   std::vector<LegendRow> rows;
-  if (options.tracks) rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
+  if (options.show.tracks)
+    rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   const auto add = [&rows](Sign sign, Role role, std::string text) {
     rows.push_back(LegendRow{sign, color_of(role), std::move(text)});
   };
-  if (inspection.initialization->ok && options.residuals)
-    add(Sign::line,
-        Role::residual,
-        fmt::format("residuals × {:g}", options.residual_magnification));
+  if (inspection.initialization->ok && options.show.residuals)
+    add(Sign::line, Role::residual, fmt::format("residuals × {:g}", kResidualMagnification));
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon");
-  if (options.cube && inspection.cube)
+  if (options.show.cube && inspection.cube)
     add(Sign::square,
         Role::cube_base,
         options.model ? "model on the estimated plane" : "cube on the estimated plane");
-  if (options.cube && !options.model_error.empty())
+  if (options.show.cube && !options.model_error.empty())
     add(Sign::none, Role::warning, options.model_error);
-  if (options.cube && options.truth && canvas.true_cube())
+  if (options.show.cube && options.show.truth && canvas.true_cube())
     add(Sign::square, Role::truth, std::string("true cube, dashed"));
-  if (options.cube && inspection.cube && exaggerates(canvas))
+  if (options.show.cube && inspection.cube && exaggerates(canvas))
     add(Sign::none,
         Role::warning,
         fmt::format("cube's distance from {} × {}",
                     canvas.true_cube() ? "the true one" : "the first one",
-                    options.exaggeration));
+                    options.show.exaggeration));
   return rows;
 }
 
 /// Everything that needs the frame to be in the window.
 void draw_results(const Canvas& canvas) {
-  const ImageViewOptions& options = canvas.options;
-  if (options.tracks && options.tail_frames > 0) draw_tails(canvas);
-  if (options.tracks) draw_tracks(canvas);
-  if (options.residuals) draw_residuals(canvas);
+  const ViewOptions& options = canvas.options;
+  if (options.show.tracks && options.show.tails) draw_tails(canvas);
+  if (options.show.tracks) draw_tracks(canvas);
+  if (options.show.residuals) draw_residuals(canvas);
   draw_horizon(canvas);
-  if (options.cube) draw_cubes(canvas);
+  if (options.show.cube) draw_cubes(canvas);
 }
 
 std::string heading(const Inspection& inspection, int frame, bool undistorted) {
@@ -278,10 +278,10 @@ void draw_image_view(ImDrawList& list,
                      int frame,
                      PictureTexture* picture,
                      const PictureZoom& zoom,
-                     const ImageViewOptions& options) {
+                     const ViewOptions& options) {
   const Camera& camera = inspection.recording->camera;
   const int first = inspection.window->start, count = inspection.window->frame_count();
-  const PictureMapping mapping = map_picture(camera, rect, zoom, options.undistorted);
+  const PictureMapping mapping = map_picture(camera, rect, zoom, options.show.undistorted);
   const Canvas canvas{
       list, rect, inspection, frame - first, mapping, options, overlay_scale(), picture};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
@@ -296,9 +296,9 @@ void draw_image_view(ImDrawList& list,
     rows.push_back(
         {Sign::none, 0, fmt::format("outside of the window {}–{}", first, first + count - 1)});
   }
-  if (options.legend)
+  if (options.show.legend)
     draw_legend(
-        list, rect, Corner::top_left, heading(inspection, frame, options.undistorted), rows);
+        list, rect, Corner::top_left, heading(inspection, frame, options.show.undistorted), rows);
   if (inside && !inspection.initialization->ok)
     draw_badge(
         list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);

@@ -116,11 +116,7 @@ void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string
   const ImVec2 at(std::round(corner.x), std::round(corner.y - size.y - 6 * s));
   list.AddRectFilled(
       at, {std::round(at.x + size.x + 16 * s), corner.y}, imgui_color(Role::background, 0.8));
-  list.AddText(f,
-               f->FontSize,
-               {std::round(at.x + 8 * s), std::round(at.y + 3 * s)},
-               imgui_color(Role::text),
-               text.c_str());
+  write_text(list, Font::small, {at.x + 8 * s, at.y + 3 * s}, text);
 }
 
 }  // namespace gpo

@@ -8,7 +8,6 @@
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/overlay_text.h"
 
 #include <algorithm>
 

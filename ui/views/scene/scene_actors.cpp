@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include <Eigen/Core>
+#include <vtkCamera.h>
 #include <vtkCellData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
@@ -70,6 +72,15 @@ vtkSmartPointer<vtkActor> Shapes::actor(double size_px) const {
   actor->GetProperty()->SetPointSize(static_cast<float>(size_px));
   actor->GetProperty()->SetRenderPointsAsSpheres(vertices_->GetNumberOfCells() > 0);
   return actor;
+}
+
+void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera) {
+  const Eigen::Vector3d position = eye(camera);
+  const Eigen::Vector3d up = -view_axes(camera).col(1);
+  vtk.SetPosition(position.x(), position.y(), position.z());
+  vtk.SetFocalPoint(camera.target.x(), camera.target.y(), camera.target.z());
+  vtk.SetViewUp(up.x(), up.y(), up.z());
+  vtk.SetViewAngle(camera.view_angle_deg);
 }
 
 }  // namespace gpo

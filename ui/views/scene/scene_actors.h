@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/look/orbit_camera.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,6 +15,8 @@
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
+
+class vtkCamera;
 
 namespace gpo {
 
@@ -43,5 +47,8 @@ class Shapes {
   vtkNew<vtkCellArray> vertices_, lines_, faces_;
   vtkNew<vtkUnsignedCharArray> colors_;  ///< one a cell: of one kind of cells only
 };
+
+/// Makes VTK see what the orbit camera sees.
+void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
 }  // namespace gpo

@@ -14,7 +14,6 @@
 #include "ui/views/scene/scene_actors.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/uncertainty_geometry.h"
-#include "ui/views/scene/vtk_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +29,7 @@ using Eigen::Vector3d;
 struct Stage {
   vtkRenderer& renderer;
   const Inspection& inspection;
-  const SceneViewOptions& options;
+  const ViewOptions& options;
   double scale;
 
   std::uint32_t color(const MapPoint& point, std::uint32_t by_plane) const {
@@ -139,7 +138,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
       points.point(point.position, stage.color(point, color_of(Role::map_point)));
   }
-  stage.add(points, stage.options.point_size_px);
+  stage.add(points, stage.options.show.point_size_px);
 }
 
 /// The planes beside the leading one, each with its tracks in its color.
@@ -153,7 +152,7 @@ void add_patches(const Stage& stage) {
       points.point(point.position, stage.color(point, rgb));
     stage.add(face, 1);
     stage.add(border, 1.8);
-    stage.add(points, stage.options.point_size_px);
+    stage.add(points, stage.options.show.point_size_px);
   }
 }
 
@@ -217,7 +216,7 @@ void add_model(const Stage& stage, const SolidModel& model) {
 void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   const Initialization& estimate = *stage.inspection.initialization;
   const auto& uncertainty = *estimate.uncertainty;
-  const double enlarged = stage.options.uncertainty;
+  const double enlarged = stage.options.show.uncertainty;
   const int stride = frustum_stride(stage.inspection);
   Shapes lines, arrow_line, face;
   const auto count = std::min(estimate.cameras.size(), uncertainty.center_covariances.size());
@@ -246,7 +245,7 @@ void build(const Stage& stage, bool above) {
   std::optional<PlaneGrid> grid;
   if (inspection.initialization->ok)
     grid = plane_grid(inspection, cube_side(inspection, stage.options.cube_side));
-  if (stage.options.truth) add_truth(stage, grid);
+  if (stage.options.show.truth) add_truth(stage, grid);
   if (!grid) {
     add_refused(stage);
     add_cameras(stage);
@@ -256,7 +255,7 @@ void build(const Stage& stage, bool above) {
   add_points(stage, *grid);
   add_patches(stage);
   add_cameras(stage);
-  if (stage.options.cube && inspection.cube) {
+  if (stage.options.show.cube && inspection.cube) {
     if (stage.options.model)
       add_model(stage, *stage.options.model);
     else
@@ -266,7 +265,7 @@ void build(const Stage& stage, bool above) {
 }
 
 /// What moves is made of the same shapes.
-bool same_shapes(SceneViewOptions a, SceneViewOptions b) {
+bool same_shapes(ViewOptions a, ViewOptions b) {
   a.moving = b.moving = false;
   return a == b;
 }
@@ -291,8 +290,8 @@ void set_background(vtkRenderer& renderer) {
 
 }  // namespace
 
-bool shows_uncertainty(const Inspection& inspection, const SceneViewOptions& options) {
-  return options.uncertainty > 0 && inspection.initialization->ok &&
+bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options) {
+  return options.show.uncertainty > 0 && inspection.initialization->ok &&
          inspection.initialization->uncertainty.has_value();
 }
 
@@ -307,7 +306,7 @@ struct SceneView::Pipeline {
   Inspection inspection;
   OrbitCamera camera;
   bool above = true;
-  SceneViewOptions options;
+  ViewOptions options;
   cv::Size size;
   double scale = 0;
   Theme theme = Theme::dark;
@@ -331,7 +330,7 @@ SceneView::~SceneView() { pipeline_->window->Finalize(); }
 
 unsigned SceneView::render(const Inspection& inspection,
                            const OrbitCamera& camera,
-                           const SceneViewOptions& options,
+                           const ViewOptions& options,
                            int width,
                            int height) {
   Pipeline& now = *pipeline_;

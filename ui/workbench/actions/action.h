@@ -37,6 +37,7 @@ struct Action {
   std::function<std::string(const WorkbenchState&)> value =
       {};  ///< its state, for the help window; else on or off
   std::function<bool(const WorkbenchState&)> checked = {};  ///< null: not a switch
+  std::string submenu = {};  ///< of `menu`; empty: it is in the menu itself
   bool needs_recording = true;
   bool repeats = false;      ///< while its key is held
   bool held = false;         ///< run with "on" when its key goes down, with "off" when it comes up

@@ -54,4 +54,6 @@ void apply(WorkbenchState& state, const Command& command) {
              command);
 }
 
+void push(Commands& commands, const Command& command) { commands.push_back(command); }
+
 }  // namespace gpo

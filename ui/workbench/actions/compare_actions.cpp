@@ -147,30 +147,31 @@ void add_curves(std::vector<Action>& table) {
   curve.needs_recording = false;
   curve.run = switch_curve;
   table.push_back(curve);
-  Action close = plain("close-results",
-                       "Close the opened results",
-                       "View",
-                       {},
-                       "The curves show this recording again, no longer those of a results.csv",
-                       [](State& s) {
-                         s.experiment.reset();
-                         s.experiment_name.clear();
-                       });
-  close.needs_recording = false;
-  table.push_back(close);
+  table.push_back(
+      anytime(plain("close-results",
+                    "Close the opened results",
+                    "View",
+                    {},
+                    "The curves show this recording again, no longer those of a results.csv",
+                    [](State& s) {
+                      s.experiment.reset();
+                      s.experiment_name.clear();
+                    })));
 }
 
 }  // namespace
 
 void add_compare_actions(std::vector<Action>& table) {
-  table.push_back(toggle("view compare",
-                         "Compare",
+  const Pane& pane = *find_pane("compare");
+  table.push_back(toggle(std::string("view ") + pane.key,
+                         pane.title,
                          {letter('C')},
-                         "The compared methods side by side on the same frame",
+                         pane.tooltip,
                          [](State& s) -> bool& { return s.panes.compare; }));
-  add_choice(table);
-  add_looks(table);
-  add_curves(table);
+  table.back().submenu = "Open";
+  add_submenu(table, "Compare", add_choice);
+  add_submenu(table, "Compare", add_looks);
+  add_submenu(table, "Compare", add_curves);
 }
 
 }  // namespace gpo

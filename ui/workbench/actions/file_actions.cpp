@@ -9,11 +9,12 @@
 #include "engine/inspection/report/result_text.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
-#include "ui/workbench/session/picture_size.h"
 #include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/script.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -56,6 +57,7 @@ void export_video(State& state, const Arguments& arguments) {
 /// A file of the current inspection.
 Action export_of(const std::string& what, std::string title, std::string (*text)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, ""};
+  action.submenu = "Export";
   action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
   action.arguments = "FILE";
   action.run = [what, text](State& state, const Arguments& arguments) {
@@ -74,6 +76,7 @@ Action trajectory_export(const std::string& what,
                          std::string tooltip,
                          CameraPath (*path)(const State&)) {
   Action action{"export " + what, std::move(title), "File", {}, std::move(tooltip)};
+  action.submenu = "Export";
   action.arguments = "FILE [tum|euroc|kitti]";
   action.run = [what, path](State& state, const Arguments& arguments) {
     expect_count(("export " + what).c_str(), arguments, 1, 2);
@@ -143,14 +146,12 @@ void add_open(std::vector<Action>& table) {
     state.wishes.open = arguments[0];
   };
   table.push_back(open);
-  Action example = plain("open-example",
-                         "Open the example",
-                         "File",
-                         {},
-                         "Opens the recording that comes with the program",
-                         [](State& s) { s.wishes.open_example = true; });
-  example.needs_recording = false;
-  table.push_back(example);
+  table.push_back(anytime(plain("open-example",
+                                "Open the example",
+                                "File",
+                                {},
+                                "Opens the recording that comes with the program",
+                                [](State& s) { s.wishes.open_example = true; })));
 }
 
 /// Without a name: where it was saved before; the first time the window asks.
@@ -182,18 +183,16 @@ void add_sessions(std::vector<Action>& table) {
   save.arguments = "[FILE]";
   save.run = save_session;
   table.push_back(save);
-  Action last = plain("continue",
-                      "Continue the last session",
-                      "File",
-                      {},
-                      "Opens what was open when the program was closed",
-                      [](State& s) {
-                        if (!std::filesystem::exists(last_session_file()))
-                          throw InputError("no session was closed yet");
-                        s.wishes.open = last_session_file();
-                      });
-  last.needs_recording = false;
-  table.push_back(last);
+  table.push_back(anytime(plain("continue",
+                                "Continue the last session",
+                                "File",
+                                {},
+                                "Opens what was open when the program was closed",
+                                [](State& s) {
+                                  if (!std::filesystem::exists(last_session_file()))
+                                    throw InputError("no session was closed yet");
+                                  s.wishes.open = last_session_file();
+                                })));
 }
 
 }  // namespace
@@ -215,9 +214,8 @@ void add_file_actions(std::vector<Action>& table) {
                     "Save a view as a picture",
                     "File",
                     {},
-                    "Writes the window, or one view alone, as a PNG of any size: picture, compare"};
-  for (const auto& panes : {side_panes(), drawers()})
-    for (const Pane& pane : panes) screenshot.tooltip += std::string(", ") + pane.key;
+                    fmt::format("Writes the window, or one view alone, as a PNG of any size: {}",
+                                fmt::join(pane_names(), ", "))};
   screenshot.arguments = "FILE [VIEW] [WxH]";
   screenshot.needs_recording = false;
   screenshot.run = take_screenshot;
@@ -249,11 +247,10 @@ void add_file_actions(std::vector<Action>& table) {
                          [](State& s) -> bool& { return s.metric; });
   metric.menu = "File";
   table.push_back(metric);
-  Action quit = plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
-    s.wishes.quit = true;
-  });
-  quit.needs_recording = false;
-  table.push_back(quit);
+  table.push_back(
+      anytime(plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
+        s.wishes.quit = true;
+      })));
 }
 
 }  // namespace gpo

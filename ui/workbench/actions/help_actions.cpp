@@ -51,14 +51,12 @@ void add_help_actions(std::vector<Action>& table) {
   help.checked = [](const State& s) { return s.show_help; };
   help.needs_recording = false;
   table.push_back(help);
-  Action esc = plain("escape",
-                     "Cancel, or close what is open",
-                     "Help",
-                     {key(GLFW_KEY_ESCAPE, "Esc")},
-                     "Closes the list of keys, else stops the computation",
-                     escape);
-  esc.needs_recording = false;
-  table.push_back(esc);
+  table.push_back(anytime(plain("escape",
+                                "Cancel, or close what is open",
+                                "Help",
+                                {key(GLFW_KEY_ESCAPE, "Esc")},
+                                "Closes the list of keys, else stops the computation",
+                                escape)));
 }
 
 }  // namespace gpo

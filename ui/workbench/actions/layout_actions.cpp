@@ -20,10 +20,10 @@ constexpr double kLeastZoom = 0.5, kMostZoom = 3, kZoomStep = 0.1;
 WindowPart part_in(const Arguments& arguments, WindowPart now) {
   expect_count("maximize", arguments, 0, 1);
   if (arguments.empty()) return now == WindowPart::none ? WindowPart::picture : WindowPart::none;
-  return choice<WindowPart>(arguments[0]);
+  return choice<WindowPart>(arguments[0] == "image" ? "picture" : arguments[0]);
 }
 
-void add_maximize(std::vector<Action>& table) {
+Action maximize_part() {
   Action maximize{
       "maximize",
       "Maximize the picture",
@@ -38,10 +38,11 @@ void add_maximize(std::vector<Action>& table) {
   maximize.checked = [](const State& s) { return s.division.maximized != WindowPart::none; };
   maximize.value = [](const State& s) { return std::string(to_string(s.division.maximized)); };
   maximize.needs_recording = false;
-  table.push_back(maximize);
+  return maximize;
 }
 
 void add_parts(std::vector<Action>& table) {
+  table.push_back(maximize_part());
   table.push_back(toggle("column",
                          "Left column",
                          {key(GLFW_KEY_F9, "F9")},
@@ -57,14 +58,13 @@ void add_parts(std::vector<Action>& table) {
                          {key(GLFW_KEY_F11, "F11")},
                          "The window takes the whole screen",
                          [](State& s) -> bool& { return s.fullscreen; }));
-  Action reset = plain("reset-layout",
-                       "Reset the layout",
-                       "View",
-                       {},
-                       "Column, picture, side pane and drawer share the window as at the start",
-                       [](State& s) { s.division = {}; });
-  reset.needs_recording = false;
-  table.push_back(reset);
+  table.push_back(
+      anytime(plain("reset-layout",
+                    "Reset the layout",
+                    "View",
+                    {},
+                    "Column, picture, side pane and drawer share the window as at the start",
+                    [](State& s) { s.division = {}; })));
 }
 
 void set_zoom(State& state, double zoom) {
@@ -113,9 +113,8 @@ void add_text_sizes(std::vector<Action>& table) {
 }  // namespace
 
 void add_layout_actions(std::vector<Action>& table) {
-  add_maximize(table);
-  add_parts(table);
-  add_text_sizes(table);
+  add_submenu(table, "Parts of the window", add_parts);
+  add_submenu(table, "Theme and text", add_text_sizes);
 }
 
 }  // namespace gpo

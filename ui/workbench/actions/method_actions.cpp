@@ -4,7 +4,6 @@
 #include "engine/initialize/method_defaults.h"
 #include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
-#include "ui/look/method_help.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/undo.h"
 
@@ -117,7 +116,7 @@ Action choice_of_method(const MethodChoice& method) {
                         method.row().title,
                         "Method",
                         {},
-                        method_help(method.key()),
+                        method.row().help,
                         [method](State& s) {
                           Settings settings = s.settings;
                           settings.options.method = method;

@@ -13,6 +13,12 @@
 
 namespace gpo {
 
+void add_submenu(std::vector<Action>& table, const char* title, void (*add)(std::vector<Action>&)) {
+  const std::size_t before = table.size();
+  add(table);
+  for (std::size_t i = before; i < table.size(); ++i) table[i].submenu = title;
+}
+
 Shortcut key(int glfw_key, std::string label, bool shift) {
   return {glfw_key, shift, false, 0, std::move(label)};
 }
@@ -37,6 +43,11 @@ Action plain(std::string name,
     expect_count(name.c_str(), arguments, 0, 0);
     run(state);
   };
+  return action;
+}
+
+Action anytime(Action action) {
+  action.needs_recording = false;
   return action;
 }
 

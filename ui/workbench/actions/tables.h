@@ -21,6 +21,9 @@ void add_help_actions(std::vector<Action>& table);
 /// The row that chooses a method.
 Action choice_of_method(const MethodChoice& method);
 
+/// The rows that `add` appends are in a submenu of their menu.
+void add_submenu(std::vector<Action>& table, const char* title, void (*add)(std::vector<Action>&));
+
 // How rows are written.
 
 /// A key without modifiers, or with Shift.
@@ -37,6 +40,9 @@ Action plain(std::string name,
              std::vector<Shortcut> shortcuts,
              std::string tooltip,
              std::function<void(WorkbenchState&)> run);
+
+/// The same also where no recording is open.
+Action anytime(Action action);
 
 /// Reads the one argument of an action, or the one at `index`, as a number. Throws InputError that
 /// names the action.

@@ -3,8 +3,8 @@
 #include "engine/base/error.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/playing.h"
+#include "ui/workbench/time_span.h"
 #include "ui/workbench/undo.h"
-#include "ui/workbench/window_span.h"
 
 #include <algorithm>
 #include <tuple>

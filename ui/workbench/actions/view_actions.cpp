@@ -4,9 +4,7 @@
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <tuple>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -17,45 +15,45 @@ namespace {
 
 using State = WorkbenchState;
 
-/// Off, as it is, enlarged 10 and 100 times, off.
-void enlarge_uncertainty(ViewToggles& view) {
-  view.uncertainty = view.uncertainty == 0     ? 1
-                     : view.uncertainty >= 100 ? 0
-                                               : 10 * view.uncertainty;
+std::vector<Shortcut> letters(char one) {
+  return one == 0 ? std::vector<Shortcut>{} : std::vector{letter(one)};
 }
 
-std::string uncertainty_text(const ViewToggles& view) {
-  if (view.uncertainty > 1) return "\u00d7" + std::to_string(view.uncertainty);
-  return view.uncertainty == 1 ? "on" : "off";
+/// Throws InputError for an argument that the row does not allow.
+int number_after(const ViewNumber& row, int now, const Arguments& arguments) {
+  if (arguments.empty()) {
+    const auto next = std::ranges::upper_bound(row.steps, now);
+    return next == row.steps.end() ? row.steps.front() : *next;
+  }
+  const int wanted = whole_number_in(row.action, arguments);
+  const bool allowed = row.has_steps() ? std::ranges::count(row.steps, wanted) > 0
+                                       : wanted >= row.least && wanted <= row.most;
+  if (allowed) return wanted;
+  throw InputError(
+      row.has_steps()
+          ? fmt::format("{}: '{}', expected {}, {}, {} or {}",
+                        row.action,
+                        arguments[0],
+                        row.steps[0],
+                        row.steps[1],
+                        row.steps[2],
+                        row.steps[3])
+          : fmt::format(
+                "{}: '{}', expected {} to {}", row.action, arguments[0], row.least, row.most));
 }
 
-/// Without a number the next of those that make sense.
-void exaggerate(State& state, const Arguments& arguments) {
-  constexpr std::array kTimes = {1, 5, 20, 100};
-  expect_count("exaggerate", arguments, 0, 1);
-  int& times = state.view.exaggeration;
-  const int wanted = arguments.empty() ? times : whole_number_in("exaggerate", arguments);
-  const auto found = std::ranges::find(kTimes, wanted);
-  if (found == kTimes.end())
-    throw InputError(fmt::format("exaggerate: '{}', expected 1, 5, 20 or 100", arguments[0]));
-  times = wanted;
-  if (arguments.empty()) times = found + 1 == kTimes.end() ? kTimes.front() : *(found + 1);
-}
-
-Action exaggeration() {
-  Action action{"exaggerate",
-                "Exaggerate the cube's error",
-                "View",
-                {letter('D')},
-                "The cube's distance in the picture from the true one, or where there is none from "
-                "the first column's, 5, 20 and 100 times as large as it is"};
-  action.arguments = "[1|5|20|100]";
-  action.value = [](const State& s) {
-    return s.view.exaggeration > 1 ? fmt::format("{}\u00d7", s.view.exaggeration) : "off";
-  };
-  action.checked = [](const State& s) { return s.view.exaggeration > 1; };
+Action number(const ViewNumber& row) {
+  Action action{row.action, row.title, "View", letters(row.letter), row.tooltip};
+  action.arguments = row.arguments;
+  action.submenu = row.submenu;
   action.needs_recording = false;
-  action.run = exaggerate;
+  action.value = [&row](const State& s) { return row.text(s.view.*row.value); };
+  if (row.has_steps())
+    action.checked = [&row](const State& s) { return s.view.*row.value > row.off; };
+  action.run = [&row](State& s, const Arguments& arguments) {
+    expect_count(row.action, arguments, row.has_steps() ? 0 : 1, *row.arguments == 0 ? 0 : 1);
+    s.view.*row.value = number_after(row, s.view.*row.value, arguments);
+  };
   return action;
 }
 
@@ -72,6 +70,7 @@ Action model() {
     return s.model.empty() ? "off" : std::filesystem::path(s.model).filename().string();
   };
   action.checked = [](const State& s) { return !s.model.empty(); };
+  action.submenu = kCubeMenu;
   action.needs_recording = false;
   action.run = [](State& s, const Arguments& arguments) {
     expect_count("model", arguments, 1, 1);
@@ -88,45 +87,16 @@ Action model() {
   return action;
 }
 
-Action point_size() {
-  Action action{"point-size", "Size of points", "View", {}, "Of the scene's points [px]"};
-  action.arguments = "1..20";
-  action.value = [](const State& s) { return fmt::format("{} px", s.view.point_size_px); };
-  action.needs_recording = false;
-  action.run = [](State& s, const Arguments& arguments) {
-    constexpr int kLargest = 20;
-    expect_count("point-size", arguments, 1, 1);
-    const int wanted = whole_number_in("point-size", arguments);
-    if (wanted < 1 || wanted > kLargest)
-      throw InputError(fmt::format("point-size: '{}', expected 1 to {}", arguments[0], kLargest));
-    s.view.point_size_px = wanted;
-  };
-  return action;
-}
-
 void add_toggles(std::vector<Action>& table) {
   for (const ViewToggle& one : kViewToggles) {
-    std::vector<Shortcut> shortcuts;
-    if (one.letter != 0) shortcuts.push_back(letter(one.letter));
     table.push_back(toggle(one.key,
                            one.title,
-                           std::move(shortcuts),
+                           letters(one.letter),
                            one.tooltip,
                            [shown = one.shown](State& s) -> bool& { return s.view.*shown; }));
+    table.back().submenu = one.submenu;
   }
-  Action uncertainty = plain("uncertainty",
-                             "Uncertainty",
-                             "View",
-                             {letter('U')},
-                             "95 % of camera centers and normal in the scene; again: enlarged 10 "
-                             "and 100 times, then off",
-                             [](State& s) { enlarge_uncertainty(s.view); });
-  uncertainty.checked = [](const State& s) { return s.view.uncertainty > 0; };
-  uncertainty.value = [](const State& s) { return uncertainty_text(s.view); };
-  uncertainty.needs_recording = false;
-  table.push_back(uncertainty);
-  table.push_back(exaggeration());
-  table.push_back(point_size());
+  for (const ViewNumber& one : kViewNumbers) table.push_back(number(one));
   table.push_back(model());
 }
 
@@ -163,33 +133,36 @@ void add_panes(std::vector<Action>& table) {
           uncover(s.division, WindowPart::drawer);
         },
         [&pane](const State& s) { return s.panes.drawer == &pane; }));
-  Action shut = plain("view no-drawer",
-                      "Close the drawer",
-                      "View",
-                      {},
-                      "Picture and side pane take all of the height",
-                      [](State& s) { s.panes.drawer = nullptr; });
-  shut.needs_recording = false;
-  table.push_back(shut);
+  table.push_back(anytime(plain("view no-drawer",
+                                "Close the drawer",
+                                "View",
+                                {},
+                                "Picture and side pane take all of the height",
+                                [](State& s) { s.panes.drawer = nullptr; })));
 }
 
-void add_themes(std::vector<Action>& table) {
-  for (const auto& [name, title, theme] : {std::tuple{"theme dark", "Dark theme", Theme::dark},
-                                           {"theme light", "Light theme", Theme::light}}) {
-    Action action = plain(name,
-                          title,
-                          "View",
-                          {},
-                          "Colors of the window; those of methods and data stay",
-                          [theme = theme](State& s) { s.theme = theme; });
-    action.checked = [theme = theme](const State& s) { return s.theme == theme; };
-    action.needs_recording = false;
-    table.push_back(action);
+/// An action a value of what `chosen` returns.
+template <class T>
+void add_choices(std::vector<Action>& table, const std::string& name, T& (*chosen)(State&)) {
+  for (const ChoiceRow<T>& row : choice_rows(T{})) {
+    const auto choose = [&row, chosen](State& s) { chosen(s) = row.value; };
+    table.push_back(anytime(plain(name + row.key, row.title, "View", {}, row.tooltip, choose)));
+    table.back().checked = [&row, chosen](const State& s) {
+      return chosen(const_cast<State&>(s)) == row.value;
+    };
   }
 }
 
+void add_themes(std::vector<Action>& table) {
+  add_choices<Theme>(table, "theme ", [](State& s) -> Theme& { return s.theme; });
+}
+
+void add_colorings(std::vector<Action>& table) {
+  add_choices<Coloring>(table, "color-by ", [](State& s) -> Coloring& { return s.coloring; });
+}
+
 void add_viewpoints(std::vector<Action>& table) {
-  for (const ViewpointRow& row : kViewpoints) {
+  for (const auto& row : kViewpoints) {
     Action action =
         plain(std::string("viewpoint ") + row.key,
               row.title,
@@ -197,22 +170,10 @@ void add_viewpoints(std::vector<Action>& table) {
               {key(GLFW_KEY_KP_0 + row.keypad - '0', std::string("Keypad ") + row.keypad)},
               row.tooltip,
               [&row](State& s) {
-                s.viewpoint = row.viewpoint;
+                s.viewpoint = row.value;
                 s.orbit.reset();
               });
-    action.checked = [&row](const State& s) { return s.viewpoint == row.viewpoint && !s.orbit; };
-    table.push_back(action);
-  }
-}
-
-void add_colorings(std::vector<Action>& table) {
-  for (const ColoringRow& row : kColorings) {
-    Action action = plain(
-        std::string("color-by ") + row.key, row.title, "View", {}, row.tooltip, [&row](State& s) {
-          s.coloring = row.coloring;
-        });
-    action.checked = [&row](const State& s) { return s.coloring == row.coloring; };
-    action.needs_recording = false;
+    action.checked = [&row](const State& s) { return s.viewpoint == row.value && !s.orbit; };
     table.push_back(action);
   }
 }
@@ -260,12 +221,12 @@ void add_cameras(std::vector<Action>& table) {
 
 void add_view_actions(std::vector<Action>& table) {
   add_toggles(table);
-  add_panes(table);
+  add_submenu(table, "Open", add_panes);
   add_compare_actions(table);
-  add_cameras(table);
-  add_viewpoints(table);
-  add_colorings(table);
-  add_themes(table);
+  add_submenu(table, "Zoom", add_cameras);
+  add_submenu(table, "Look at the scene", add_viewpoints);
+  add_submenu(table, "Colors and sizes", add_colorings);
+  add_submenu(table, "Theme and text", add_themes);
   add_layout_actions(table);
 }
 

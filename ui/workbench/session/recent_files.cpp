@@ -7,15 +7,16 @@
 #include "engine/files/output_file.h"
 #include "ui/workbench/session/session_fields.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/session/user_folders.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,5 +105,23 @@ void keep_window(const KeptWindow& window, const WorkbenchState& state) {
       json[field.key] = field.write(state);
   write_quietly(window_file(), json_text(json, 2));
 }
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path user_folder(const char* variable, const fs::path& in_home) {
+  constexpr const char* kName = "gpo-inspector";
+  const char* folder = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const char* home = std::getenv("HOME");      // NOLINT(concurrency-mt-unsafe): nobody sets it
+  if (folder != nullptr && *folder == '/') return fs::path(folder) / kName;
+  return fs::path(home != nullptr ? home : ".") / in_home / kName;
+}
+
+}  // namespace
+
+fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
+
+fs::path user_state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 
 }  // namespace gpo

@@ -28,4 +28,10 @@ struct KeptWindow {
 KeptWindow read_kept_window(WorkbenchState& state);
 void keep_window(const KeptWindow& window, const WorkbenchState& state);
 
+/// The program's own folders in the user's home, after the XDG base directory specification; they
+/// need not exist. What can be computed anew: $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/...
+std::filesystem::path user_cache_folder();
+/// What is remembered: $XDG_STATE_HOME/gpo-inspector, or ~/.local/state/...
+std::filesystem::path user_state_folder();
+
 }  // namespace gpo

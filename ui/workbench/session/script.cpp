@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/script.h"
 
+#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
 #include <sstream>
+
+#include <fmt/format.h>
 
 namespace gpo {
 
@@ -18,6 +21,19 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
     if (line.find_first_not_of(" \t\r") != std::string::npos) lines.push_back({number, line});
   }
   return lines;
+}
+
+cv::Size picture_size(const std::string& text, const std::string& asked_by) {
+  constexpr int kLeast = 16;
+  constexpr int kMost = 8192;
+  const auto possible = [](int side) { return side >= kLeast && side <= kMost; };
+  const auto size = parse_size(text);
+  if (size && possible(size->first) && possible(size->second)) return {size->first, size->second};
+  throw InputError(fmt::format("{}: '{}', expected WIDTHxHEIGHT of {} to {} pixels, e.g. 1280x720",
+                               asked_by,
+                               text,
+                               kLeast,
+                               kMost));
 }
 
 }  // namespace gpo

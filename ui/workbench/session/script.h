@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <opencv2/core/types.hpp>
+
 namespace gpo {
 
 /// One command of a script.
@@ -17,5 +19,9 @@ struct ScriptLine {
 /// One command a line; empty lines and what follows a # are left out. Throws InputError where the
 /// file cannot be read.
 std::vector<ScriptLine> read_script(const std::filesystem::path& file);
+
+/// The size of a picture to draw from "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError
+/// that begins with who asked: an option, a command.
+cv::Size picture_size(const std::string& text, const std::string& asked_by);
 
 }  // namespace gpo

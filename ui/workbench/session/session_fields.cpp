@@ -24,7 +24,13 @@ using State = WorkbenchState;
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 template <class T>
-concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> || Is<T, Division>;
+concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
+    Is<T, Division> || Is<T, ViewToggles>;
+
+template <class T>
+concept HasChoiceRows = requires {
+  choice_rows(T{});
+};
 
 void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
   use("factor", zoom.factor, 1, 64);
@@ -55,6 +61,11 @@ void each_part(Is<Division> auto& division, auto&& use) {
   use("timeline", division.timeline);
 }
 
+void each_part(Is<ViewToggles> auto& view, auto&& use) {
+  for (const ViewToggle& one : kViewToggles) use(one.key, view.*one.shown);
+  for (const ViewNumber& one : kViewNumbers) use(one.key, view.*one.value, one.least, one.most);
+}
+
 /// Each kind of value as a session writes it.
 struct ToJson {
   template <class T>
@@ -81,20 +92,9 @@ struct ToJson {
     for (const std::string& key : setting_keys()) json[key] = setting_text(settings, key);
     return json;
   }
-  Json operator()(const Theme& theme) const { return theme == Theme::light ? "light" : "dark"; }
-  Json operator()(Viewpoint viewpoint) const {
-    return std::ranges::find(kViewpoints, viewpoint, &ViewpointRow::viewpoint)->key;
-  }
-  Json operator()(Coloring coloring) const {
-    return std::ranges::find(kColorings, coloring, &ColoringRow::coloring)->key;
-  }
-  Json operator()(const ViewToggles& view) const {
-    Json json;
-    for (const ViewToggle& one : kViewToggles) json[one.key] = view.*one.shown;
-    json["uncertainty"] = view.uncertainty;
-    json["exaggeration"] = view.exaggeration;
-    json["point_size_px"] = view.point_size_px;
-    return json;
+  template <HasChoiceRows T>
+  Json operator()(const T& value) const {
+    return std::ranges::find(choice_rows(value), value, &ChoiceRow<T>::value)->key;
   }
   Json operator()(const Panes& panes) const {
     Json json = {{"side", panes.side->key}, {"compare", panes.compare}};
@@ -144,32 +144,13 @@ struct FromJson {
       }
     }
   }
-  void operator()(const char* key, Theme& theme) const {
+  template <HasChoiceRows T>
+  void operator()(const char* key, T& value) const {
     std::string name;
     read(key, name);
-    if (name != "dark" && name != "light") read.refuse(key);
-    theme = name == "light" ? Theme::light : Theme::dark;
-  }
-  void operator()(const char* key, Viewpoint& viewpoint) const {
-    std::string name;
-    read(key, name);
-    const auto found = std::ranges::find(kViewpoints, name, &ViewpointRow::key);
-    if (found == kViewpoints.end()) read.refuse(key);
-    viewpoint = found->viewpoint;
-  }
-  void operator()(const char* key, Coloring& coloring) const {
-    std::string name;
-    read(key, name);
-    const auto found = std::ranges::find(kColorings, name, &ColoringRow::key);
-    if (found == kColorings.end()) read.refuse(key);
-    coloring = found->coloring;
-  }
-  void operator()(const char* key, ViewToggles& view) const {
-    const SessionReader toggles = read.object(key);
-    for (const ViewToggle& one : kViewToggles) toggles(one.key, view.*one.shown);
-    toggles("uncertainty", view.uncertainty, 0, 100);
-    toggles("exaggeration", view.exaggeration, 1, 100);
-    toggles("point_size_px", view.point_size_px, 1, 20);
+    const auto found = std::ranges::find(choice_rows(value), name, &ChoiceRow<T>::key);
+    if (found == choice_rows(value).end()) read.refuse(key);
+    value = found->value;
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);

@@ -2,13 +2,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/session/session_reader.h"
+#include "engine/base/error.h"
 #include "ui/workbench/state.h"
 
+#include <algorithm>
 #include <functional>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace gpo {
+
+using SessionJson = nlohmann::ordered_json;
+
+/// Reads one object of a session; remembers where it is, for messages.
+class SessionReader {
+ public:
+  SessionReader(const SessionJson& json, std::string where)
+      : json_(json), where_(std::move(where)) {
+    if (!json.is_object()) throw InputError(where_ + ": expected an object");
+  }
+
+  bool has(const char* key) const { return json_.contains(key) && !json_.at(key).is_null(); }
+  SessionReader object(const char* key) const { return {json_.at(key), where_ + ": " + key}; }
+
+  /// Leaves the value as it is where the key is missing or null.
+  template <class T>
+  void operator()(const char* key, T& value) const {
+    if (!has(key)) return;
+    try {
+      json_.at(key).get_to(value);
+    } catch (const SessionJson::exception&) {
+      refuse(key);
+    }
+  }
+  void operator()(const char* key, double& value, double least, double most) const {
+    (*this)(key, value);
+    if (!(value >= least && value <= most)) refuse(key);
+  }
+  void operator()(const char* key, int& value, int least, int most) const {
+    if (!has(key)) return;
+    const SessionJson& json = json_.at(key);
+    // Neither 1.5 nor a number that only fits after its first bits are cut off.
+    if (!json.is_number_integer() || json < least || json > most) refuse(key);
+    json.get_to(value);
+  }
+  template <int N>
+  void operator()(const char* key, Eigen::Matrix<double, N, 1>& vector) const {
+    std::vector<double> all(vector.data(), vector.data() + N);
+    (*this)(key, all);
+    if (all.size() != N) refuse(key);
+    std::ranges::copy(all, vector.data());
+  }
+  [[noreturn]] void refuse(const char* key) const {
+    throw InputError(
+        fmt::format("{}: {}: {} is not a value for it", where_, key, json_.at(key).dump()));
+  }
+  const SessionJson& json() const { return json_; }
+  const std::string& where() const { return where_; }
+
+ private:
+  const SessionJson& json_;
+  std::string where_;
+};
 
 /// A part of the state that sessions keep. What a session does not name stays at the state's own
 /// default.

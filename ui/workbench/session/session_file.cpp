@@ -8,7 +8,7 @@
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/session/session_fields.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include "ui/workbench/work/adopt.h"
 
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/window_span.h"
+#include "ui/workbench/time_span.h"
 
 #include <algorithm>
 #include <utility>

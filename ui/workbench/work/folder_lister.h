@@ -2,18 +2,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/browsing.h"
-
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace gpo {
+
+/// Something in a folder.
+struct FolderEntry {
+  std::string name;
+  bool folder = false;
+  bool known = false;     ///< `what` is told already
+  std::string what = {};  ///< "EuRoC · 60 frames · 2.0 s", "session"; empty: nothing to open
+  bool operator==(const FolderEntry&) const = default;
+};
 
 /// What is in a folder, as far as it is known.
 struct FolderList {
@@ -47,5 +55,23 @@ class FolderLister {
   FolderList list_;
   std::jthread thread_;  ///< last: it starts when all the others exist
 };
+
+/// What is typed into the field: a folder, and the beginning or a part of a name in it. "~" is the
+/// home folder; what does not begin at the root begins in the working folder; after "//" it begins
+/// at the root anew.
+struct TypedPath {
+  std::filesystem::path folder;
+  std::string name;
+
+  std::filesystem::path whole() const { return folder / name; }
+};
+TypedPath typed_path(const std::string& text);
+
+/// Those whose name has the typed one in it, whatever its case: that begin with it first. Hidden
+/// ones only where the typed name begins with a dot.
+std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const std::string& name);
+
+/// The text with its name as long as all entries that begin with it agree, a lone folder entered.
+std::string completed(const std::string& text, std::span<const FolderEntry> entries);
 
 }  // namespace gpo

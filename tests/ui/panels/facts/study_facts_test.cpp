@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/study_facts.h"
-
 #include "engine/window/window.h"
+#include "ui/panels/facts/candidate_facts.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/track_lives.h"
-
 #include "tests/ui/made_inspection.h"
+#include "ui/panels/facts/track_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/overlay/dash_pattern.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/overlay/verdict_look.h"
-
 #include "tests/ui/made_inspection.h"
+#include "ui/views/overlay/plane_look.h"
 
 #include <gmock/gmock.h>
 

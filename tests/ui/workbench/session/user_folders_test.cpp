@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/session/user_folders.h"
+#include "ui/workbench/session/recent_files.h"
 
 #include <cstdlib>
 
