@@ -219,7 +219,7 @@ cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
   OffscreenContext context(size.width, size.height);
   Gui gui;
   Views views;
-  const WorkerStatus idle;
+  const JobStatus idle;
   const SurveyStatus no_survey;
   context.bind();
   for (int i = 0; i < kFramesToSettle; ++i) {

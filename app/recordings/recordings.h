@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/worker.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
+#include "ui/workbench/work/worker.h"
 
 #include <filesystem>
 #include <functional>

@@ -30,6 +30,7 @@ struct Room {
 
 // clang-format off
 const std::vector<Room> kRooms = {
+    {"engine/base/internal", {"engine/base"}},
     {"engine/base", {}},
     {"engine/geometry", {"engine/base"}},
     {"engine/window", {"engine/base", "engine/geometry"}},
@@ -46,7 +47,7 @@ const std::vector<Room> kRooms = {
     {"engine/frontend/tracking", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine/frontend", {"engine/base", "engine/geometry", "engine/window"}},
     {"engine", {"engine/geometry", "engine/window", "engine/initializers/common", "engine/inertial", "engine/frontend"}},
-    {"engine/initialize", {"engine", "engine/base", "engine/geometry", "engine/window", "engine/inertial", "engine/initializers", "engine/initializers/common", "engine/initializers/certainty", "engine/initializers/plane", "engine/frontend"}},
+    {"engine/initialize", {"engine", "engine/base", "engine/base/internal", "engine/geometry", "engine/window", "engine/inertial", "engine/initializers", "engine/initializers/common", "engine/initializers/certainty", "engine/initializers/plane", "engine/frontend"}},
     {"engine/files", {"engine/base"}},
     {"engine/recording", {"engine/base", "engine/files", "engine/geometry", "engine/window", "engine/truth"}},
     {"engine/recording/pictures", {"engine/base", "engine/files", "engine/geometry", "engine/recording"}},
