@@ -55,16 +55,16 @@ void InputQueue::push(InputEvent event) {
 
 void InputQueue::begin_frame() {
   changed_.clear();
-  ended_ = typed_ = pressed_ = false;
+  frame_ = Frame::empty;
   if (keys_wait_ > 0) --keys_wait_;
 }
 
 bool InputQueue::has_next(Listener listener) const {
-  if (events_.empty() || ended_) return false;
+  if (events_.empty() || frame_ == Frame::ended) return false;
   const InputEvent& next = events_.front();
   if (is_of_keyboard(next) && (listener == Listener::nobody || keys_wait_ > 0)) return false;
-  if (next.kind == Kind::character && pressed_) return false;
-  if (is_command(next) && is_modifier(next.code) && typed_) return false;
+  if (next.kind == Kind::character) return frame_ == Frame::empty || frame_ == Frame::characters;
+  if (has_characters() && is_command(next) && is_modifier(next.code)) return false;
   if (next.kind != Kind::key || listener == Listener::shortcuts || types(next)) return true;
   return !changed_.contains(next.code);
 }
@@ -73,15 +73,13 @@ InputEvent InputQueue::take() {
   InputEvent event = std::move(events_.front());
   events_.pop_front();
   if (event.kind == Kind::key) changed_.insert(event.code);
-  typed_ = typed_ || event.kind == Kind::character;
-  pressed_ = pressed_ || is_command(event);
-  if (event.kind == Kind::button) {
-    ended_ = true;
-    keys_wait_ = kFramesToFocus;
-  }
-  // What comes after Enter belongs to what it has done.
-  if (event.kind == Kind::key && event.action != GLFW_RELEASE && acts(event.code)) {
-    ended_ = true;
+  if (event.kind == Kind::character) frame_ = Frame::characters;
+  if (is_command(event))
+    frame_ = has_characters() ? Frame::characters_and_commands : Frame::commands;
+  // What comes after a click or Enter belongs to what it has done.
+  const bool entered = event.kind == Kind::key && event.action != GLFW_RELEASE && acts(event.code);
+  if (event.kind == Kind::button || entered) {
+    frame_ = Frame::ended;
     keys_wait_ = kFramesToFocus;
   }
   return event;

@@ -43,15 +43,27 @@ class InputQueue {
   bool has_next(Listener listener) const;
   InputEvent take();
   /// Nothing more until the next frame.
-  void end_frame() { ended_ = true; }
+  void end_frame() { frame_ = Frame::ended; }
 
  private:
+  /// What a frame has taken from the keyboard. A field takes a frame's characters first, and none
+  /// while Ctrl is down at its end: characters after a command, and Ctrl after characters, wait for
+  /// the next frame.
+  enum class Frame {
+    empty,
+    characters,
+    commands,
+    characters_and_commands,  ///< in this order
+    ended                     ///< takes nothing more of any kind
+  };
+
+  bool has_characters() const {
+    return frame_ == Frame::characters || frame_ == Frame::characters_and_commands;
+  }
+
   std::deque<InputEvent> events_;
   std::set<int> changed_;  ///< keys, in this frame
-  bool ended_ = false;     ///< no more in this frame
-  /// A field takes a frame's characters first, and none while Ctrl is down at its end: what is
-  /// typed after a key that types nothing, and Ctrl after what was typed, wait for the next frame.
-  bool typed_ = false, pressed_ = false;
+  Frame frame_ = Frame::empty;
   int keys_wait_ = 0;  ///< frames, after what may have given a field the keyboard, or taken it
 };
 

@@ -38,7 +38,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       worker_(std::move(open), changed) {}
 
 PanelInput WorkbenchHost::input() const {
-  const WorkerStatus* writing = movie_ ? &movie_status_ : nullptr;
+  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
   return {state, link.worker, link.survey, timings, gui_.scale(), writing, &link.scan};
 }
 

@@ -57,7 +57,7 @@ class WorkbenchHost {
   Gui& gui_;
   std::filesystem::path example_;
   std::optional<Movie> movie_;  ///< is being written
-  WorkerStatus movie_status_;   ///< how far it is
+  JobStatus movie_status_;      ///< how far it is
   Views views_;
   PictureFetcher fetcher_;
   FolderLister lister_;

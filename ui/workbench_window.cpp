@@ -182,7 +182,7 @@ cv::Mat snapshot_pane(const std::string& view,
   const OffscreenContext context(window.width, window.height);
   Gui gui;
   Views views;
-  const WorkerStatus idle;
+  const JobStatus idle;
   const SurveyStatus no_survey;
   return draw_view(
       view, size, {state, idle, no_survey, false, gui.scale()}, {kWidth, kHeight}, gui, views);

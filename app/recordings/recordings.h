@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/calibration/self_calibration.h"
-#include "engine/inspection/worker.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
+#include "ui/workbench/work/worker.h"
 
 #include <filesystem>
 #include <memory>

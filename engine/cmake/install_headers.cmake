@@ -1,5 +1,5 @@
 # Run by cmake --install: the headers GPO_HEADERS, files or folders below GPO_FROM, to GPO_TO, where they name
-# each other "gpo/..." instead of "engine/...".
+# each other "gpo/..." instead of "engine/...". No header of a folder internal/ is installed.
 set(to "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${GPO_TO}")
 if(IS_ABSOLUTE "${GPO_TO}")
   set(to "$ENV{DESTDIR}${GPO_TO}")
@@ -7,6 +7,7 @@ endif()
 foreach(each ${GPO_HEADERS})
   if(IS_DIRECTORY "${GPO_FROM}/${each}")
     file(GLOB_RECURSE headers RELATIVE "${GPO_FROM}" "${GPO_FROM}/${each}/*.h")
+    list(FILTER headers EXCLUDE REGEX "/internal/")
   else()
     set(headers "${each}")
   endif()

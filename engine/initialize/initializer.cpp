@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/internal/background_job.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/initialize/input_checks.h"
@@ -9,11 +10,8 @@
 #include "engine/initializers/certainty/window_evidence.h"
 
 #include <algorithm>
-#include <condition_variable>
 #include <deque>
 #include <exception>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,20 +56,17 @@ struct Initializer::Impl {
   std::optional<Travel> travel;
   double farthest = 0;  ///< way from the reference frame [plane distance]
   int added = 0;
-  // Shared with the one that solves.
-  std::mutex mutex;
-  std::condition_variable_any changed;
+  // Shared with the job that solves, and guarded by its lock.
   std::vector<std::shared_ptr<const Frame>> frames;
   struct Task {
     int frames;
     std::shared_ptr<const Gyroscope> samples;
   };
   std::deque<Task> tasks;
-  bool solving = false;
   std::exception_ptr thrown;
   LiveStatus status;
   std::shared_ptr<const Initialized> first;  ///< the answer that was ready first
-  std::jthread worker;                       ///< last: it ends before what it uses
+  BackgroundJob job{[this] { return next(); }};
 
   Impl(const Camera& of, const LiveOptions& how, std::optional<Gyroscope> gyro)
       : camera(of), options(how), gyroscope(std::move(gyro)) {
@@ -82,7 +77,7 @@ struct Initializer::Impl {
   }
 
   void start_anew(const std::string& why) {
-    const std::lock_guard lock(mutex);
+    const auto lock = job.lock();
     frames.clear();
     tasks.clear();
     first.reset();
@@ -93,8 +88,8 @@ struct Initializer::Impl {
 
   /// Why the frame cannot go on in this window; empty: it can.
   std::string why_anew(int seen) {
-    const std::lock_guard lock(mutex);
-    if (status.ready || frames.empty() || !tasks.empty() || solving) return "";
+    const auto lock = job.lock();
+    if (status.ready || frames.empty() || job.busy()) return "";
     const auto of = static_cast<double>(frames.front()->ids.size());
     if (status.frames >= options.most_frames)
       return fmt::format("{} frames, and not ready: {}", status.frames, status.reason);
@@ -119,7 +114,7 @@ struct Initializer::Impl {
     }
     farthest = is_first ? 0 : std::max(farthest, step.tau.value_or(0));
     const bool far = farthest >= kTravelShare * kReadyTranslation;
-    const std::lock_guard lock(mutex);
+    const auto lock = job.lock();
     ++added;
     if (frames.size() < static_cast<std::size_t>(options.most_frames))
       frames.push_back(std::make_shared<const Frame>(frame));
@@ -175,7 +170,7 @@ struct Initializer::Impl {
   }
 
   bool is_ready() {
-    const std::lock_guard lock(mutex);
+    const auto lock = job.lock();
     return status.ready;
   }
 
@@ -186,14 +181,14 @@ struct Initializer::Impl {
   void solve(const Task& task, const std::stop_token& stop) {
     std::vector<Frame> window;
     {
-      const std::lock_guard lock(mutex);
+      const auto lock = job.lock();
       if (!worth_solving(task.frames)) return;
       for (int i = 0; i < task.frames; ++i) window.push_back(*frames[i]);
     }
     auto result = std::make_shared<const Initialized>(
         initialize(camera, window, task.samples.get(), options.initialize, stop));
     if (result->initialization.stopped) return;
-    const std::lock_guard lock(mutex);
+    const auto lock = job.lock();
     status.solved_frames = task.frames;
     take(task.frames, std::move(result));
   }
@@ -230,41 +225,30 @@ struct Initializer::Impl {
         turn_deg / sigma_deg);
   }
 
-  void work(const std::stop_token& stop) {
-    std::unique_lock lock(mutex);
-    while (changed.wait(lock, stop, [&] { return !tasks.empty(); })) {
-      const Task task = std::move(tasks.front());
-      tasks.pop_front();
-      solving = true;
-      lock.unlock();
-      std::exception_ptr caught;
+  BackgroundJob::Job next() {
+    if (tasks.empty()) return nullptr;
+    Task task = std::move(tasks.front());
+    tasks.pop_front();
+    return [this, task = std::move(task)](const std::stop_token& stop) {
       try {
         solve(task, stop);
       } catch (...) {
-        caught = std::current_exception();
+        job.publish(stop, [&] { thrown = std::current_exception(); });
       }
-      lock.lock();
-      solving = false;
-      if (caught) thrown = caught;
-      changed.notify_all();
-    }
+    };
   }
 
   void solve_in_background(Task task) {
-    {
-      const std::lock_guard lock(mutex);
-      tasks.push_back(std::move(task));
-    }
-    if (!worker.joinable())
-      worker = std::jthread([this](const std::stop_token& stop) { work(stop); });
-    changed.notify_all();
+    const auto lock = job.lock();
+    tasks.push_back(std::move(task));
+    job.wake();
   }
 
   LiveStatus told() {
-    const std::lock_guard lock(mutex);
+    const auto lock = job.lock();
     if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
     LiveStatus now = status;
-    now.pending = static_cast<int>(tasks.size()) + (solving ? 1 : 0);
+    now.pending = static_cast<int>(tasks.size()) + (job.running() ? 1 : 0);
     return now;
   }
 };
@@ -307,8 +291,8 @@ LiveStatus Initializer::status() const { return impl_->told(); }
 
 LiveStatus Initializer::wait() {
   {
-    std::unique_lock lock(impl_->mutex);
-    impl_->changed.wait(lock, [&] { return impl_->tasks.empty() && !impl_->solving; });
+    auto lock = impl_->job.lock();
+    impl_->job.wait_until_idle(lock);
   }
   return impl_->told();
 }

@@ -150,7 +150,7 @@ class WholeWindow : public View {
  private:
   Gui gui_;
   Views views_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
 };
 

@@ -22,7 +22,7 @@ struct Look {
 class EveryPane : public DrawingTest, public testing::WithParamInterface<Look> {};
 
 cv::Mat drawn(OffscreenContext& context, Gui& gui, Views& views, const WorkbenchState& state) {
-  const WorkerStatus idle;
+  const JobStatus idle;
   const SurveyStatus none;
   const cv::Size size(context.width(), context.height());
   context.bind();

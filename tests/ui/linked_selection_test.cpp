@@ -117,7 +117,7 @@ class LinkedSelection : public DrawingTest {
   Gui gui_;
   Views views_;
   WorkbenchState state_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_ =
       std::make_shared<const Inspection>(made_inspection());

@@ -65,7 +65,7 @@ class PanesTest : public DrawingTest {
   Gui gui_;
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
   bool timings_ = true;
 };

@@ -42,7 +42,7 @@ class UnchangedWindow : public DrawingTest {
   Gui gui_;
   Views views_;
   WorkbenchState state_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
   WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };

@@ -64,7 +64,7 @@ class WaitingPicture : public DrawingTest {
   Views views_;
   std::shared_ptr<const Inspection> inspection_;
   WorkbenchState state_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
   PictureFetcher fetcher_{[this] { come_.release(); }};
 };

@@ -81,7 +81,7 @@ class WorkbenchWindow : public DrawingTest {
   Gui gui_;
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
-  WorkerStatus idle_;
+  JobStatus idle_;
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_;
   WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
@@ -285,7 +285,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     adopt(state, inspection->recording);
     state.inspection = inspection;
     state.message.clear();
-    const WorkerStatus idle;
+    const JobStatus idle;
     const SurveyStatus no_survey;
     glfwSetCursorPos(glfwGetCurrentContext(), 700, 710);  // where nothing tells of itself
     for (int i = 0; i < 3; ++i) {

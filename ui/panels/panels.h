@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/worker.h"
 #include "ui/context/window_picture.h"
 #include "ui/panels/facts/curve_facts.h"
 #include "ui/panels/facts/track_rows.h"
@@ -17,6 +16,7 @@
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/folder_lister.h"
 #include "ui/workbench/work/picture_fetcher.h"
+#include "ui/workbench/work/survey.h"
 
 #include <array>
 #include <map>
@@ -28,15 +28,15 @@ namespace gpo {
 /// What a panel may look at.
 struct PanelInput {
   const WorkbenchState& state;
-  const WorkerStatus& worker;
+  const JobStatus& worker;
   const SurveyStatus& survey;
-  bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
-  float scale = 1;      ///< of the text: sizes for 96 dpi times this
-  const WorkerStatus* writing = nullptr;  ///< how far a movie is; null: none is written
-  const SurveyStatus* scan = nullptr;     ///< how far a scan is; null: none is made
-  PictureFetcher* fetcher = nullptr;      ///< null: drawing waits for pictures itself
-  FolderLister* lister = nullptr;         ///< null: folders are shown as empty
-  std::filesystem::path example = {};     ///< the recording that comes with the program
+  bool timings = true;                 ///< false: milliseconds are dashes, so that pictures compare
+  float scale = 1;                     ///< of the text: sizes for 96 dpi times this
+  const JobStatus* writing = nullptr;  ///< how far a movie is; null: none is written
+  const SurveyStatus* scan = nullptr;  ///< how far a scan is; null: none is made
+  PictureFetcher* fetcher = nullptr;   ///< null: drawing waits for pictures itself
+  FolderLister* lister = nullptr;      ///< null: folders are shown as empty
+  std::filesystem::path example = {};  ///< the recording that comes with the program
 
   /// The last one that was finished; null: none.
   const Inspection* inspection() const { return state.inspection.get(); }

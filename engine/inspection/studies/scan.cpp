@@ -10,20 +10,17 @@
 #include <bit>
 #include <exception>
 #include <limits>
+#include <mutex>
+#include <thread>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 namespace gpo {
 namespace {
 
 constexpr int kMostStarts = 100;
-/// Scans kept of other settings: a hundred starts are some kilobytes.
-constexpr std::size_t kMostScans = 50;
-/// Of the threads in the background: they get what the window and its worker leave.
-constexpr int kNiceness = 10;
 
 ScannedStart scanned(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
@@ -48,20 +45,6 @@ std::optional<ScannedStart> scan_one(Inspector& inspector,
   } catch (const std::exception& error) {
     return ScannedStart{.start = settings.start, .reason = message_of(error)};
   }
-}
-
-StartScan empty_scan(const Settings& settings, const Recording& recording) {
-  const int last = recording.frame_count() - settings.frames;
-  const int step = scan_step(recording.frame_count(), settings.frames);
-  return {.settings = settings, .step = step, .of = last < 0 ? 0 : last / step + 1, .starts = {}};
-}
-
-std::vector<int> starts_left(const StartScan& scan, const Recording& recording) {
-  auto starts = starts_to_scan(recording.frame_count(), scan.settings.frames, scan.step);
-  std::erase_if(starts, [&](int start) {
-    return std::ranges::binary_search(scan.starts, start, {}, &ScannedStart::start);
-  });
-  return starts;
 }
 
 std::string number_cell(const std::optional<double>& value) {
@@ -147,88 +130,6 @@ std::string to_csv(std::span<const ScannedStart> starts, const Recording& record
                         reason);
   }
   return text;
-}
-
-Scan::Scan(std::function<void()> changed)
-    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
-
-Scan::~Scan() {
-  want(nullptr, std::nullopt);
-  thread_.request_stop();
-  thread_.join();
-}
-
-void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings) {
-  const std::lock_guard lock(mutex_);
-  if (settings) settings->start = 0;
-  if (!recording) settings.reset();
-  if (recording == recording_ && settings == wanted_) return;
-  running_.request_stop();
-  if (recording != recording_) kept_.clear();
-  recording_ = std::move(recording);
-  wanted_ = std::move(settings);
-  latest_ = nullptr;
-  if (wanted_) {
-    const auto found = find(*wanted_);
-    if (found == kept_.end()) {
-      kept_.push_back(std::make_shared<const StartScan>(empty_scan(*wanted_, *recording_)));
-    } else {
-      std::rotate(found, found + 1, kept_.end());
-    }
-    if (kept_.size() > kMostScans) kept_.erase(kept_.begin());
-    latest_ = kept_.back();
-  }
-  wake_.notify_one();
-}
-
-Scan::Kept::iterator Scan::find(const Settings& settings) {
-  return std::ranges::find_if(kept_, [&](const auto& one) { return one->settings == settings; });
-}
-
-SurveyStatus Scan::status() const {
-  const std::lock_guard lock(mutex_);
-  if (!latest_) return {};
-  return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
-}
-
-std::shared_ptr<const StartScan> Scan::latest() const {
-  const std::lock_guard lock(mutex_);
-  return latest_;
-}
-
-void Scan::add(const Settings& settings, ScannedStart found) {
-  const std::lock_guard lock(mutex_);
-  const auto kept = find(settings);
-  if (kept == kept_.end()) return;
-  StartScan scan = **kept;
-  const auto place = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
-  scan.starts.insert(place, std::move(found));
-  *kept = std::make_shared<const StartScan>(std::move(scan));
-  if (wanted_ == settings) latest_ = *kept;
-}
-
-void Scan::run(const std::stop_token& stop) {
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread and of those that it starts
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  while (true) {
-    std::shared_ptr<const Recording> recording;
-    Settings settings;
-    std::vector<int> starts;
-    std::stop_token request;
-    {
-      std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return latest_ && !latest_->finished(); })) return;
-      running_ = std::stop_source();
-      request = running_.get_token();
-      recording = recording_;
-      settings = *wanted_;
-      starts = starts_left(*latest_, *recording);
-    }
-    scan_starts(recording, settings, starts, cores, request, [&](ScannedStart found) {
-      add(settings, std::move(found));
-      if (changed_) changed_();
-    });
-  }
 }
 
 }  // namespace gpo

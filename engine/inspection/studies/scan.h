@@ -3,17 +3,13 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/studies/survey.h"
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace gpo {
@@ -64,41 +60,6 @@ struct StartScan {
   std::vector<ScannedStart> starts;  ///< those that are done, by frame
 
   bool finished() const { return static_cast<int>(starts.size()) == of; }
-};
-
-/// Scans in the background, on all cores but behind everybody else; keeps what it has found for
-/// settings that come back. All functions may be called from any thread and return at once.
-class Scan {
- public:
-  /// `changed` is called on other threads after each start.
-  explicit Scan(std::function<void()> changed = {});
-  ~Scan();
-  Scan(const Scan&) = delete;
-  Scan& operator=(const Scan&) = delete;
-
-  /// What is to be scanned, with whatever start; replaces what was wanted before. Null or nothing:
-  /// nothing is. Another recording forgets all results.
-  void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
-
-  SurveyStatus status() const;
-  std::shared_ptr<const StartScan> latest() const;  ///< of what is wanted; null: nothing is
-
- private:
-  using Kept = std::vector<std::shared_ptr<const StartScan>>;
-
-  void run(const std::stop_token& stop);
-  void add(const Settings& settings, ScannedStart found);
-  Kept::iterator find(const Settings& settings);
-
-  std::function<void()> changed_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::shared_ptr<const Recording> recording_;
-  std::optional<Settings> wanted_;
-  std::shared_ptr<const StartScan> latest_;
-  Kept kept_;  ///< the last wanted one last
-  std::stop_source running_;
-  std::jthread thread_;  ///< last: it starts when all the others exist
 };
 
 }  // namespace gpo

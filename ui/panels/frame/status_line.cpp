@@ -15,13 +15,13 @@ namespace gpo {
 namespace {
 
 /// What is being done, the most waited for first; nothing where all is done.
-std::optional<WorkerStatus> current_work(const PanelInput& input) {
+std::optional<JobStatus> current_work(const PanelInput& input) {
   if (input.writing != nullptr) return *input.writing;
   if (input.worker.busy) return input.worker;
   if (input.survey.busy())
-    return WorkerStatus{true, "comparing", input.survey.done, input.survey.of, ""};
+    return JobStatus{true, "comparing", input.survey.done, input.survey.of, ""};
   if (input.scan != nullptr && input.scan->busy())
-    return WorkerStatus{true, "scanning", input.scan->done, input.scan->of, ""};
+    return JobStatus{true, "scanning", input.scan->done, input.scan->of, ""};
   return std::nullopt;
 }
 
@@ -45,7 +45,7 @@ void draw_bar(float done, float scale) {
 }
 
 /// Returns where its text ends [px from the panel's left edge].
-float draw_progress(const WorkerStatus& work, float scale) {
+float draw_progress(const JobStatus& work, float scale) {
   const std::string stage = work.stage.empty() ? "waiting" : work.stage;
   const std::string text = work.of > 0 ? fmt::format("{} {}/{}", stage, work.done, work.of) : stage;
   ImGui::TextUnformatted(text.c_str());

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -59,61 +60,50 @@ std::string description_of(const fs::path& path) {
 }  // namespace
 
 FolderLister::FolderLister(std::function<void()> changed)
-    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : job_([this] { return next(); }, std::move(changed)) {}
 
 FolderList FolderLister::list(const fs::path& folder) {
-  const std::scoped_lock lock(mutex_);
+  const auto lock = job_.lock();
   if (folder != folder_) {
+    job_.cancel();
     folder_ = folder;
     wanted_ = true;
     list_ = {{}, "", true};
-    wake_.notify_one();
+    job_.wake();
   }
   return list_;
 }
 
 void FolderLister::forget() {
-  const std::scoped_lock lock(mutex_);
+  const auto lock = job_.lock();
+  job_.cancel();
   folder_.clear();
+  wanted_ = false;
 }
 
-bool FolderLister::update(const fs::path& folder, const std::function<void(FolderList&)>& change) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (folder != folder_ || wanted_) return false;
-    change(list_);
-  }
-  if (changed_) changed_();
-  return true;
+BackgroundJob::Job FolderLister::next() {
+  if (!std::exchange(wanted_, false)) return nullptr;
+  return [this, folder = folder_](const std::stop_token& stop) { read(folder, stop); };
 }
 
-void FolderLister::run(const std::stop_token& stop) {
-  while (true) {
-    fs::path folder;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, stop, [this] { return wanted_; });
-      if (stop.stop_requested()) return;
-      wanted_ = false;
-      folder = folder_;
-    }
-    std::vector<FolderEntry> entries;
-    std::string error;
-    try {
-      entries = entries_of(folder);
-    } catch (const fs::filesystem_error& failed) {
-      error = failed.code().message();
-    }
-    bool goes_on = update(folder, [&](FolderList& list) { list = {entries, error, true}; });
-    for (std::size_t i = 0; i < entries.size() && goes_on && !stop.stop_requested(); ++i) {
-      const std::string what = description_of(folder / entries[i].name);
-      goes_on = update(folder, [&](FolderList& list) {
-        list.entries[i].what = what;
-        list.entries[i].known = true;
-      });
-    }
-    update(folder, [](FolderList& list) { list.reading = false; });
+void FolderLister::read(const fs::path& folder, const std::stop_token& stop) {
+  std::vector<FolderEntry> entries;
+  std::string error;
+  try {
+    entries = entries_of(folder);
+  } catch (const fs::filesystem_error& failed) {
+    error = failed.code().message();
   }
+  if (job_.publish(stop, [&] { list_ = {entries, error, true}; })) job_.notify();
+  for (std::size_t i = 0; i < entries.size() && !stop.stop_requested(); ++i) {
+    const std::string what = description_of(folder / entries[i].name);
+    const auto describe = [&] {
+      list_.entries[i].what = what;
+      list_.entries[i].known = true;
+    };
+    if (job_.publish(stop, describe)) job_.notify();
+  }
+  job_.publish(stop, [&] { list_.reading = false; });
 }
 
 namespace {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <condition_variable>
+#include "engine/base/internal/background_job.h"
+
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace gpo {
@@ -30,8 +29,7 @@ struct FolderList {
   bool reading = false;              ///< entries are still to come, or what they are
 };
 
-/// Lists folders on a thread of its own: a slow disk stops no window. May be called from any
-/// thread.
+/// Lists folders in the background: a slow disk stops no window. May be called from any thread.
 class FolderLister {
  public:
   /// `changed` is called on the lister's thread when more is known.
@@ -43,17 +41,13 @@ class FolderLister {
   void forget();
 
  private:
-  void run(const std::stop_token& stop);
-  /// Whether it is still the folder that somebody wants; changes the list.
-  bool update(const std::filesystem::path& folder, const std::function<void(FolderList&)>& change);
+  BackgroundJob::Job next();
+  void read(const std::filesystem::path& folder, const std::stop_token& stop);
 
-  std::function<void()> changed_;
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
   std::filesystem::path folder_;  ///< that is wanted
   bool wanted_ = false;           ///< and has not been begun
   FolderList list_;
-  std::jthread thread_;  ///< last: it starts when all the others exist
+  BackgroundJob job_;
 };
 
 /// What is typed into the field: a folder, and the beginning or a part of a name in it. "~" is the

@@ -25,12 +25,13 @@ FetchedPicture fetch_picture(const FrameCache& pictures, int frame) {
 }
 
 PictureFetcher::PictureFetcher(std::function<void()> changed)
-    : changed_(std::move(changed)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : job_([this] { return next(); }, std::move(changed)) {}
 
 FetchedPicture PictureFetcher::get(const std::shared_ptr<const FrameCache>& pictures, int frame) {
   if (cv::Mat bgr = pictures->find(frame); !bgr.empty()) return {std::move(bgr), "", false};
-  const std::scoped_lock lock(mutex_);
+  const auto lock = job_.lock();
   if (pictures != pictures_) {
+    job_.cancel();
     pictures_ = pictures;
     wanted_.clear();
     answers_.clear();
@@ -42,34 +43,23 @@ FetchedPicture PictureFetcher::get(const std::shared_ptr<const FrameCache>& pict
     std::erase(wanted_, frame);
     wanted_.push_front(frame);
     if (wanted_.size() > kMost) wanted_.pop_back();
-    wake_.notify_one();
+    job_.wake();
   }
   return {{}, "", true};
 }
 
-void PictureFetcher::run(const std::stop_token& stop) {
-  while (true) {
-    std::shared_ptr<const FrameCache> pictures;
-    int frame = 0;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, stop, [this] { return !wanted_.empty(); });
-      if (stop.stop_requested()) return;  // whatever was still asked for
-      pictures = pictures_;
-      frame = wanted_.front();
-      wanted_.pop_front();
-      running_ = frame;
-    }
+BackgroundJob::Job PictureFetcher::next() {
+  if (wanted_.empty()) return nullptr;
+  running_ = wanted_.front();
+  wanted_.pop_front();
+  return [this, pictures = pictures_, frame = *running_](const std::stop_token& stop) {
     FetchedPicture picture = fetch_picture(*pictures, frame);
-    {
-      const std::scoped_lock lock(mutex_);
-      if (pictures != pictures_) continue;
+    job_.publish(stop, [&] {
       running_.reset();
       answers_.push_front({frame, std::move(picture)});
       if (answers_.size() > kMost) answers_.pop_back();
-    }
-    if (changed_) changed_();
-  }
+    });
+  };
 }
 
 }  // namespace gpo

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/internal/background_job.h"
 #include "engine/recording/frame_cache.h"
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include <opencv2/core.hpp>
 
@@ -27,8 +25,8 @@ struct FetchedPicture {
 /// Here and now: decodes it where it must.
 FetchedPicture fetch_picture(const FrameCache& pictures, int frame);
 
-/// Fetches pictures on a thread of its own, so that drawing waits for no decoder. All functions may
-/// be called from any thread and return at once.
+/// Fetches pictures in the background, so that drawing waits for no decoder. All functions may be
+/// called from any thread and return at once.
 class PictureFetcher {
  public:
   /// `changed` is called on the fetcher's thread when a picture has come.
@@ -43,16 +41,13 @@ class PictureFetcher {
     int frame;
     FetchedPicture picture;
   };
-  void run(const std::stop_token& stop);
+  BackgroundJob::Job next();
 
-  std::function<void()> changed_;
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
   std::shared_ptr<const FrameCache> pictures_;  ///< to which frames count
   std::deque<int> wanted_;                      ///< the newest first
   std::optional<int> running_;
   std::deque<Answer> answers_;  ///< the newest first: the cache may have let go of them
-  std::jthread thread_;         ///< last: it starts when all the others exist
+  BackgroundJob job_;
 };
 
 }  // namespace gpo

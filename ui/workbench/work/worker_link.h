@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/scan.h"
-#include "engine/inspection/studies/survey.h"
-#include "engine/inspection/worker.h"
 #include "ui/workbench/state.h"
+#include "ui/workbench/work/scan.h"
+#include "ui/workbench/work/survey.h"
+#include "ui/workbench/work/worker.h"
 
 #include <filesystem>
 #include <functional>
@@ -18,7 +18,7 @@ struct WorkerLink {
   Settings requested;                           ///< last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Eigen::Vector3d> cube_ray;      ///< to where it was moved
-  WorkerStatus worker;
+  JobStatus worker;
   SurveyStatus survey;
   SurveyStatus scan;
   std::string error;              ///< the worker's last one that was said

@@ -2,32 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
+#include "engine/base/internal/background_job.h"
 #include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/surveyed.h"
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace gpo {
 
-/// One of many settings, and what came of it.
-struct Surveyed {
-  Settings settings;
-  std::shared_ptr<const Inspection> inspection;  ///< null: it could not be computed
-  std::string error;                             ///< why not, one line
-};
-
-/// Immutable; what was computed later stands later.
-using SurveyResults = std::vector<Surveyed>;
-
-/// Null where these settings are not among them.
-const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings);
+class Inspector;
 
 struct SurveyStatus {
   int done = 0;       ///< of what is wanted
@@ -38,7 +25,7 @@ struct SurveyStatus {
   bool operator==(const SurveyStatus&) const = default;
 };
 
-/// Many inspections of one recording, computed one after another by a thread of its own beside the
+/// Many inspections of one recording, computed one after another in the background beside the
 /// worker's: other methods, other lengths, and studies of a window. What was computed once is kept.
 /// All functions may be called from any thread and return at once.
 class Survey {
@@ -49,9 +36,6 @@ class Survey {
 
   /// `changed` is called on the survey's thread after each result.
   explicit Survey(std::function<void()> changed = {}, Study study = study_normals);
-  ~Survey();
-  Survey(const Survey&) = delete;
-  Survey& operator=(const Survey&) = delete;
 
   /// Another recording, or none (null); forgets all results.
   void open(std::shared_ptr<const Recording> recording);
@@ -70,25 +54,22 @@ class Survey {
   std::shared_ptr<const NormalStudy> latest_study() const;  ///< null: none yet; see its `error`
 
  private:
-  void run(const std::stop_token& stop);
+  BackgroundJob::Job next();
+  void do_study(const Inspection& inspection, const std::stop_token& stop);
+  void do_inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop);
   void store(Surveyed result);
-  const Settings* next() const;  ///< the first wanted without a result; null: none
-  void finish_study(const std::stop_token& request, std::shared_ptr<const NormalStudy> study);
+  const Settings* next_wanted() const;  ///< the first wanted without a result; null: none
 
-  std::function<void()> changed_;
   Study make_study_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any wake_;
   std::shared_ptr<const Recording> recording_;
+  std::shared_ptr<Inspector> inspector_;  ///< keeps the recording's tracks for the next settings
   std::vector<Settings> wanted_;
   std::shared_ptr<const SurveyResults> results_ = std::make_shared<const SurveyResults>();
-  Settings running_settings_;
-  bool active_ = false;                         ///< `running_settings_` are being computed
   std::shared_ptr<const Inspection> to_study_;  ///< null: nothing, or it is done
   std::shared_ptr<const NormalStudy> study_;
-  bool studying_ = false;  ///< `to_study_` is being studied
-  std::stop_source running_;
-  std::jthread thread_;  ///< last: it starts when all the others exist
+  bool studying_ = false;      ///< the job that was taken last studies `to_study_`
+  Settings running_settings_;  ///< else it computes these
+  BackgroundJob job_;
 };
 
 }  // namespace gpo

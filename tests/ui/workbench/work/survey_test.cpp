@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/survey.h"
+#include "ui/workbench/work/survey.h"
 
 #include "engine/base/error.h"
 #include "engine/window/window.h"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/survey.h"
+#include "ui/workbench/work/survey.h"
 
 #include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
@@ -43,61 +43,47 @@ std::shared_ptr<const NormalStudy> study_of(const Survey::Study& study,
 
 }  // namespace
 
-const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
-  if (results == nullptr) return nullptr;
-  const auto found = std::ranges::find(*results, settings, &Surveyed::settings);
-  return found == results->end() ? nullptr : &*found;
-}
-
 Survey::Survey(std::function<void()> changed, Study study)
-    : changed_(std::move(changed)),
-      make_study_(std::move(study)),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
-
-Survey::~Survey() {
-  want({});
-  study(nullptr);
-  thread_.request_stop();
-  thread_.join();
-}
+    : make_study_(std::move(study)), job_([this] { return next(); }, std::move(changed)) {}
 
 void Survey::open(std::shared_ptr<const Recording> recording) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   if (recording == recording_) return;
-  running_.request_stop();
+  job_.cancel();
   recording_ = std::move(recording);
+  inspector_.reset();
   wanted_.clear();
   to_study_.reset();
   study_.reset();
   results_ = std::make_shared<const SurveyResults>();
-  wake_.notify_one();
 }
 
 void Survey::want(std::vector<Settings> settings) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   if (settings == wanted_) return;
   wanted_ = std::move(settings);
-  if (active_ && std::ranges::find(wanted_, running_settings_) == wanted_.end())
-    running_.request_stop();
-  wake_.notify_one();
+  const bool inspecting = job_.running() && !studying_;
+  if (inspecting && std::ranges::find(wanted_, running_settings_) == wanted_.end()) job_.cancel();
+  job_.wake();
 }
 
 void Survey::add(const std::shared_ptr<const Inspection>& inspection) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   if (inspection->recording != recording_) return;
   if (find_surveyed(results_.get(), inspection->settings) != nullptr) return;
   store({inspection->settings, inspection, ""});
 }
 
 void Survey::study(std::shared_ptr<const Inspection> inspection) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   if (inspection &&
       (inspection->recording != recording_ || (study_ && study_->window == inspection->window)))
     inspection.reset();
+  if (!inspection && !to_study_) return;
   if (inspection && to_study_ && to_study_->window == inspection->window) return;
-  if (studying_) running_.request_stop();
+  if (studying_) job_.cancel();
   to_study_ = std::move(inspection);
-  wake_.notify_one();
+  job_.wake();
 }
 
 void Survey::store(Surveyed result) {
@@ -113,7 +99,7 @@ void Survey::store(Surveyed result) {
   results_ = std::make_shared<const SurveyResults>(std::move(results));
 }
 
-const Settings* Survey::next() const {
+const Settings* Survey::next_wanted() const {
   if (!recording_) return nullptr;
   const auto found = std::ranges::find_if(wanted_, [&](const Settings& settings) {
     return find_surveyed(results_.get(), settings) == nullptr;
@@ -122,7 +108,7 @@ const Settings* Survey::next() const {
 }
 
 SurveyStatus Survey::status() const {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   SurveyStatus status;
   status.of = static_cast<int>(wanted_.size());
   status.done = static_cast<int>(std::ranges::count_if(wanted_, [&](const Settings& settings) {
@@ -131,63 +117,49 @@ SurveyStatus Survey::status() const {
   if (to_study_) {
     ++status.of;
     status.stage = "normals of the window";
-  } else if (const Settings* settings = next())
+  } else if (const Settings* settings = next_wanted())
     status.stage = fmt::format("{}, {} frames", settings->options.method.key(), settings->frames);
   return status;
 }
 
 std::shared_ptr<const SurveyResults> Survey::results() const {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   return results_;
 }
 
 std::shared_ptr<const NormalStudy> Survey::latest_study() const {
-  const std::lock_guard lock(mutex_);
+  const auto lock = job_.lock();
   return study_;
 }
 
-void Survey::finish_study(const std::stop_token& request,
-                          std::shared_ptr<const NormalStudy> study) {
-  const std::lock_guard lock(mutex_);
-  studying_ = false;
-  if (request.stop_requested()) return;
-  study_ = std::move(study);
-  to_study_.reset();
+BackgroundJob::Job Survey::next() {
+  studying_ = to_study_ != nullptr;
+  if (studying_)
+    return [this, inspection = to_study_](const std::stop_token& stop) {
+      do_study(*inspection, stop);
+    };
+  const Settings* settings = next_wanted();
+  if (settings == nullptr) return nullptr;
+  running_settings_ = *settings;
+  if (!inspector_) inspector_ = std::make_shared<Inspector>(recording_);
+  return [this, inspector = inspector_, settings = *settings](const std::stop_token& stop) {
+    do_inspect(*inspector, settings, stop);
+  };
 }
 
-void Survey::run(const std::stop_token& stop) {
-  std::shared_ptr<const Recording> inspected;
-  std::unique_ptr<Inspector> inspector;  // keeps the tracks from one setting to the next
-  while (true) {
-    std::stop_token request;
-    std::shared_ptr<const Inspection> studied;  // null: one of the list is inspected
-    {
-      std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return to_study_ || next() != nullptr; })) return;
-      running_ = std::stop_source();
-      request = running_.get_token();
-      studied = to_study_;
-      studying_ = studied != nullptr;
-      active_ = !studying_;
-      if (active_) running_settings_ = *next();
-      if (inspected != recording_) {
-        inspected = recording_;
-        inspector = std::make_unique<Inspector>(inspected);
-      }
-    }
-    if (studied) {
-      finish_study(request, study_of(make_study_, *studied, request));
-      if (changed_) changed_();
-      continue;
-    }
-    Surveyed result = inspect(*inspector, running_settings_, request);
-    {
-      const std::lock_guard lock(mutex_);
-      active_ = false;
-      if (!request.stop_requested()) store(std::move(result));
-    }
-    if (changed_) changed_();
-  }
+void Survey::do_study(const Inspection& inspection, const std::stop_token& stop) {
+  auto study = study_of(make_study_, inspection, stop);
+  job_.publish(stop, [&] {
+    study_ = std::move(study);
+    to_study_.reset();
+  });
+}
+
+void Survey::do_inspect(Inspector& inspector,
+                        const Settings& settings,
+                        const std::stop_token& stop) {
+  Surveyed result = inspect(inspector, settings, stop);
+  job_.publish(stop, [&] { store(std::move(result)); });
 }
 
 }  // namespace gpo

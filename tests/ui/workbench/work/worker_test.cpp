@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/worker.h"
+#include "ui/workbench/work/worker.h"
 
 #include "engine/base/error.h"
 
@@ -117,7 +117,7 @@ TEST_F(WorkerTest, TellsStageAndProgressWhileBusy) {
   hold_ = true;
   worker.request(start_at(41));
   begun_.acquire();
-  const WorkerStatus status = worker.status();
+  const JobStatus status = worker.status();
   EXPECT_TRUE(status.busy);
   EXPECT_EQ(status.stage, "tracking");
   EXPECT_EQ(status.done, 41);

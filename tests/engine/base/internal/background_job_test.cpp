@@ -1,0 +1,271 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/background_job.h"
+
+#include "engine/base/error.h"
+
+#include <atomic>
+#include <deque>
+#include <semaphore>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// An owner whose jobs begin, signal that and hold until the test releases them or they are
+/// stopped. Multiples of ten never hold.
+class BackgroundJobTest : public testing::Test {
+ protected:
+  ~BackgroundJobTest() override { released_ = true; }
+
+  BackgroundJob::Job next() {
+    if (requests_.empty()) return nullptr;
+    const int request = requests_.front();
+    requests_.pop_front();
+    return [this, request](const std::stop_token& stop) { work(request, stop); };
+  }
+
+  void work(int request, const std::stop_token& stop) {
+    started_.push_back(request);
+    job_.report(stop, "working", request, 60);
+    begun_.release();
+    while (request % 10 != 0 && !released_ && !stop.stop_requested()) std::this_thread::yield();
+    if (request < 0) throw InputError("request is negative");
+    job_.publish(stop, [&] { results_.push_back(request); });
+  }
+
+  /// The newest request wins.
+  void replace(int request) {
+    const auto lock = job_.lock();
+    job_.cancel();
+    requests_ = {request};
+    job_.wake();
+  }
+  void append(int request) {
+    const auto lock = job_.lock();
+    requests_.push_back(request);
+    job_.wake();
+  }
+  void cancel() {
+    const auto lock = job_.lock();
+    requests_.clear();
+    job_.cancel();
+  }
+  JobStatus status() {
+    const auto lock = job_.lock();
+    return job_.status();
+  }
+  void wait_until_idle() {
+    auto lock = job_.lock();
+    job_.wait_until_idle(lock);
+  }
+
+  std::atomic<bool> released_ = false;
+  std::counting_semaphore<> begun_{0};
+  std::vector<int> started_;  ///< by the job's thread; the test reads it when that is idle
+  std::deque<int> requests_;
+  std::vector<int> results_;
+  BackgroundJob job_{[this] { return next(); }};
+};
+
+TEST_F(BackgroundJobTest, RunsEachRequestInItsOrder) {
+  for (const int request : {10, 20, 30}) append(request);
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(10, 20, 30));
+  EXPECT_FALSE(status().busy);
+}
+
+TEST_F(BackgroundJobTest, NewestRequestStopsTheRunningOneAndReplacesThoseThatWait) {
+  replace(1);
+  begun_.acquire();
+  replace(2);
+  begun_.acquire();
+  append(3);
+  replace(40);
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(1, 2, 40));
+  EXPECT_THAT(results_, ElementsAre(40));
+}
+
+TEST_F(BackgroundJobTest, ResultOfAStoppedJobIsDroppedThoughItEndsOnItsOwn) {
+  replace(1);
+  begun_.acquire();
+  {
+    const auto lock = job_.lock();
+    released_ = true;
+    job_.cancel();
+    requests_ = {20};
+    job_.wake();
+  }
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(20));
+}
+
+TEST_F(BackgroundJobTest, CancelEndsTheRunningJobAndRunsNoOther) {
+  append(1);
+  begun_.acquire();
+  append(2);
+  cancel();
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(1));
+  EXPECT_THAT(results_, IsEmpty());
+  EXPECT_EQ(status().error, "");
+  append(30);
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(30));
+}
+
+TEST_F(BackgroundJobTest, CancelBeforeTheJobIsTakenLeavesItIdle) {
+  {
+    const auto lock = job_.lock();
+    requests_ = {1};
+    job_.wake();
+    EXPECT_TRUE(job_.busy());
+    requests_.clear();
+    job_.cancel();
+    EXPECT_FALSE(job_.busy());
+  }
+  append(20);
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(20));
+}
+
+TEST_F(BackgroundJobTest, ReportsProgressWhileItRunsOnly) {
+  append(41);
+  begun_.acquire();
+  const JobStatus running = status();
+  EXPECT_TRUE(running.busy);
+  EXPECT_EQ(running.stage, "working");
+  EXPECT_EQ(running.done, 41);
+  EXPECT_EQ(running.of, 60);
+  cancel();
+  wait_until_idle();
+  EXPECT_EQ(status().stage, "");
+  EXPECT_EQ(status().of, 0);
+}
+
+TEST_F(BackgroundJobTest, ExceptionIsTheErrorUntilTheNextRequest) {
+  append(-10);
+  wait_until_idle();
+  EXPECT_EQ(status().error, "request is negative");
+  cancel();
+  EXPECT_EQ(status().error, "request is negative");
+  append(1);
+  EXPECT_EQ(status().error, "");
+  released_ = true;
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(1));
+}
+
+TEST_F(BackgroundJobTest, ExceptionOfAStoppedJobIsDropped) {
+  append(-1);
+  begun_.acquire();
+  cancel();
+  wait_until_idle();
+  EXPECT_EQ(status().error, "");
+}
+
+TEST(BackgroundJob, CallsBackAfterEachReportAndJobButNotBetweenAStoppedAndTheNext) {
+  std::binary_semaphore begun{0};
+  std::deque<bool> holds;
+  int changes = 0;  // read when the thread has ended
+  {
+    BackgroundJob job(
+        [&] {
+          if (holds.empty()) return BackgroundJob::Job();
+          const bool hold = holds.front();
+          holds.pop_front();
+          return BackgroundJob::Job([&, hold](const std::stop_token& stop) {
+            begun.release();
+            while (hold && !stop.stop_requested()) std::this_thread::yield();
+            job.report(stop, "dropped if stopped", 0, 0);
+          });
+        },
+        [&] { ++changes; });
+    auto lock = job.lock();
+    holds = {true};
+    job.wake();
+    lock.unlock();
+    begun.acquire();
+    lock.lock();
+    job.cancel();
+    holds = {false};
+    job.wake();
+    job.wait_until_idle(lock);
+  }
+  EXPECT_EQ(changes, 2);  // the second job's report and its end
+}
+
+TEST(BackgroundJob, StatusIsIdleWhenTheLastChangeIsAnnounced) {
+  std::binary_semaphore announced{0};
+  bool busy = true, waits = true;
+  BackgroundJob job(
+      [&] {
+        return std::exchange(waits, false) ? BackgroundJob::Job([](const auto&) {})
+                                           : BackgroundJob::Job();
+      },
+      [&] {
+        const auto lock = job.lock();
+        busy = job.status().busy;
+        announced.release();
+      });
+  {
+    const auto lock = job.lock();
+    job.wake();
+  }
+  announced.acquire();
+  EXPECT_FALSE(busy);
+}
+
+TEST(BackgroundJob, IsDestroyedWhileItRunsAndRunsNoOtherJob) {
+  std::binary_semaphore begun{0};
+  int started = 0;
+  {
+    BackgroundJob job([&] {
+      return BackgroundJob::Job([&](const std::stop_token& stop) {
+        ++started;
+        begun.release();
+        while (!stop.stop_requested()) std::this_thread::yield();
+      });
+    });
+    {
+      const auto lock = job.lock();
+      job.wake();
+    }
+    begun.acquire();
+  }
+  EXPECT_EQ(started, 1);
+}
+
+TEST(BackgroundJob, IsDestroyedWithoutEverBeingWoken) {
+  const BackgroundJob job([] { return BackgroundJob::Job(); });
+}
+
+TEST(BackgroundJob, LowPriorityRunsBehindTheOthers) {
+  int niceness = 0;
+  bool waits = true;
+  BackgroundJob job(
+      [&] {
+        if (!std::exchange(waits, false)) return BackgroundJob::Job();
+        return BackgroundJob::Job(
+            [&](const std::stop_token&) { niceness = getpriority(PRIO_PROCESS, 0); });
+      },
+      {},
+      BackgroundJob::Priority::low);
+  auto lock = job.lock();
+  job.wake();
+  job.wait_until_idle(lock);
+  EXPECT_GE(niceness, 10);
+}
+
+}  // namespace
+}  // namespace gpo
