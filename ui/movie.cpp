@@ -10,7 +10,7 @@
 namespace gpo {
 namespace {
 
-double rate_of(const MovieWish& wish, const Recording& recording) {
+double rate_of(const MovieRequest& wish, const Recording& recording) {
   constexpr double kUnknown_hz = 30;
   if (wish.rate_hz > 0) return wish.rate_hz;
   const double own = rate_hz(recording.timestamps_ns);
@@ -18,24 +18,27 @@ double rate_of(const MovieWish& wish, const Recording& recording) {
 }
 
 cv::Size size_of(const WorkbenchState& state) {
-  const Recording& recording = *state.recording;
-  if (!state.panes.compare) return even_size({recording.camera.width, recording.camera.height});
-  return even_size(default_compare_size(static_cast<int>(state.compared.size()), recording));
+  const Recording& recording = *state.document.recording;
+  if (!state.view.panes.compare)
+    return even_size({recording.camera.width, recording.camera.height});
+  return even_size(
+      default_compare_size(static_cast<int>(state.document.compared.size()), recording));
 }
 
 }  // namespace
 
-Movie::Movie(const MovieWish& wish, const WorkbenchState& state)
+Movie::Movie(const MovieRequest& wish, const WorkbenchState& state)
     : state_(state),
-      view_(state.panes.compare ? "compare" : "picture"),
+      view_(state.view.panes.compare ? "compare" : "picture"),
       size_(size_of(state)),
-      first_(state.settings.start),
-      frames_(std::min(state.settings.frames, state.frame_count() - state.settings.start)),
-      video_(wish.file, rate_of(wish, *state.recording), size_) {}
+      first_(state.document.settings.start),
+      frames_(std::min(state.document.settings.frames,
+                       state.frame_count() - state.document.settings.start)),
+      video_(wish.file, rate_of(wish, *state.document.recording), size_) {}
 
 void Movie::step(const Draw& draw) {
   if (finished()) return;
-  state_.frame = first_ + done_;
+  state_.view.frame = first_ + done_;
   video_.add(draw(state_, view_, size_));
   ++done_;
   if (finished()) video_.finish();

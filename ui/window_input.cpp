@@ -77,7 +77,7 @@ void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
 }
 
 /// What is open has one that takes all keys.
-bool has_field(const WorkbenchState& state) { return state.palette || state.browse; }
+bool has_field(const WorkbenchState& state) { return state.view.palette || state.view.browse; }
 
 bool popup_is_open() {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);

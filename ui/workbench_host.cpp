@@ -17,7 +17,9 @@ namespace {
 /// "desk-0029.png", or with a number where that is taken.
 std::filesystem::path free_picture_name(const WorkbenchState& state) {
   const std::string stem =
-      state.recording ? fmt::format("{}-{:04}", state.recording->name, state.frame) : "window";
+      state.document.recording
+          ? fmt::format("{}-{:04}", state.document.recording->name, state.view.frame)
+          : "window";
   std::filesystem::path name = stem + ".png";
   for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.png", stem, i);
   return name;
@@ -43,15 +45,16 @@ PanelInput WorkbenchHost::input() const {
 }
 
 void WorkbenchHost::synchronize() {
-  gui_.set_zoom(state.text_zoom);
-  if ((movie_ || state.wishes.movie) && std::exchange(state.wishes.cancel, false)) {
+  gui_.set_zoom(state.view.text_zoom);
+  if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
-    state.wishes.movie.reset();
+    state.requests.movie.reset();
     say(state, "the movie was canceled; nothing of it was kept");
   }
   gpo::synchronize(state, link, worker_, survey_, scan_, example_);
   if (writing()) write_movie();
-  for (const Screenshot& screenshot : std::exchange(state.wishes.screenshots, {})) save(screenshot);
+  for (const Screenshot& screenshot : std::exchange(state.requests.screenshots, {}))
+    save(screenshot);
 }
 
 void WorkbenchHost::settle() {
@@ -77,7 +80,7 @@ cv::Mat WorkbenchHost::picture(const std::string& view, std::optional<cv::Size> 
 /// Begins, when everything that it shows is computed, or goes on.
 void WorkbenchHost::write_movie() {
   try {
-    if (!movie_) movie_.emplace(*std::exchange(state.wishes.movie, {}), state);
+    if (!movie_) movie_.emplace(*std::exchange(state.requests.movie, {}), state);
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
       const PanelInput input{shown, link.worker, link.survey, timings, gui_.scale()};
       return draw_view(view, pixels, input, size, gui_, views_);
@@ -87,7 +90,7 @@ void WorkbenchHost::write_movie() {
     if (movie_->finished()) movie_.reset();
   } catch (const InputError& error) {
     movie_.reset();
-    state.wishes.movie.reset();
+    state.requests.movie.reset();
     say(state, error.what(), Severity::error);
   }
 }

@@ -35,9 +35,9 @@ class WorkbenchHost {
   /// Returns at once; a movie that is written takes one of its frames a call.
   void synchronize();
   /// Whether something is computed or written.
-  bool busy() const { return link.busy() || movie_ || state.wishes.movie; }
+  bool busy() const { return link.busy() || movie_ || state.requests.movie; }
   /// Whether the next call of `synchronize` writes a frame of a movie.
-  bool writing() const { return movie_ || (state.wishes.movie && !link.busy()); }
+  bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
   /// Until nothing is computed any more.
   void settle();
   /// One frame of the window into the framebuffer that is bound. Returns what the user did. Waits

@@ -36,8 +36,8 @@ void draw_views(const PanelInput& input,
                 Views& views,
                 Commands& commands) {
   if (layout.views.empty()) return;
-  if (!input.state.recording) return empty_panel(input, layout.views, commands);
-  if (input.state.panes.compare) return compare_panel(input, layout.views, views, commands);
+  if (!input.state.document.recording) return empty_panel(input, layout.views, commands);
+  if (input.state.view.panes.compare) return compare_panel(input, layout.views, views, commands);
   if (!layout.picture.empty()) image_panel(input, layout.picture, views, commands);
   if (layout.side.empty()) return;
   side_tabs(input, layout.side_tabs, commands);
@@ -46,8 +46,8 @@ void draw_views(const PanelInput& input,
 
 /// Everything has another color now, also what nobody draws anew.
 void use_theme(const PanelInput& input, Gui& gui, Views& views) {
-  if (gui.theme() == input.state.theme) return;
-  gui.set_theme(input.state.theme);
+  if (gui.theme() == input.state.view.theme) return;
+  gui.set_theme(input.state.view.theme);
   views.window = WindowPicture();
 }
 
@@ -61,13 +61,13 @@ void forget_hover(const PanelInput& input, const Rectangle& views, Commands& com
 
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
   const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
-  const bool drawer_open = input.state.panes.drawer != nullptr;
+  const bool drawer_open = input.state.view.panes.drawer != nullptr;
   const WindowLayout layout = window_layout(window.width,
                                             window.height,
                                             input.scale,
-                                            input.state.division,
+                                            input.state.view.division,
                                             drawer_open,
-                                            input.state.view.scan);
+                                            input.state.view.toggles.scan);
   menu_bar(input, commands);
   if (!layout.settings.empty()) settings_panel(input, layout.settings, commands);
   if (!layout.results.empty()) results_panel(input, layout.results);
@@ -78,12 +78,12 @@ void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands&
   status_line(input, layout.status);
   splitters(input, layout, commands);
   forget_hover(input, layout.views, commands);
-  if (input.state.show_help) help_overlay(input, window, commands);
-  if (input.state.palette)
+  if (input.state.view.show_help) help_overlay(input, window, commands);
+  if (input.state.view.palette)
     palette_overlay(input, window, views, commands);
   else
     views.palette = {};
-  if (input.state.browse)
+  if (input.state.view.browse)
     browser_overlay(input, window, views, commands);
   else
     views.browser.open = false;
@@ -96,10 +96,10 @@ void draw_alone(const Pane& pane, const PanelInput& input, cv::Size size, Views&
   WorkbenchState state = input.state;
   const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
   if (pane.kind == PaneKind::side) {
-    state.panes.side = &pane;
+    state.view.panes.side = &pane;
     side_pane(shown, place, views, ignored);
   } else if (pane.kind == PaneKind::drawer) {
-    state.panes.drawer = &pane;
+    state.view.panes.drawer = &pane;
     drawer(shown, place, views, ignored);
   } else {
     pane.draw(input, place, views, ignored);
@@ -116,8 +116,8 @@ const Pane& pane_named(const std::string& name) {
 /// As large as the view is in a window of that size; the picture as it was recorded.
 cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
-  if (!input.state.recording) throw InputError("no recording is open");
-  const Camera& camera = input.state.recording->camera;
+  if (!input.state.document.recording) throw InputError("no recording is open");
+  const Camera& camera = input.state.document.recording->camera;
   if (pane.kind == PaneKind::picture) return {camera.width, camera.height};
   const bool below = pane.kind == PaneKind::drawer;
   const WindowLayout layout = window_layout(
@@ -170,13 +170,14 @@ cv::Mat snapshot_pane(const std::string& view,
                       std::optional<cv::Size> size) {
   constexpr int kWidth = 1280, kHeight = 720;
   WorkbenchState state;
-  state.settings = inspection->settings;
+  state.document.settings = inspection->settings;
   adopt(state, inspection->recording);
-  state.inspection = inspection;
-  state.message.clear();
+  state.results.inspection = inspection;
+  state.messages.text.clear();
   const Pane& pane = pane_named(view);
-  if (pane.kind != PaneKind::window) state.compared = {key_of(configuration_of(state.settings))};
-  if (pane.needs.study) state.study = study_normals(*inspection);
+  if (pane.kind != PaneKind::window)
+    state.document.compared = {key_of(configuration_of(state.document.settings))};
+  if (pane.needs.study) state.results.study = study_normals(*inspection);
   apply(state, GoToFrame{frame});
   const cv::Size window = size.value_or(cv::Size(kWidth, kHeight));
   const OffscreenContext context(window.width, window.height);

@@ -18,19 +18,21 @@ namespace {
 
 /// What was said since line `from` of the log; an error ends the script.
 void tell(const WorkbenchState& state, std::size_t from) {
-  for (std::size_t i = from; i < state.log.size(); ++i) {
-    if (state.log[i].severity == Severity::error) throw InputError(state.log[i].text);
-    fmt::print("{}\n", state.log[i].text);
+  for (std::size_t i = from; i < state.messages.lines.size(); ++i) {
+    if (state.messages.lines[i].severity == Severity::error)
+      throw InputError(state.messages.lines[i].text);
+    fmt::print("{}\n", state.messages.lines[i].text);
   }
 }
 
 /// Has been on standard error already.
 void keep_in_log(WorkbenchState& state, MethodLog& log) {
-  for (std::string& line : log.take()) state.log.push_back({Severity::note, std::move(line)});
+  for (std::string& line : log.take())
+    state.messages.lines.push_back({Severity::note, std::move(line)});
 }
 
 void run(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
-  const std::size_t said = host.state.log.size();
+  const std::size_t said = host.state.messages.lines.size();
   if (!line.empty()) run_line(host.state, line);
   host.settle();
   context.bind();
@@ -52,7 +54,7 @@ int script_command(const std::filesystem::path& script,
                      example_recording());
   host.timings = false;
   host.size = size;
-  host.state.settings = arguments.settings;
+  host.state.document.settings = arguments.settings;
   host.state.methods = own.table;
   host.link.add_methods = [&own](const std::filesystem::path& session, WorkbenchState& state) {
     own.add_session(session);
@@ -60,7 +62,7 @@ int script_command(const std::filesystem::path& script,
     state.methods = own.table;
   };
   host.link.calibrates = arguments.calibrate == "auto";
-  if (!arguments.recording.empty()) host.state.wishes.open = arguments.recording;
+  if (!arguments.recording.empty()) host.state.requests.open = arguments.recording;
   run(host, context, "");
   for (const ScriptLine& line : lines) {
     try {
@@ -69,7 +71,7 @@ int script_command(const std::filesystem::path& script,
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", script.string(), line.number, error.what()));
     }
-    if (host.state.wishes.quit) break;
+    if (host.state.requests.quit) break;
   }
   return kDone;
 }

@@ -93,7 +93,7 @@ struct Session {
 
   void tell_what_methods_say() {
     for (std::string& line : own.log->take())
-      host.state.log.push_back({Severity::note, std::move(line)});
+      host.state.messages.lines.push_back({Severity::note, std::move(line)});
   }
 
   /// Whether anything was done in it that the next frame is to show.
@@ -111,8 +111,8 @@ struct Session {
   /// Tells the desktop, and who drives the window, what is open and whether it is being computed.
   void update_title() {
     const WorkbenchState& state = host.state;
-    std::string now = state.recording ? state.recording->name + " \u2013 " : "";
-    if (state.recording && state.recording->camera_source == CameraSource::guess)
+    std::string now = state.document.recording ? state.document.recording->name + " \u2013 " : "";
+    if (state.document.recording && state.document.recording->camera_source == CameraSource::guess)
       now += "the camera is a guess \u2013 ";
     if (host.link.worker.busy) now += "computing \u2013 ";
     now += kTitle;
@@ -153,18 +153,18 @@ struct Session {
 
   void run() {
     int frames = 0, alike = 0;  // since something happened
-    while (!window.should_close() && !host.state.wishes.quit) {
+    while (!window.should_close() && !host.state.requests.quit) {
       if (heed_input()) frames = alike = 0;
       host.synchronize();
       tell_what_methods_say();
       go_on_with_script();
       update_title();
-      window.set_fullscreen(host.state.fullscreen);
+      window.set_fullscreen(host.state.view.fullscreen);
       const bool asked = draw();
       alike = asked || host.redrawn() ? 0 : alike + 1;
       const bool settled = alike >= kFramesAlike || ++frames >= kMostFramesAfterEvent;
       // Nothing else would wake it after the last key.
-      wait(settled && !input.waiting() && !host.state.wishes.quit);
+      wait(settled && !input.waiting() && !host.state.requests.quit);
       if (settled) frames = alike = 0;
     }
   }
@@ -187,11 +187,11 @@ int view_command(const ViewArguments& arguments, OwnMethods& own) {
   session.script.assign(lines.begin(), lines.end());
   session.host.link.remembers_files = true;
   session.host.link.calibrates = calibrate == "auto";
-  session.host.state.asks = true;
-  session.host.state.recent = recent_files();
-  session.host.state.has_last_session = std::filesystem::exists(last_session_file());
-  session.host.state.settings = settings;
-  session.host.state.wishes.open = session_file ? session_file : recording;
+  session.host.state.files.asks = true;
+  session.host.state.files.recent = recent_files();
+  session.host.state.files.has_last_session = std::filesystem::exists(last_session_file());
+  session.host.state.document.settings = settings;
+  session.host.state.requests.open = session_file ? session_file : recording;
   const KeptWindow kept = read_kept_window(session.host.state);
   const float scale = session.gui.scale();
   session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)

@@ -135,9 +135,9 @@ class WholeWindow : public View {
  public:
   explicit WholeWindow(const Inspections& inspections) {
     const auto& inspection = inspections.front();
-    state_.settings = inspection->settings;
+    state_.document.settings = inspection->settings;
     adopt(state_, inspection->recording);
-    state_.inspection = inspection;
+    state_.results.inspection = inspection;
   }
   void draw(int frame) override {
     apply(state_, GoToFrame{frame});
@@ -158,8 +158,8 @@ class WholeWindow : public View {
 class BusyWindow : public WholeWindow {
  public:
   explicit BusyWindow(const Inspections& inspections) : WholeWindow(inspections) {
-    state_.study = study_normals(*inspections.front(), {});
-    state_.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
+    state_.results.study = study_normals(*inspections.front(), {});
+    state_.view.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
   }
 };
 

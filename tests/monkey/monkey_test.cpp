@@ -143,9 +143,10 @@ TEST_P(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
     draw();
     if (HasFatalFailure()) return;
     advance(host_.state, 0.02);
-    ASSERT_GE(host_.state.frame, 0);
-    ASSERT_LT(host_.state.frame, host_.state.frame_count());
-    ASSERT_LE(host_.state.settings.start + host_.state.settings.frames, host_.state.frame_count());
+    ASSERT_GE(host_.state.view.frame, 0);
+    ASSERT_LT(host_.state.view.frame, host_.state.frame_count());
+    ASSERT_LE(host_.state.document.settings.start + host_.state.document.settings.frames,
+              host_.state.frame_count());
     if (turn == turns / 2) settled_megabytes = resident_megabytes();
   }
   host_.settle();

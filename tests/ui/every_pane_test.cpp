@@ -40,9 +40,9 @@ TEST_P(EveryPane, IsDrawnAndOtherThanTheOthers) {
        {MadeOptions{.normal_sigma_deg = 0.3}, MadeOptions{.ok = false}}) {
     const auto inspection = std::make_shared<const Inspection>(made_inspection(options));
     WorkbenchState state;
-    state.settings = inspection->settings;
+    state.document.settings = inspection->settings;
     adopt(state, inspection->recording);
-    state.inspection = inspection;
+    state.results.inspection = inspection;
     run_line(state, "select track " + std::to_string(inspection->tracks->ids[3]));
     std::vector<cv::Mat> pictures = {drawn(context, gui, views, state)};
     for (const Action& action : actions()) {

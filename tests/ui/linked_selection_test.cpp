@@ -30,9 +30,9 @@ class LinkedSelection : public DrawingTest {
   static constexpr int kWidth = 1280, kHeight = 720;
 
   LinkedSelection() {
-    state_.settings = inspection_->settings;
+    state_.document.settings = inspection_->settings;
     adopt(state_, inspection_->recording);
-    state_.inspection = inspection_;
+    state_.results.inspection = inspection_;
     apply(state_, GoToFrame{kFrame});
     for (int i = 0; i < 3; ++i) draw();
   }
@@ -61,8 +61,10 @@ class LinkedSelection : public DrawingTest {
   ScreenRect picture() const { return screen_rect(layout_.picture); }
   /// Where the picture shows a track.
   Vector2d track_on_screen(int column) const {
-    const PictureMapping mapping = map_picture(
-        state_.recording->camera, picture(), state_.picture_zoom, state_.view.undistorted);
+    const PictureMapping mapping = map_picture(state_.document.recording->camera,
+                                               picture(),
+                                               state_.view.picture_zoom,
+                                               state_.view.toggles.undistorted);
     return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
   }
   OrbitCamera camera() const {
@@ -156,17 +158,17 @@ TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
   press(0, false);
   test::hold(false, false);
   EXPECT_GT(state_.selection.tracks.size(), 3U);
-  EXPECT_EQ(state_.picture_zoom.factor, 1);
-  EXPECT_EQ(state_.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
+  EXPECT_EQ(state_.view.picture_zoom.factor, 1);
+  EXPECT_EQ(state_.view.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
 }
 
 TEST_F(LinkedSelection, WithoutDistortionTracksArePickedWhereTheyAreShown) {
   const Eigen::AlignedBox2d inside(picture().min + Vector2d(20, 20),
                                    picture().min + picture().size - Vector2d(20, 20));
   const auto moved = [&](int column) {
-    state_.view.undistorted = false;
+    state_.view.toggles.undistorted = false;
     const Vector2d recorded = track_on_screen(column);
-    state_.view.undistorted = true;
+    state_.view.toggles.undistorted = true;
     const Vector2d shown = track_on_screen(column);
     return inside.contains(shown) ? (shown - recorded).norm() : 0.0;
   };
@@ -194,7 +196,7 @@ TEST_F(LinkedSelection, PointOfTheSceneIsTheSameTrack) {
 
 TEST_F(LinkedSelection, CameraOfTheSceneGoesToItsFrame) {
   click(on_scene(inspection_->initialization->cameras[3].p_wc));
-  EXPECT_EQ(state_.frame, kStart + 3);
+  EXPECT_EQ(state_.view.frame, kStart + 3);
   EXPECT_TRUE(state_.selection.tracks.empty());
 }
 
@@ -205,11 +207,11 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
       << on_scene(to).transpose();
   click(on_scene(to), 1);
-  ASSERT_TRUE(state_.cube_ray.has_value());
-  const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.cube_ray);
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
+  const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.document.cube_ray);
   EXPECT_LT((there - to).norm(), 0.02);  // the mouse is on whole pixels
   Inspection moved = *inspection_;
-  move_cubes(moved, *state_.cube_ray);
+  move_cubes(moved, *state_.document.cube_ray);
   EXPECT_LT((moved.cube->origin - to).norm(), 0.02);
   EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
 }
@@ -217,14 +219,14 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
 TEST_F(LinkedSelection, RightClickInThePictureBringsTheCubeThere) {
   const Vector2d at = (picture().min + 0.6 * picture().size).array().floor();
   click(at, 1);
-  ASSERT_TRUE(state_.cube_ray.has_value());
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
   const PictureMapping mapping =
-      map_picture(state_.recording->camera, picture(), state_.picture_zoom);
+      map_picture(state_.document.recording->camera, picture(), state_.view.picture_zoom);
   const auto ray = point_on_plane(*inspection_,
                                   kFrame - inspection_->window->start,
                                   to_picture(mapping, at),
                                   inspection_->initialization->plane);
-  EXPECT_LT((*ray - *state_.cube_ray).norm(), 1e-9);
+  EXPECT_LT((*ray - *state_.document.cube_ray).norm(), 1e-9);
 }
 
 }  // namespace

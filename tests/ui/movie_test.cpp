@@ -38,7 +38,7 @@ double mean_difference(const cv::Mat& a, const cv::Mat& b) {
 class MovieTest : public DrawingTest {
  protected:
   MovieTest() {
-    host_.state.wishes.open = "made";
+    host_.state.requests.open = "made";
     host_.timings = false;
     host_.settle();
   }
@@ -59,39 +59,39 @@ class MovieTest : public DrawingTest {
 
 TEST_F(MovieTest, HasTheWindowsFramesAtTheRecordingsSizeAndRate) {
   WorkbenchState& state = host_.state;
-  ASSERT_TRUE(state.recording);
+  ASSERT_TRUE(state.document.recording);
   run_line(state, "set start 5");
   host_.settle();
   const fs::path file = folder_.path() / "m.mp4";
   run_line(state, "export-video " + file.string());
   host_.settle();
   const std::vector<cv::Mat> frames = frames_of(file);
-  ASSERT_EQ(frames.size(), static_cast<std::size_t>(state.settings.frames));
-  const Camera& camera = state.recording->camera;
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(state.document.settings.frames));
+  const Camera& camera = state.document.recording->camera;
   EXPECT_EQ(frames[0].size(), even_size({camera.width, camera.height}));
   run_line(state, "frame 5");
   EXPECT_LT(mean_difference(frames[0], host_.picture("picture", frames[0].size())), 8);
   EXPECT_GT(mean_difference(frames[0], frames.back()), 8);
-  EXPECT_THAT(state.message, HasSubstr("saved"));
+  EXPECT_THAT(state.messages.text, HasSubstr("saved"));
 }
 
 TEST_F(MovieTest, TakesOneFrameACallAndEscapeLeavesNothing) {
   WorkbenchState& state = host_.state;
   const fs::path file = folder_.path() / "m.mp4";
   run_line(state, "export-video " + file.string() + " 12.5");
-  const int frame = state.frame;
+  const int frame = state.view.frame;
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(host_.busy());
     host_.synchronize();
   }
-  EXPECT_EQ(state.frame, frame);
+  EXPECT_EQ(state.view.frame, frame);
   EXPECT_FALSE(fs::exists(file));
   EXPECT_FALSE(fs::is_empty(folder_.path()));
   run_line(state, "escape");
   host_.synchronize();
   EXPECT_FALSE(host_.busy());
   EXPECT_TRUE(fs::is_empty(folder_.path()));
-  EXPECT_THAT(state.message, HasSubstr("canceled"));
+  EXPECT_THAT(state.messages.text, HasSubstr("canceled"));
 }
 
 TEST_F(MovieTest, RefusesWhatItCannotWrite) {
@@ -114,18 +114,18 @@ TEST_F(MovieTest, InCompareModeTheColumnsMove) {
   const fs::path file = folder_.path() / "c.mp4";
   const auto draw = [this](const WorkbenchState& shown, const std::string& view, cv::Size size) {
     EXPECT_EQ(view, "compare");
-    host_.state.frame = shown.frame;
+    host_.state.view.frame = shown.view.frame;
     return host_.picture(view, size);
   };
   WorkbenchState two = state;
-  two.panes.compare = true;
-  two.compared = {"gpo", "ba"};
-  two.settings.frames = 4;
+  two.view.panes.compare = true;
+  two.document.compared = {"gpo", "ba"};
+  two.document.settings.frames = 4;
   Movie movie({file, 10}, two);
   while (!movie.finished()) movie.step(draw);
   const std::vector<cv::Mat> frames = frames_of(file);
   ASSERT_EQ(frames.size(), 4U);
-  EXPECT_EQ(frames[0].size(), even_size(default_compare_size(2, *state.recording)));
+  EXPECT_EQ(frames[0].size(), even_size(default_compare_size(2, *state.document.recording)));
 }
 
 }  // namespace

@@ -31,9 +31,9 @@ class PanesTest : public DrawingTest {
         {state_, idle_, no_survey_, timings_, gui_.scale()}, {kWidth, kHeight}, gui_, *views_);
   }
   void open(const Inspection& inspection) {
-    state_.settings = inspection.settings;
+    state_.document.settings = inspection.settings;
     adopt(state_, inspection.recording);
-    state_.inspection = std::make_shared<const Inspection>(inspection);
+    state_.results.inspection = std::make_shared<const Inspection>(inspection);
     draw();
   }
   Commands click(float x, float y) {
@@ -47,7 +47,7 @@ class PanesTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, {}, state_.panes.drawer != nullptr);
+    return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
   }
   cv::Mat drawer_picture() {
     draw();
@@ -76,19 +76,19 @@ TEST_F(PanesTest, DrawWhateverIsKnown) {
     open(inspection);
     for (const Pane& pane : side_panes())
       for (const Pane& drawer : drawers()) {
-        state_.panes.side = &pane;
-        state_.panes.drawer = &drawer;
+        state_.view.panes.side = &pane;
+        state_.view.panes.drawer = &drawer;
         draw();
         EXPECT_TRUE(draw().empty());
       }
-    state_.inspection.reset();
+    state_.results.inspection.reset();
     draw();
   }
 }
 
 TEST_F(PanesTest, ClickInTheFramesOfTheResidualsGoesThere) {
   open(made_inspection({.estimate_error = 1}));
-  state_.panes.drawer = find_drawer("residuals");
+  state_.view.panes.drawer = find_drawer("residuals");
   apply(state_, GoToFrame{34});
   draw();
   const Rectangle place = layout().drawer;
@@ -102,14 +102,14 @@ TEST_F(PanesTest, ClickInTheFramesOfTheResidualsGoesThere) {
 
 TEST_F(PanesTest, ComputesResidualsAndChartsOnceAnInspection) {
   open(made_inspection({.estimate_error = 1}));
-  state_.panes.drawer = find_drawer("residuals");
+  state_.view.panes.drawer = find_drawer("residuals");
   draw();
   const std::size_t drawn = views_->charts.at("rms over frames").texture().revision();
   apply(state_, GoToFrame{20});
   draw();
   EXPECT_EQ(views_->charts.at("rms over frames").texture().revision(), drawn)
       << "the cursor is drawn over it";
-  EXPECT_EQ(views_->residuals.of, state_.inspection);
+  EXPECT_EQ(views_->residuals.of, state_.results.inspection);
 }
 
 /// Candidates and clusters of a simple kind, and a landscape whose valley is at the estimate.
@@ -139,8 +139,8 @@ std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
 TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = find_side_pane("normals");
-  state_.study = made_study(inspection);
+  state_.view.panes.side = find_side_pane("normals");
+  state_.results.study = made_study(inspection);
   const Rectangle place = layout().side;
   const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
   ImGui::GetIO().MousePos = {x, y};
@@ -151,21 +151,21 @@ TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
   ASSERT_EQ(zoomed.size(), 1U);
   ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
   apply(state_, zoomed[0]);
-  EXPECT_NEAR(state_.normals_zoom.factor, 1.5625, 1e-9);
+  EXPECT_NEAR(state_.view.normals_zoom.factor, 1.5625, 1e-9);
   ImGui::GetIO().MouseDown[0] = true;
   draw();
   ImGui::GetIO().MousePos = {x + 30, y};
   const Commands moved = draw();
   ImGui::GetIO().MouseDown[0] = false;
   ASSERT_EQ(moved.size(), 1U);
-  EXPECT_LT(std::get<ZoomNormals>(moved[0]).zoom.center.x(), state_.normals_zoom.center.x());
+  EXPECT_LT(std::get<ZoomNormals>(moved[0]).zoom.center.x(), state_.view.normals_zoom.center.x());
 }
 
 TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = find_side_pane("normals");
-  state_.study = made_study(inspection);
+  state_.view.panes.side = find_side_pane("normals");
+  state_.results.study = made_study(inspection);
   apply(state_, GoToFrame{34});
   draw();
   const std::size_t drawn = views_->normals.texture().revision();
@@ -179,7 +179,7 @@ TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
   EXPECT_LT(views_->normals.rms_at({0, 0}), all);
   EXPECT_TRUE(std::isnan(views_->normals.rms_at({0.96, 0.05})));
   EXPECT_FALSE(views_->normals.contours().empty());
-  state_.panes.side = find_side_pane("candidates");
+  state_.view.panes.side = find_side_pane("candidates");
   for (const int frame : {0, 5, 20}) {
     apply(state_, GoToFrame{frame});
     EXPECT_TRUE(draw().empty());
@@ -189,17 +189,17 @@ TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
 TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   open(inspection);
-  state_.panes.side = find_side_pane("normals");
+  state_.view.panes.side = find_side_pane("normals");
   NormalStudy other = *made_study(inspection);
   other.window = std::make_shared<const Window>(*inspection.window);
-  state_.study = std::make_shared<const NormalStudy>(other);
+  state_.results.study = std::make_shared<const NormalStudy>(other);
   draw();
   EXPECT_EQ(views_->normals.texture().revision(), 0U);
 }
 
 TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
   Inspection inspection = made_inspection();
-  state_.panes.drawer = find_drawer("timing");
+  state_.view.panes.drawer = find_drawer("timing");
   for (const bool timings : {false, true}) {
     timings_ = timings;
     inspection.timing = {100, 20, 3, 40, 30, 163};

@@ -22,9 +22,9 @@ class UnchangedWindow : public DrawingTest {
 
   UnchangedWindow() {
     const auto inspection = std::make_shared<const Inspection>(made_inspection());
-    state_.settings = inspection->settings;
+    state_.document.settings = inspection->settings;
     adopt(state_, inspection->recording);
-    state_.inspection = inspection;
+    state_.results.inspection = inspection;
     for (int i = 0; i < 3; ++i) draw();  // sizes settle
   }
   void draw() {
@@ -71,7 +71,7 @@ TEST_F(UnchangedWindow, StepDrawsTheViewsButNotTheSettingsNorTheSceneAnew) {
 }
 
 TEST_F(UnchangedWindow, HiddenTracksAreGoneAtOnce) {
-  state_.view.tracks = !state_.view.tracks;
+  state_.view.toggles.tracks = !state_.view.toggles.tracks;
   draw();
   EXPECT_TRUE(redrawn(layout_.picture));
   EXPECT_FALSE(redrawn(layout_.side));

@@ -28,9 +28,9 @@ class WaitingPicture : public DrawingTest {
         recording->frame_count(), [this](int frame) { return decode(frame); });
     inspection.recording = recording;
     inspection_ = std::make_shared<const Inspection>(inspection);
-    state_.settings = inspection_->settings;
+    state_.document.settings = inspection_->settings;
     adopt(state_, recording);
-    state_.inspection = inspection_;
+    state_.results.inspection = inspection_;
     apply(state_, RunAction{"select track " + std::to_string(inspection_->tracks->ids[3])});
   }
   ~WaitingPicture() override { let_go_.release(1000); }
@@ -77,7 +77,7 @@ TEST_F(WaitingPicture, TheWindowIsDrawnWithoutItAndAgainWhenItComes) {
   let_come(1);
   draw();
   EXPECT_EQ(views_.picture.revision(), 1U);
-  EXPECT_EQ(views_.frame, state_.frame);
+  EXPECT_EQ(views_.frame, state_.view.frame);
   EXPECT_FALSE(same_bytes(context_.read_bgr(), before));
   EXPECT_FALSE(by_window_) << "the window's thread decodes nothing";
 }
@@ -86,7 +86,7 @@ TEST_F(WaitingPicture, TheLastOneStaysWithItsOwnFrameUntilTheNextHasCome) {
   draw();
   let_come(1);
   draw();
-  const int before = state_.frame;
+  const int before = state_.view.frame;
   apply(state_, GoToFrame{before - 5});
   draw();
   EXPECT_EQ(views_.frame, before);
@@ -98,7 +98,7 @@ TEST_F(WaitingPicture, TheLastOneStaysWithItsOwnFrameUntilTheNextHasCome) {
 }
 
 TEST_F(WaitingPicture, WhatComesTooLateIsShownRatherThanNone) {
-  const int first = state_.settings.start;
+  const int first = state_.document.settings.start;
   apply(state_, GoToFrame{first});
   draw();
   for (int i = 1; i <= 3; ++i) {  // plays on meanwhile

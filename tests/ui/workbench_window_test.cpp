@@ -46,9 +46,9 @@ class WorkbenchWindow : public DrawingTest {
 
   void open(std::shared_ptr<const Inspection> inspection = made()) {
     inspection_ = std::move(inspection);
-    state_.settings = inspection_->settings;
+    state_.document.settings = inspection_->settings;
     adopt(state_, inspection_->recording);
-    state_.inspection = inspection_;
+    state_.results.inspection = inspection_;
     draw();
   }
 
@@ -91,7 +91,7 @@ TEST_F(WorkbenchWindow, DoesNothingByItself) {
   EXPECT_TRUE(draw().empty());
   open();
   EXPECT_TRUE(draw().empty());
-  state_.show_help = true;
+  state_.view.show_help = true;
   draw();
   EXPECT_TRUE(draw().empty());
 }
@@ -178,7 +178,7 @@ TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {
 
 TEST_F(WorkbenchWindow, ClickBesideTheKeysClosesThem) {
   open();
-  state_.show_help = true;
+  state_.view.show_help = true;
   draw();
   const Commands commands = click(20, 400);
   ASSERT_NE(find<RunAction>(commands), nullptr);
@@ -192,8 +192,8 @@ TEST_F(WorkbenchWindow, DrawsInAnyWidth) {
   glGetError();  // VTK's first frame asks OpenGL for what the core profile has not
   for (int width = 1; width < kWidth; width += width < 450 ? 1 : 100) draw({width, 720});
   for (int height = 1; height < 200; height += 3) draw({320, height});
-  state_.view.scan = true;
-  state_.scan = std::make_shared<const StartScan>();
+  state_.view.toggles.scan = true;
+  state_.results.scan = std::make_shared<const StartScan>();
   for (int width = 300; width < 450; ++width) draw({width, 720});
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
@@ -223,7 +223,7 @@ TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
       draw();
     }
   }
-  state_.inspection.reset();  // opened, but nothing is computed yet
+  state_.results.inspection.reset();  // opened, but nothing is computed yet
   idle_ = {true, "tracking", 12, 30, ""};
   draw();
   idle_ = {false, "", 0, 0, std::string(300, 'x')};
@@ -238,7 +238,7 @@ TEST_F(WorkbenchWindow, PictureToDiskIsAsLargeAsTheRecordings) {
   const cv::Mat picture = draw_picture();
   EXPECT_EQ(picture.cols, inspection_->recording->camera.width);
   EXPECT_EQ(picture.rows, inspection_->recording->camera.height);
-  state_.view = {false, false, false, false, false};
+  state_.view.toggles = {false, false, false, false, false};
   const cv::Mat plain = draw_picture();
   EXPECT_FALSE(compare_pictures(picture, plain).equal);
 }
@@ -281,10 +281,10 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     Gui gui(window);
     Views views;
     WorkbenchState state;
-    state.settings = inspection->settings;
+    state.document.settings = inspection->settings;
     adopt(state, inspection->recording);
-    state.inspection = inspection;
-    state.message.clear();
+    state.results.inspection = inspection;
+    state.messages.text.clear();
     const JobStatus idle;
     const SurveyStatus no_survey;
     glfwSetCursorPos(glfwGetCurrentContext(), 700, 710);  // where nothing tells of itself

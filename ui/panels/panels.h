@@ -39,7 +39,7 @@ struct PanelInput {
   std::filesystem::path example = {};  ///< the recording that comes with the program
 
   /// The last one that was finished; null: none.
-  const Inspection* inspection() const { return state.inspection.get(); }
+  const Inspection* inspection() const { return state.results.inspection.get(); }
 };
 
 /// What was typed into the list of all commands.

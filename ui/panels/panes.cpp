@@ -41,7 +41,7 @@ TabEvent tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
 
 /// A part takes the window, or gives it back.
 void maximize(const PanelInput& input, WindowPart part, Commands& commands) {
-  const bool back = input.state.division.maximized == part;
+  const bool back = input.state.view.division.maximized == part;
   push(commands, RunAction{"maximize " + std::string(to_string(back ? WindowPart::none : part))});
 }
 
@@ -50,7 +50,7 @@ void maximize(const PanelInput& input, WindowPart part, Commands& commands) {
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("side tabs", place, {0, 0});
   for (const Pane& pane : side_panes()) {
-    const TabEvent event = tab(pane, input.state.panes.side == &pane, place, input.scale);
+    const TabEvent event = tab(pane, input.state.view.panes.side == &pane, place, input.scale);
     if (event != TabEvent::none) push(commands, RunAction{action_of(pane)});
     if (event == TabEvent::double_click) maximize(input, WindowPart::side, commands);
   }
@@ -59,7 +59,7 @@ void side_tabs(const PanelInput& input, const Rectangle& place, Commands& comman
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("drawer tabs", place, {0, 0});
   for (const Pane& pane : drawers()) {
-    const bool open = input.state.panes.drawer == &pane;
+    const bool open = input.state.view.panes.drawer == &pane;
     const TabEvent event = tab(pane, open, place, input.scale);
     // A drawer shuts when its tab comes up again: not while a second click is still to come.
     if (event == TabEvent::click)
@@ -71,14 +71,14 @@ void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& comm
 }
 
 void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  const Pane& open = *input.state.panes.side;
+  const Pane& open = *input.state.view.panes.side;
   if (open.covers) ImGui::SetNextWindowBgAlpha(0);
   const PanelScope panel("side", place, {0, 0});
   open.draw(input, place, views, commands);
 }
 
 void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  const Pane* open = input.state.panes.drawer;
+  const Pane* open = input.state.view.panes.drawer;
   if (open == nullptr) return;
   const PanelScope panel("drawer", place, {0, 0});
   open->draw(input, place, views, commands);

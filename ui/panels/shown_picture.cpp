@@ -19,29 +19,30 @@ bool bring(const PanelInput& input, int frame, Views& views) {
 }  // namespace
 
 FetchedPicture picture_of(const PanelInput& input, int frame) {
-  const auto& pictures = input.state.recording->pictures;
+  const auto& pictures = input.state.document.recording->pictures;
   return input.fetcher != nullptr ? input.fetcher->get(pictures, frame)
                                   : fetch_picture(*pictures, frame);
 }
 
 int update_picture(const PanelInput& input, Views& views) {
   const WorkbenchState& state = input.state;
-  if (views.recording != state.recording) {
-    views.recording = state.recording;
+  if (views.recording != state.document.recording) {
+    views.recording = state.document.recording;
     views.frame = views.asked = -1;
     views.picture_error.clear();
   }
-  if (!state.recording->pictures) return state.frame;
+  if (!state.document.recording->pictures) return state.view.frame;
   // What was asked for is shown first, though the frame has changed since: where pictures come more
   // slowly than they are played, none would ever be in time.
   if (views.asked >= 0 && bring(input, views.asked, views)) views.asked = -1;
-  if (views.asked < 0 && views.frame != state.frame) {
+  if (views.asked < 0 && views.frame != state.view.frame) {
     // What is played next is there by then.
-    if (state.playing && input.fetcher != nullptr && state.frame + 1 < state.frame_count())
-      picture_of(input, state.frame + 1);
-    if (!bring(input, state.frame, views)) views.asked = state.frame;
+    if (state.view.playing && input.fetcher != nullptr &&
+        state.view.frame + 1 < state.frame_count())
+      picture_of(input, state.view.frame + 1);
+    if (!bring(input, state.view.frame, views)) views.asked = state.view.frame;
   }
-  return views.frame >= 0 ? views.frame : state.frame;
+  return views.frame >= 0 ? views.frame : state.view.frame;
 }
 
 PictureTexture* shown_picture(Views& views) {

@@ -35,7 +35,7 @@ void track_tooltip(const PanelInput& input, Views& views, std::int64_t track) {
   const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
   if (!column) return;
   const TrackLife& life = views.lives.of(*inspection, *column);
-  std::string text = fmt::format("track {}\n", track) + frame_text(life, input.state.frame);
+  std::string text = fmt::format("track {}\n", track) + frame_text(life, input.state.view.frame);
   if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
   if (life.inlier_since && life.inlier_until)
     text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
@@ -57,10 +57,10 @@ void camera_tooltip(const PanelInput& input, int frame) {
 }
 
 void lead_with(const WorkbenchState& state, std::int64_t id, Commands& commands) {
-  if (!state.inspection) return;
-  const auto plane = to_lead(*state.inspection, id);
+  if (!state.results.inspection) return;
+  const auto plane = to_lead(*state.results.inspection, id);
   if (!plane) return;
-  Settings settings = state.settings;
+  Settings settings = state.document.settings;
   settings.options.plane = *plane;
   push(commands, ChangeSettings{settings});
 }

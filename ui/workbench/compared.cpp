@@ -16,28 +16,29 @@ namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
   Compared one{called_among_compared(state, settings), settings, nullptr, ""};
-  if (const Surveyed* found = find_surveyed(state.surveyed.get(), one.settings)) {
+  if (const Surveyed* found = find_surveyed(state.results.surveyed.get(), one.settings)) {
     one.inspection = found->inspection;
     one.error = found->error;
   }
   // The same settings, said in other words: "as by default" and what the default comes to.
-  if (!one.inspection && state.inspection &&
-      as_used(state.inspection->settings) == as_used(settings))
-    one.inspection = state.inspection;
+  if (!one.inspection && state.results.inspection &&
+      as_used(state.results.inspection->settings) == as_used(settings))
+    one.inspection = state.results.inspection;
   return one;
 }
 
 Compared current_result(const WorkbenchState& state) {
-  Compared one{called_among_compared(state, state.settings), state.settings, nullptr, ""};
-  if (state.inspection && state.inspection->settings == state.settings)
-    one.inspection = state.inspection;
+  Compared one{
+      called_among_compared(state, state.document.settings), state.document.settings, nullptr, ""};
+  if (state.results.inspection && state.results.inspection->settings == state.document.settings)
+    one.inspection = state.results.inspection;
   return one;
 }
 
 /// Through the reference camera, whose frame is the world.
 std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
                                           const std::vector<Compared>& all) {
-  if (state.cube_ray) return state.cube_ray;
+  if (state.document.cube_ray) return state.document.cube_ray;
   for (const Compared& one : all) {
     if (!one.inspection || !one.inspection->cube) continue;
     // On a board the corners' rays are the same for all.
@@ -60,22 +61,22 @@ void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) 
 
 std::vector<Compared> unmoved_results(const WorkbenchState& state) {
   std::vector<Compared> all;
-  for (const Settings& settings : compared_settings(state, state.settings))
+  for (const Settings& settings : compared_settings(state, state.document.settings))
     all.push_back(compared(state, settings));
   return all;
 }
 
 std::vector<Configuration> compared_list(const WorkbenchState& state) {
   std::vector<Configuration> list;
-  for (const std::string& key : state.compared)
+  for (const std::string& key : state.document.compared)
     list.push_back(parse_configuration(key, state.methods));
   return list;
 }
 
 /// Of the first compared configuration that comes to other settings than the current ones.
 std::optional<std::size_t> first_other(const WorkbenchState& state) {
-  const Configuration current = called_among_compared(state, state.settings);
-  const std::vector<Settings> all = compared_settings(state, state.settings);
+  const Configuration current = called_among_compared(state, state.document.settings);
+  const std::vector<Settings> all = compared_settings(state, state.document.settings);
   const auto other = std::ranges::find_if(
       all, [&](const Settings& one) { return called_among_compared(state, one) != current; });
   if (other == all.end()) return std::nullopt;
@@ -85,7 +86,7 @@ std::optional<std::size_t> first_other(const WorkbenchState& state) {
 }  // namespace
 
 Settings compared_base(const WorkbenchState& state) {
-  return base_of(compared_list(state), state.settings);
+  return base_of(compared_list(state), state.document.settings);
 }
 
 Configuration called_among_compared(const WorkbenchState& state, const Settings& settings) {
@@ -104,7 +105,7 @@ std::vector<Settings> compared_settings(const WorkbenchState& state, const Setti
 std::vector<Compared> compared_results(const WorkbenchState& state) {
   std::vector<Compared> all = unmoved_results(state);
   place_cubes_alike(state, all);
-  if (state.flip && all.size() > 1) std::swap(all[0], all[1]);
+  if (state.view.flip && all.size() > 1) std::swap(all[0], all[1]);
   return all;
 }
 
@@ -117,17 +118,18 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state) {
 }
 
 std::optional<std::string> flipped(const WorkbenchState& state) {
-  if (!state.flip) return std::nullopt;
+  if (!state.view.flip) return std::nullopt;
   const auto other = first_other(state);
-  return other ? std::optional(state.compared[*other]) : std::nullopt;
+  return other ? std::optional(state.document.compared[*other]) : std::nullopt;
 }
 
 std::optional<Compared> flipped_result(const WorkbenchState& state) {
-  const auto other = state.flip ? first_other(state) : std::nullopt;
+  const auto other = state.view.flip ? first_other(state) : std::nullopt;
   if (!other) return std::nullopt;
   // Where the current one's cube is, if it has any.
-  std::vector<Compared> both = {current_result(state),
-                                compared(state, compared_settings(state, state.settings)[*other])};
+  std::vector<Compared> both = {
+      current_result(state),
+      compared(state, compared_settings(state, state.document.settings)[*other])};
   place_cubes_alike(state, both);
   return both.back();
 }
@@ -142,37 +144,37 @@ std::vector<int> curve_lengths(int frames) {
 
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted;
-  if (!state.recording) return wanted;
-  const PaneNeeds needs = needs_of(state.panes);
+  if (!state.document.recording) return wanted;
+  const PaneNeeds needs = needs_of(state.view.panes);
   const std::optional<std::string> other = flipped(state);
   if (!needs.compared && other)
     wanted.push_back(apply(parse_configuration(*other, state.methods), compared_base(state)));
   if (!needs.compared) return wanted;
   const auto want_each = [&](int frames) {
-    Settings window = state.settings;
+    Settings window = state.document.settings;
     window.frames = frames;
     std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
   };
-  want_each(state.settings.frames);
+  want_each(state.document.settings.frames);
   // The longest first: its tracks serve the others.
-  for (const int frames : curve_lengths(state.settings.frames))
-    if (needs.lengths && frames < state.settings.frames) want_each(frames);
+  for (const int frames : curve_lengths(state.document.settings.frames))
+    if (needs.lengths && frames < state.document.settings.frames) want_each(frames);
   return wanted;
 }
 
 std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   std::vector<ShownResult> shown;
-  if (!state.inspection) return shown;
-  const Settings& s = state.inspection->settings;
+  if (!state.results.inspection) return shown;
+  const Settings& s = state.results.inspection->settings;
   const auto named = [&](const Settings& settings, bool current) {
     const Configuration one = called_among_compared(state, settings);
     return ShownResult{title_of(one), color_of(one), nullptr, current};
   };
   shown.push_back(named(s, true));
-  shown.back().inspection = state.inspection;
+  shown.back().inspection = state.results.inspection;
   for (const Settings& settings : compared_settings(state, s)) {
     if (as_used(settings) == as_used(s)) continue;
-    const Surveyed* surveyed = find_surveyed(state.surveyed.get(), settings);
+    const Surveyed* surveyed = find_surveyed(state.results.surveyed.get(), settings);
     if (surveyed == nullptr || !surveyed->inspection) continue;
     shown.push_back(named(settings, false));
     shown.back().inspection = surveyed->inspection;

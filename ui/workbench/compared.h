@@ -29,13 +29,13 @@ Settings compared_base(const WorkbenchState& state);
 /// `compared_base`. What all have in common stands in the settings panel.
 Configuration called_among_compared(const WorkbenchState& state, const Settings& settings);
 
-/// The settings of every configuration of `state.compared`, in that order, in a window: what none
-/// of them names is as the window has it.
+/// The settings of every configuration of `state.document.compared`, in that order, in a window:
+/// what none of them names is as the window has it.
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
 
-/// Every configuration of `state.compared`, in that order; with `flip` the first two change places.
-/// The cubes of all stand where one ray of the reference camera meets their planes: where the user
-/// moved it, else where the first has it.
+/// Every configuration of `state.document.compared`, in that order; with `flip` the first two
+/// change places. The cubes of all stand where one ray of the reference camera meets their planes:
+/// where the user moved it, else where the first has it.
 std::vector<Compared> compared_results(const WorkbenchState& state);
 
 /// The same, and the current settings before the others where they are not among them.

@@ -6,12 +6,13 @@ namespace gpo {
 
 void say(WorkbenchState& state, const std::string& text, Severity severity) {
   constexpr std::size_t kMostLines = 1000;
-  state.message = text;
-  state.message_severity = severity;
-  state.message_seconds = 0;
+  state.messages.text = text;
+  state.messages.severity = severity;
+  state.messages.seconds = 0;
   if (text.empty()) return;
-  state.log.push_back({severity, text});
-  if (state.log.size() > kMostLines) state.log.erase(state.log.begin());
+  state.messages.lines.push_back({severity, text});
+  if (state.messages.lines.size() > kMostLines)
+    state.messages.lines.erase(state.messages.lines.begin());
 }
 
 }  // namespace gpo

@@ -15,9 +15,9 @@ namespace {
 template <class Takes>
 std::vector<std::int64_t> tracks_if(const WorkbenchState& state, Takes&& takes) {
   std::vector<std::int64_t> ids;
-  if (!state.inspection) return ids;
-  const Tracks& tracks = *state.inspection->tracks;
-  const int frame = state.frame - tracks.start;
+  if (!state.results.inspection) return ids;
+  const Tracks& tracks = *state.results.inspection->tracks;
+  const int frame = state.view.frame - tracks.start;
   if (frame < 0 || frame >= tracks.frame_count()) return ids;
   for (int column = 0; column < tracks.track_count(); ++column)
     if (tracks.seen(frame, column) && takes(frame, column)) ids.push_back(tracks.ids[column]);
@@ -28,8 +28,8 @@ std::vector<std::int64_t> tracks_if(const WorkbenchState& state, Takes&& takes) 
 }  // namespace
 
 std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state) {
-  if (!state.inspection) return {};
-  std::vector<std::int64_t> ids = state.inspection->tracks->ids;
+  if (!state.results.inspection) return {};
+  std::vector<std::int64_t> ids = state.results.inspection->tracks->ids;
   std::ranges::sort(ids);
   return ids;
 }
@@ -40,7 +40,7 @@ std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state) {
 
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state) {
   return tracks_if(state, [&](int frame, int column) {
-    return !state.inspection->window->inlier[frame][column];
+    return !state.results.inspection->window->inlier[frame][column];
   });
 }
 
@@ -49,7 +49,7 @@ std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
                                         const Eigen::Vector2d& b) {
   const Eigen::AlignedBox2d box(a.cwiseMin(b), a.cwiseMax(b));
   return tracks_if(state, [&](int frame, int column) {
-    return box.contains(state.inspection->tracks->raw_px[frame].col(column).eval());
+    return box.contains(state.results.inspection->tracks->raw_px[frame].col(column).eval());
   });
 }
 

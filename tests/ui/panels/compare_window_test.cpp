@@ -32,10 +32,10 @@ class CompareWindow : public DrawingTest {
     DrawingTest::SetUp();
     auto own = std::make_shared<Inspection>(made_inspection());
     own->settings.options.method = "gpo";
-    state_.settings = own->settings;
+    state_.document.settings = own->settings;
     adopt(state_, own->recording);
-    state_.inspection = own;
-    state_.compared = {"gpo", "ba"};
+    state_.results.inspection = own;
+    state_.document.compared = {"gpo", "ba"};
     add("gpo", {});
     add("ba", {.estimate_error = 4});
     apply(state_, GoToFrame{24});
@@ -43,11 +43,11 @@ class CompareWindow : public DrawingTest {
 
   void add(const std::string& key, const MadeOptions& options) {
     auto one = std::make_shared<Inspection>(made_inspection(options));
-    one->recording = state_.recording;
-    one->settings = gpo::apply(parse_configuration(key), state_.settings);
-    SurveyResults results = *state_.surveyed;
+    one->recording = state_.document.recording;
+    one->settings = gpo::apply(parse_configuration(key), state_.document.settings);
+    SurveyResults results = *state_.results.surveyed;
     results.push_back({one->settings, one, ""});
-    state_.surveyed = std::make_shared<const SurveyResults>(results);
+    state_.results.surveyed = std::make_shared<const SurveyResults>(results);
   }
 
   PanelInput input() { return {state_, idle_, no_survey_, true, gui_.scale()}; }
@@ -100,7 +100,7 @@ int count(const cv::Mat& picture, std::uint32_t rgb) {
 }
 
 TEST_F(CompareWindow, AHeadingMakesItsMethodTheCurrentOne) {
-  state_.panes.compare = true;
+  state_.view.panes.compare = true;
   draw();
   const Commands commands =
       click(layout_.views.x + layout_.views.width * 0.75F, layout_.views.y + 90);
@@ -109,7 +109,7 @@ TEST_F(CompareWindow, AHeadingMakesItsMethodTheCurrentOne) {
 }
 
 TEST_F(CompareWindow, TheWheelZoomsAllColumnsAroundTheSamePoint) {
-  state_.panes.compare = true;
+  state_.view.panes.compare = true;
   run_line(state_, "compare zoom 2");
   draw();
   const auto zoomed_at = [&](float x) {
@@ -130,7 +130,7 @@ TEST_F(CompareWindow, TheWheelZoomsAllColumnsAroundTheSamePoint) {
 }
 
 TEST_F(CompareWindow, AChipsCrossRemovesIt) {
-  state_.panes.compare = true;
+  state_.view.panes.compare = true;
   draw();
   bool removed = false;
   for (float x = layout_.views.x + 20; x < layout_.views.x + 120 && !removed; x += 6) {
@@ -143,7 +143,7 @@ TEST_F(CompareWindow, AChipsCrossRemovesIt) {
 
 TEST_F(CompareWindow, WhatIsMissingSaysSoInItsPlace) {
   const cv::Mat whole = view("compare", "compare_two.png");
-  state_.compared.push_back("pba");
+  state_.document.compared.push_back("pba");
   const cv::Mat three = view("compare", "compare_missing.png");
   const cv::Mat last = three.colRange(610, 900);
   EXPECT_GT(count(last, color_of(Role::accent)), 30);  // "computing"
@@ -153,7 +153,7 @@ TEST_F(CompareWindow, WhatIsMissingSaysSoInItsPlace) {
 
 TEST_F(CompareWindow, FlipSwapsTheColumnsInPlace) {
   const cv::Mat before = view("compare");
-  state_.flip = true;
+  state_.view.flip = true;
   const cv::Mat after = view("compare");
   const cv::Rect first(12, 92, 430, 300), second(12 + 444, 92, 430, 300);
   // Elsewhere on the screen the rims of lines are rounded otherwise.
@@ -164,18 +164,18 @@ TEST_F(CompareWindow, FlipSwapsTheColumnsInPlace) {
 
 TEST_F(CompareWindow, FlipShowsTheOtherResultInThePictureAndSaysWhose) {
   const cv::Mat own = view("picture");
-  state_.flip = true;
+  state_.view.flip = true;
   const cv::Mat other = view("picture", "flip.png");
   EXPECT_FALSE(same_bytes(own, other));
   const cv::Mat label = other(cv::Rect(700, 5, 200, 45));
   EXPECT_GT(count(label, color_of(parse_configuration("ba"))), 100);
-  state_.surveyed = std::make_shared<const SurveyResults>();
+  state_.results.surveyed = std::make_shared<const SurveyResults>();
   EXPECT_FALSE(same_bytes(other, view("picture", "flip_computing.png")));
   draw();  // in the window, too
 }
 
 TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
-  state_.panes.drawer = find_drawer("table");
+  state_.view.panes.drawer = find_drawer("table");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   draw();
@@ -191,20 +191,20 @@ TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
 
 TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
   for (const int length : {5, 10, 15, 20, 25}) {
-    Settings settings = state_.settings;
+    Settings settings = state_.document.settings;
     for (const char* key : {"gpo", "ba"}) {
-      auto one = std::make_shared<Inspection>(*state_.inspection);
+      auto one = std::make_shared<Inspection>(*state_.results.inspection);
       one->settings = gpo::apply(parse_configuration(key), settings);
       one->settings.frames = length;
       one->evaluation->ate_m = 0.001 * length;
       one->evaluation->pne_deg = 1.0 / length;
       one->evaluation->pde_m = 0.01 / length;
-      SurveyResults results = *state_.surveyed;
+      SurveyResults results = *state_.results.surveyed;
       results.push_back({one->settings, one, ""});
-      state_.surveyed = std::make_shared<const SurveyResults>(results);
+      state_.results.surveyed = std::make_shared<const SurveyResults>(results);
     }
   }
-  state_.panes.drawer = find_drawer("curves");
+  state_.view.panes.drawer = find_drawer("curves");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   const float y = layout.drawer.y + layout.drawer.height / 2;
@@ -212,15 +212,15 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
   const Commands late = click(layout.drawer.x + layout.drawer.width / 3 - 40, y);
   ASSERT_TRUE(find<GoToFrame>(early) && find<GoToFrame>(late));
   EXPECT_LT(find<GoToFrame>(early)->frame, find<GoToFrame>(late)->frame);
-  EXPECT_GE(find<GoToFrame>(early)->frame, state_.settings.start + 4);
-  EXPECT_LE(find<GoToFrame>(late)->frame, state_.settings.start + 29);
+  EXPECT_GE(find<GoToFrame>(early)->frame, state_.document.settings.start + 4);
+  EXPECT_LE(find<GoToFrame>(late)->frame, state_.document.settings.start + 29);
   const cv::Mat both = view("curves", "curves.png");
   run_line(state_, "curve ba off");
   EXPECT_FALSE(same_bytes(both, view("curves")));
 }
 
 TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
-  state_.panes.drawer = find_drawer("curves");
+  state_.view.panes.drawer = find_drawer("curves");
   const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
   draw();
   const Commands commands = click(layout.drawer.x + 40, layout.drawer.y + 14);
@@ -229,17 +229,17 @@ TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
 }
 
 TEST_F(CompareWindow, IsDrawnAtAnySizeAndWhateverIsThere) {
-  state_.panes.compare = true;
+  state_.view.panes.compare = true;
   for (const char* drawer : {"table", "curves"}) {
-    state_.panes.drawer = find_drawer(drawer);
+    state_.view.panes.drawer = find_drawer(drawer);
     for (const char* compared : {"gpo", "gpo,ba,pba", "all"}) {
       run_line(state_, std::string("compare ") + compared);
       for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1920, 1080), cv::Size(64, 48)})
         draw_view("window", size, input(), {}, gui_, views_);
     }
   }
-  state_.inspection.reset();
-  state_.surveyed = std::make_shared<const SurveyResults>();
+  state_.results.inspection.reset();
+  state_.results.surveyed = std::make_shared<const SurveyResults>();
   draw();
 }
 

@@ -38,26 +38,26 @@ TEST(Actions, HaveUniqueNamesAndKeysAndAreExplained) {
 TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
   WorkbenchState state = with_frames(60);
   run_line(state, "frame 40");
-  EXPECT_EQ(state.frame, 40);
+  EXPECT_EQ(state.view.frame, 40);
   run_line(state, "method pba");
-  EXPECT_EQ(state.settings.options.method, "pba");
+  EXPECT_EQ(state.document.settings.options.method, "pba");
   run_line(state, "set ransac_threshold_px 3.5");
-  EXPECT_EQ(state.settings.options.ransac_threshold_px, 3.5);
+  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 3.5);
   run_line(state, "ransac_threshold_px 2.5");  // a setting's name is enough
-  EXPECT_EQ(state.settings.options.ransac_threshold_px, 2.5);
+  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.5);
   run_line(state, "exaggerate");
-  EXPECT_EQ(state.view.exaggeration, 5);
+  EXPECT_EQ(state.view.toggles.exaggeration, 5);
   run_line(state, "exaggerate 100");
   run_line(state, "exaggerate");
-  EXPECT_EQ(state.view.exaggeration, 1);
+  EXPECT_EQ(state.view.toggles.exaggeration, 1);
   run_line(state, "point-size 9");
-  EXPECT_EQ(state.view.point_size_px, 9);
+  EXPECT_EQ(state.view.toggles.point_size_px, 9);
   run_line(state, "color-by residual");
-  EXPECT_EQ(state.coloring, Coloring::residual);
+  EXPECT_EQ(state.view.coloring, Coloring::residual);
   run_line(state, "viewpoint top");
-  EXPECT_EQ(state.viewpoint, Viewpoint::top);
+  EXPECT_EQ(state.view.viewpoint, Viewpoint::top);
   run_line(state, "tails off");
-  EXPECT_FALSE(state.view.tails);
+  EXPECT_FALSE(state.view.toggles.tails);
   for (const auto& [line, what] :
        {std::pair{"frame", "frame: expected one word after it"},
         {"frame x", "frame: 'x', expected a number"},
@@ -72,7 +72,7 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
         {"screenshot a.jpg", "screenshot: 'a.jpg', expected a file name that ends in .png"},
         {"select track 7", "select track: the window has no track 7"}}) {
     run_action(state, line);
-    EXPECT_THAT(state.message, testing::HasSubstr(what)) << line;
+    EXPECT_THAT(state.messages.text, testing::HasSubstr(what)) << line;
   }
 }
 

@@ -32,32 +32,32 @@ std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
                                      const std::string& configuration,
                                      const MadeOptions& options = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
-  if (!state.recording) {
-    state.settings = inspection->settings;
+  if (!state.document.recording) {
+    state.document.settings = inspection->settings;
     adopt(state, inspection->recording);
   }
-  inspection->recording = state.recording;
-  inspection->settings = apply(parse_configuration(configuration), state.settings);
-  SurveyResults results = *state.surveyed;
+  inspection->recording = state.document.recording;
+  inspection->settings = apply(parse_configuration(configuration), state.document.settings);
+  SurveyResults results = *state.results.surveyed;
   results.push_back({inspection->settings, inspection, ""});
-  state.surveyed = std::make_shared<const SurveyResults>(std::move(results));
+  state.results.surveyed = std::make_shared<const SurveyResults>(std::move(results));
   return inspection;
 }
 
 TEST(Compared, ListsAreChosenAddedToAndTakenFrom) {
   WorkbenchState state;
-  EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
   run_line(state, "compare gpo,ba");
   run_line(state, "compare add gpo+no-ransac");
   run_line(state, "compare add ba");          // is there already
   run_line(state, "compare add gpo+ransac");  // only says what is so by default
-  EXPECT_THAT(state.compared, ElementsAre("gpo", "ba", "gpo+no-ransac"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo", "ba", "gpo+no-ransac"));
   run_line(state, "compare remove ba");
-  EXPECT_THAT(state.compared, ElementsAre("gpo", "gpo+no-ransac"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo", "gpo+no-ransac"));
   run_line(state, "compare paper");
-  EXPECT_THAT(state.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo", "pnp_ba", "ba", "pba"));
   run_line(state, "compare all");
-  EXPECT_GT(state.compared.size(), methods().size());
+  EXPECT_GT(state.document.compared.size(), methods().size());
 }
 
 TEST(Compared, RefusesWhatItDoesNotKnowAndKeepsTheLast) {
@@ -67,7 +67,7 @@ TEST(Compared, RefusesWhatItDoesNotKnowAndKeepsTheLast) {
   EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not among"));
   EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("the last one stays"));
   EXPECT_THAT(refusal(state, "compare add"), HasSubstr("compare add"));
-  EXPECT_THAT(state.compared, ElementsAre("gpo"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo"));
 }
 
 TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
@@ -80,7 +80,7 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
 
 TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   WorkbenchState state;
-  state.settings.tracking = Tracking::frame_to_frame;
+  state.document.settings.tracking = Tracking::frame_to_frame;
   run_line(state, "compare gpo,ba");
   const auto keys = [&] {
     std::vector<std::string> all;
@@ -92,22 +92,22 @@ TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run_line(state, "compare gpo,gpo+no-ransac");
-  state.settings.options.ransac = false;  // as a click on the second makes it
+  state.document.settings.options.ransac = false;  // as a click on the second makes it
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
   run_line(state, "compare gpo,gpo+anchored");  // the same by default, and not here
-  EXPECT_THAT(state.compared, ElementsAre("gpo"));
+  EXPECT_THAT(state.document.compared, ElementsAre("gpo"));
   run_line(state, "compare gpo+anchored");
-  state.settings.options.ransac.reset();
+  state.document.settings.options.ransac.reset();
   EXPECT_THAT(keys(), ElementsAre("gpo"));
 }
 
 TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   WorkbenchState state;
-  state.settings.options.method = "gpo";
+  state.document.settings.options.method = "gpo";
   EXPECT_EQ(flipped(state), std::nullopt);
   run_line(state, "flip on");
   EXPECT_EQ(flipped(state), "pnp_ba");
-  state.settings.options.method = "ba";
+  state.document.settings.options.method = "ba";
   EXPECT_EQ(flipped(state), "gpo");
   run_line(state, "compare ba");
   EXPECT_EQ(flipped(state), std::nullopt);
@@ -120,13 +120,13 @@ TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
 TEST(Compared, FlipAsksForWhatItShows) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  state.settings.options.method = "gpo";
+  state.document.settings.options.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
   run_line(state, "flip on");
   const auto wanted = wanted_inspections(state);
   ASSERT_EQ(wanted.size(), 1U);
   EXPECT_EQ(wanted[0].options.method, "pnp_ba");
-  EXPECT_EQ(wanted[0].frames, state.settings.frames);
+  EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
 }
 
 TEST(Compared, FlipIsHeldByItsKey) {
@@ -140,9 +140,10 @@ TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
   WorkbenchState state;
   surveyed(state, "gpo");
   run_line(state, "compare gpo,ba,pba");
-  SurveyResults results = *state.surveyed;
-  results.push_back({apply(parse_configuration("pba"), state.settings), nullptr, "no gyroscope"});
-  state.surveyed = std::make_shared<const SurveyResults>(results);
+  SurveyResults results = *state.results.surveyed;
+  results.push_back(
+      {apply(parse_configuration("pba"), state.document.settings), nullptr, "no gyroscope"});
+  state.results.surveyed = std::make_shared<const SurveyResults>(results);
   const auto all = compared_results(state);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].inspection, nullptr);
@@ -173,22 +174,23 @@ TEST(Compared, AllCubesStandOnOneRay) {
   auto all = compared_results(state);
   ASSERT_TRUE(all[0].inspection && all[1].inspection);
   EXPECT_LT(angle_deg(all[0].inspection->cube->origin, all[1].inspection->cube->origin), 1e-5);
-  state.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
+  state.document.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
   all = compared_results(state);
   for (const Compared& one : all)
-    EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.cube_ray), 1e-5);
+    EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.document.cube_ray), 1e-5);
 }
 
 TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   WorkbenchState state;
-  state.inspection = surveyed(state, "gpo");
+  state.results.inspection = surveyed(state, "gpo");
   run_line(state, "compare ba");
-  state.settings = state.inspection->settings;
+  state.document.settings = state.results.inspection->settings;
   auto all = compared_with_current(state);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(key_of(all[0].configuration), "gpo");
   EXPECT_NE(all[0].inspection, nullptr);
-  state.settings.options.ransac_threshold_px += 1;  // its result is of earlier settings now
+  state.document.settings.options.ransac_threshold_px +=
+      1;  // its result is of earlier settings now
   EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
   run_line(state, "compare ba,gpo");
   all = compared_with_current(state);
@@ -200,28 +202,28 @@ TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
   WorkbenchState state;
   surveyed(state, "gpo");
   run_line(state, "compare zoom 4 0 0");
-  ASSERT_TRUE(state.compare_zoom);
-  EXPECT_EQ(state.compare_zoom->factor, 4);
-  EXPECT_EQ(state.compare_zoom->center, Eigen::Vector2d(0, 0));
-  EXPECT_EQ(state.picture_zoom.factor, 1);
+  ASSERT_TRUE(state.view.compare_zoom);
+  EXPECT_EQ(state.view.compare_zoom->factor, 4);
+  EXPECT_EQ(state.view.compare_zoom->center, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(state.view.picture_zoom.factor, 1);
   run_line(state, "compare zoom");
-  EXPECT_FALSE(state.compare_zoom);
+  EXPECT_FALSE(state.view.compare_zoom);
   run_line(state, "compare zoom 2");
   run_line(state, "fit");
-  EXPECT_FALSE(state.compare_zoom);
+  EXPECT_FALSE(state.view.compare_zoom);
   EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
 }
 
 TEST(Compared, CurvesAreSwitchedByName) {
   WorkbenchState state;
   run_line(state, "curve ba");
-  EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
+  EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
   run_line(state, "curve ba off");
-  EXPECT_THAT(state.hidden_curves, ElementsAre("ba"));
+  EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
   run_line(state, "curve ba");
-  EXPECT_THAT(state.hidden_curves, IsEmpty());
+  EXPECT_THAT(state.view.hidden_curves, IsEmpty());
   run_line(state, "curve gpo+ransac off");  // the same as gpo
-  EXPECT_THAT(state.hidden_curves, ElementsAre("gpo"));
+  EXPECT_THAT(state.view.hidden_curves, ElementsAre("gpo"));
   EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
 }
 

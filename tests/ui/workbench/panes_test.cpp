@@ -39,8 +39,8 @@ TEST(WorkbenchPanes, AreOpenedByAnActionEachAndToldApart) {
       run_line(state, action.name);
       EXPECT_TRUE(action.checked(state)) << pane.key;
       const bool below = find_drawer(pane.key) != nullptr;
-      EXPECT_EQ(below ? state.panes.drawer : state.panes.side, &pane);
-      EXPECT_EQ(state.panes.compare, below) << pane.key;
+      EXPECT_EQ(below ? state.view.panes.drawer : state.view.panes.side, &pane);
+      EXPECT_EQ(state.view.panes.compare, below) << pane.key;
     }
   EXPECT_EQ(find_drawer("scene"), nullptr);
   EXPECT_EQ(find_side_pane("cellar"), nullptr);

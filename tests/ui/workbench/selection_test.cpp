@@ -21,9 +21,9 @@ using Ids = std::vector<std::int64_t>;
 WorkbenchState with_inspection() {
   const auto inspection = std::make_shared<const Inspection>(made_inspection());
   WorkbenchState state;
-  state.settings = inspection->settings;
+  state.document.settings = inspection->settings;
   adopt(state, inspection->recording);
-  state.inspection = inspection;
+  state.results.inspection = inspection;
   return state;
 }
 
@@ -43,7 +43,7 @@ TEST(Selection, KeepsIdsAscendingAndTheLastOneInFocus) {
 
 TEST(Selection, OfARectangleHasTheTracksSeenThere) {
   WorkbenchState state = with_inspection();
-  const Tracks& tracks = *state.inspection->tracks;
+  const Tracks& tracks = *state.results.inspection->tracks;
   run_line(state, "frame 20");
   run_line(state, "select rectangle 0 0 200 150");
   EXPECT_FALSE(state.selection.tracks.empty());
@@ -65,15 +65,15 @@ TEST(Selection, IsExcludedAndTakenBack) {
   const Ids outliers = state.selection.tracks;
   EXPECT_FALSE(outliers.empty());
   run_line(state, "exclude");
-  EXPECT_EQ(state.settings.exclude, outliers);
+  EXPECT_EQ(state.document.settings.exclude, outliers);
   run_line(state, "undo");
-  EXPECT_THAT(state.settings.exclude, IsEmpty());
+  EXPECT_THAT(state.document.settings.exclude, IsEmpty());
   run_line(state, "redo");
   run_line(state, "include");
-  EXPECT_THAT(state.settings.exclude, IsEmpty());
+  EXPECT_THAT(state.document.settings.exclude, IsEmpty());
   run_line(state, "select none");
   run_action(state, "exclude");
-  EXPECT_EQ(state.message, "no track is selected");
+  EXPECT_EQ(state.messages.text, "no track is selected");
 }
 
 TEST(Selection, OutsideOfTheWindowThereIsNothingToSelect) {

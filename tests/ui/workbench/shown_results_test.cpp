@@ -15,8 +15,8 @@ TEST(ShownResults, AreTheCurrentOneAndTheComparedOnesThatExist) {
   Inspection made = made_inspection();
   made.settings.options.method = "gpo";
   const auto current = std::make_shared<const Inspection>(made);
-  state.inspection = current;
-  state.compared = {"gpo", "ba", "gpo+no-ransac"};
+  state.results.inspection = current;
+  state.document.compared = {"gpo", "ba", "gpo+no-ransac"};
   const Settings& settings = current->settings;
   SurveyResults surveyed;
   for (const char* key : {"gpo", "gpo+no-ransac"})
@@ -25,7 +25,7 @@ TEST(ShownResults, AreTheCurrentOneAndTheComparedOnesThatExist) {
   --shorter.frames;
   surveyed.push_back({shorter, current, ""});
   surveyed.push_back({apply(parse_configuration("ba"), settings), nullptr, "does not work"});
-  state.surveyed = std::make_shared<const SurveyResults>(surveyed);
+  state.results.surveyed = std::make_shared<const SurveyResults>(surveyed);
   const auto shown = shown_results(state);
   ASSERT_EQ(shown.size(), 2U) << "ba is known of another window only";
   EXPECT_TRUE(shown[0].current);

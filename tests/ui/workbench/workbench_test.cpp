@@ -40,18 +40,18 @@ void expect_legal(const Settings& settings, int frame_count) {
 
 TEST(Workbench, ShowsTheLastFrameOfTheWindowOfANewRecording) {
   const WorkbenchState state = opened(60);
-  EXPECT_EQ(state.settings.start, 0);
-  EXPECT_EQ(state.settings.frames, 30);
-  EXPECT_EQ(state.frame, 29);
+  EXPECT_EQ(state.document.settings.start, 0);
+  EXPECT_EQ(state.document.settings.frames, 30);
+  EXPECT_EQ(state.view.frame, 29);
 }
 
 TEST(Workbench, FitsTheWindowIntoAShortRecordingAndSaysSo) {
   WorkbenchState state;
-  state.settings.start = 500;
+  state.document.settings.start = 500;
   adopt(state, recording_of(12));
-  expect_legal(state.settings, 12);
-  EXPECT_EQ(state.frame, 11);
-  EXPECT_EQ(state.message, "start 500 does not fit: the last of 12 frames is 11");
+  expect_legal(state.document.settings, 12);
+  EXPECT_EQ(state.view.frame, 11);
+  EXPECT_EQ(state.messages.text, "start 500 does not fit: the last of 12 frames is 11");
 }
 
 TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
@@ -60,71 +60,71 @@ TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
   desk->path = "desk";
   room->path = "room";
   WorkbenchState state;
-  state.settings.start = 5;  // the command line's
+  state.document.settings.start = 5;  // the command line's
   adopt(state, desk);
-  EXPECT_EQ(state.settings.start, 5);
-  Settings chosen = state.settings;
+  EXPECT_EQ(state.document.settings.start, 5);
+  Settings chosen = state.document.settings;
   chosen.start = 180;
   chosen.frames = 47;
   chosen.options.method = "ba";
   apply(state, ChangeSettings{chosen});
   adopt(state, room);
-  EXPECT_EQ(state.settings.start, 0);
-  EXPECT_EQ(state.settings.frames, 30);
-  EXPECT_EQ(state.settings.options.method, "gpo_joint");
-  EXPECT_EQ(state.frame, 29);
+  EXPECT_EQ(state.document.settings.start, 0);
+  EXPECT_EQ(state.document.settings.frames, 30);
+  EXPECT_EQ(state.document.settings.options.method, "gpo_joint");
+  EXPECT_EQ(state.view.frame, 29);
   adopt(state, desk);
-  EXPECT_EQ(state.settings, chosen);
+  EXPECT_EQ(state.document.settings, chosen);
   run(state, "reset");
-  EXPECT_EQ(state.settings, Settings{});
+  EXPECT_EQ(state.document.settings, Settings{});
   run(state, "undo");
-  EXPECT_EQ(state.settings, chosen);
+  EXPECT_EQ(state.document.settings, chosen);
 }
 
 TEST(Workbench, StepsStayInsideTheRecording) {
   WorkbenchState state = opened(25);
   run(state, "last");
-  EXPECT_EQ(state.frame, 24);
+  EXPECT_EQ(state.view.frame, 24);
   run(state, "next");
   run(state, "next-ten");
-  EXPECT_EQ(state.frame, 24);
+  EXPECT_EQ(state.view.frame, 24);
   run(state, "previous");
-  EXPECT_EQ(state.frame, 23);
+  EXPECT_EQ(state.view.frame, 23);
   run(state, "previous-ten");
-  EXPECT_EQ(state.frame, 13);
+  EXPECT_EQ(state.view.frame, 13);
   run(state, "next-ten");
-  EXPECT_EQ(state.frame, 23);
+  EXPECT_EQ(state.view.frame, 23);
   run(state, "next");
-  EXPECT_EQ(state.frame, 24);
+  EXPECT_EQ(state.view.frame, 24);
   run(state, "first");
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
   run(state, "previous");
   run(state, "previous-ten");
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
 }
 
 TEST(Workbench, ScrubbingStaysInsideTheRecording) {
   WorkbenchState state = opened(25);
   apply(state, GoToFrame{-5});
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
   apply(state, GoToFrame{1000});
-  EXPECT_EQ(state.frame, 24);
+  EXPECT_EQ(state.view.frame, 24);
 }
 
 TEST(Workbench, PlaysAtTheRateOfTheRecordingAndStopsAtItsEnd) {
   WorkbenchState state = opened(25);
   run(state, "first");
   run(state, "play");
-  EXPECT_TRUE(state.playing);
+  EXPECT_TRUE(state.view.playing);
   EXPECT_DOUBLE_EQ(*seconds_to_next_frame(state), 0.1);
   advance(state, 0.04);
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
   EXPECT_NEAR(*seconds_to_next_frame(state), 0.06, 1e-12);
   advance(state, 0.27);  // 0.31 s in all
-  EXPECT_EQ(state.frame, 3);
+  EXPECT_EQ(state.view.frame, 3);
   advance(state, 100);
-  EXPECT_EQ(state.frame, 24);
-  EXPECT_FALSE(state.playing);
+  EXPECT_EQ(state.view.frame, 24);
+  EXPECT_FALSE(state.view.playing);
   EXPECT_FALSE(seconds_to_next_frame(state).has_value());
 }
 
@@ -132,18 +132,18 @@ TEST(Workbench, PlayAtTheEndBeginsAgainAndASecondPressPauses) {
   WorkbenchState state = opened(25);
   run(state, "last");
   run(state, "play");
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
   run(state, "play");
-  EXPECT_FALSE(state.playing);
+  EXPECT_FALSE(state.view.playing);
   advance(state, 10);
-  EXPECT_EQ(state.frame, 0);
+  EXPECT_EQ(state.view.frame, 0);
 }
 
 TEST(Workbench, StepPausesPlaying) {
   WorkbenchState state = opened();
   run(state, "play");
   run(state, "next");
-  EXPECT_FALSE(state.playing);
+  EXPECT_FALSE(state.view.playing);
 }
 
 TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
@@ -153,13 +153,13 @@ TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
                                    {"cube", &ViewToggles::cube},
                                    {"truth", &ViewToggles::truth}}) {
     WorkbenchState state = opened();
-    const bool before = state.view.*flag;
+    const bool before = state.view.toggles.*flag;
     run(state, name);
-    EXPECT_NE(state.view.*flag, before) << name;
+    EXPECT_NE(state.view.toggles.*flag, before) << name;
     EXPECT_EQ(find_action(name)->checked(state), !before) << name;
     run(state, name);
-    EXPECT_EQ(state.view.*flag, before) << name;
-    EXPECT_EQ(state.settings, opened().settings) << name;
+    EXPECT_EQ(state.view.toggles.*flag, before) << name;
+    EXPECT_EQ(state.document.settings, opened().document.settings) << name;
   }
 }
 
@@ -169,7 +169,7 @@ TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
   EXPECT_EQ(action_of_character(U'u'), &action);
   for (const auto& [times, text] :
        {std::pair{1, "on"}, {10, "\u00d710"}, {100, "\u00d7100"}, {0, "off"}, {1, "on"}}) {
-    EXPECT_EQ(state.view.uncertainty, times);
+    EXPECT_EQ(state.view.toggles.uncertainty, times);
     EXPECT_EQ(action.value(state), text);
     EXPECT_EQ(action.checked(state), times > 0);
     run_action(state, "uncertainty");
@@ -179,9 +179,9 @@ TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
 TEST(Workbench, RansacIsSwitched) {
   WorkbenchState state = opened();
   run(state, "ransac");
-  EXPECT_FALSE(uses_ransac(state.settings.options));
+  EXPECT_FALSE(uses_ransac(state.document.settings.options));
   run(state, "ransac");
-  EXPECT_TRUE(uses_ransac(state.settings.options));
+  EXPECT_TRUE(uses_ransac(state.document.settings.options));
 }
 
 TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
@@ -190,7 +190,7 @@ TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
     const Action* action = action_of_character(U'1' + i);
     ASSERT_NE(action, nullptr);
     run(state, action->name);
-    EXPECT_EQ(state.settings.options.method, methods()[i].key);
+    EXPECT_EQ(state.document.settings.options.method, methods()[i].key);
     EXPECT_TRUE(action->checked(state));
   }
 }
@@ -199,25 +199,25 @@ TEST(Workbench, WindowStartsHereAndKeepsItsEnd) {
   WorkbenchState state = opened(60);
   apply(state, GoToFrame{10});
   run(state, "window-start");
-  EXPECT_EQ(state.settings.start, 10);
-  EXPECT_EQ(state.settings.frames, 20);  // 10..29
+  EXPECT_EQ(state.document.settings.start, 10);
+  EXPECT_EQ(state.document.settings.frames, 20);  // 10..29
   apply(state, GoToFrame{35});
   run(state, "window-start");  // behind its end: keeps its length
-  EXPECT_EQ(state.settings.start, 35);
-  EXPECT_EQ(state.settings.frames, 20);
+  EXPECT_EQ(state.document.settings.start, 35);
+  EXPECT_EQ(state.document.settings.frames, 20);
 }
 
 TEST(Workbench, WindowEndsHereAndKeepsItsStart) {
   WorkbenchState state = opened(60);
-  state.settings.start = 20;
+  state.document.settings.start = 20;
   apply(state, GoToFrame{25});
   run(state, "window-end");
-  EXPECT_EQ(state.settings.start, 20);
-  EXPECT_EQ(state.settings.frames, 6);  // 20..25
+  EXPECT_EQ(state.document.settings.start, 20);
+  EXPECT_EQ(state.document.settings.frames, 6);  // 20..25
   apply(state, GoToFrame{10});
   run(state, "window-end");  // before its start: keeps its length
-  EXPECT_EQ(state.settings.start, 5);
-  EXPECT_EQ(state.settings.frames, 6);
+  EXPECT_EQ(state.document.settings.start, 5);
+  EXPECT_EQ(state.document.settings.frames, 6);
 }
 
 TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
@@ -227,15 +227,16 @@ TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
                                      Settings{.start = count - 2, .frames = 2},
                                      Settings{.start = 0, .frames = count}}) {
         WorkbenchState state = opened(count);
-        state.settings = fit_window(before, count);
-        state.frame = frame;
+        state.document.settings = fit_window(before, count);
+        state.view.frame = frame;
         WorkbenchState other = state;
         run(state, "window-start");
-        expect_legal(state.settings, count);
-        EXPECT_EQ(state.settings.start, std::min(frame, count - 2));
+        expect_legal(state.document.settings, count);
+        EXPECT_EQ(state.document.settings.start, std::min(frame, count - 2));
         run(other, "window-end");
-        expect_legal(other.settings, count);
-        EXPECT_EQ(other.settings.start + other.settings.frames - 1, std::max(frame, 1));
+        expect_legal(other.document.settings, count);
+        EXPECT_EQ(other.document.settings.start + other.document.settings.frames - 1,
+                  std::max(frame, 1));
       }
     }
   }
@@ -244,72 +245,72 @@ TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
 TEST(Workbench, SettingsOfThePanelAreMadeToFit) {
   WorkbenchState state = opened(20);
   apply(state, ChangeSettings{{.start = 18, .frames = 50}});
-  expect_legal(state.settings, 20);
+  expect_legal(state.document.settings, 20);
   apply(state, ChangeSettings{{.start = -3, .frames = -1}});
-  expect_legal(state.settings, 20);
+  expect_legal(state.document.settings, 20);
 }
 
 TEST(Workbench, CubeSideStaysBetweenAutomaticAndTwoDistances) {
   WorkbenchState state;
   apply(state, SetCubeSide{0.3});
-  EXPECT_DOUBLE_EQ(state.cube_side, 0.3);
+  EXPECT_DOUBLE_EQ(state.document.cube_side, 0.3);
   apply(state, SetCubeSide{-1});
-  EXPECT_DOUBLE_EQ(state.cube_side, 0);
+  EXPECT_DOUBLE_EQ(state.document.cube_side, 0);
   apply(state, SetCubeSide{9});
-  EXPECT_DOUBLE_EQ(state.cube_side, 2);
+  EXPECT_DOUBLE_EQ(state.document.cube_side, 2);
 }
 
 TEST(Workbench, FitShowsAllOfPictureAndScene) {
   WorkbenchState state = opened();
   apply(state, ZoomPicture{{.factor = 4}});
   apply(state, OrbitScene{{.yaw_deg = 50}});
-  EXPECT_EQ(state.picture_zoom.factor, 4);
-  ASSERT_TRUE(state.orbit.has_value());
+  EXPECT_EQ(state.view.picture_zoom.factor, 4);
+  ASSERT_TRUE(state.view.orbit.has_value());
   apply(state, FitScene{});
-  EXPECT_FALSE(state.orbit.has_value());
-  EXPECT_EQ(state.picture_zoom.factor, 4);
+  EXPECT_FALSE(state.view.orbit.has_value());
+  EXPECT_EQ(state.view.picture_zoom.factor, 4);
   apply(state, OrbitScene{{.yaw_deg = 50}});
   run(state, "fit");
-  EXPECT_EQ(state.picture_zoom.factor, 1);
-  EXPECT_FALSE(state.orbit.has_value());
+  EXPECT_EQ(state.view.picture_zoom.factor, 1);
+  EXPECT_FALSE(state.view.orbit.has_value());
 }
 
 TEST(Workbench, NormalsAreZoomedByTheirTiltAndFitted) {
   WorkbenchState state = opened();
   run(state, "zoom-normals 10 9 -45");
-  EXPECT_EQ(state.normals_zoom.factor, 10);
-  EXPECT_EQ(state.normals_zoom.center, Eigen::Vector2d(0.1, -0.5));
+  EXPECT_EQ(state.view.normals_zoom.factor, 10);
+  EXPECT_EQ(state.view.normals_zoom.center, Eigen::Vector2d(0.1, -0.5));
   run(state, "zoom-normals 1e9 900 0");
-  EXPECT_EQ(state.normals_zoom.factor, kLargestNormalsZoom);
-  EXPECT_EQ(state.normals_zoom.center, Eigen::Vector2d(1, 0));
+  EXPECT_EQ(state.view.normals_zoom.factor, kLargestNormalsZoom);
+  EXPECT_EQ(state.view.normals_zoom.center, Eigen::Vector2d(1, 0));
   run(state, "fit");
-  EXPECT_EQ(state.normals_zoom.factor, 1);
+  EXPECT_EQ(state.view.normals_zoom.factor, 1);
 }
 
 TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
   WorkbenchState state = opened();
   run(state, "help");
-  EXPECT_TRUE(state.show_help);
+  EXPECT_TRUE(state.view.show_help);
   run(state, "escape");
-  EXPECT_FALSE(state.show_help);
-  EXPECT_FALSE(state.wishes.cancel);
+  EXPECT_FALSE(state.view.show_help);
+  EXPECT_FALSE(state.requests.cancel);
   run(state, "escape");
-  EXPECT_TRUE(state.wishes.cancel);
+  EXPECT_TRUE(state.requests.cancel);
 }
 
 TEST(Workbench, WishesAreLeftForTheWindow) {
   WorkbenchState state = opened();
   run(state, "save-picture");
-  ASSERT_EQ(state.wishes.screenshots.size(), 1U);
-  EXPECT_EQ(state.wishes.screenshots.front().view, "picture");
+  ASSERT_EQ(state.requests.screenshots.size(), 1U);
+  EXPECT_EQ(state.requests.screenshots.front().view, "picture");
   run(state, "quit");
-  EXPECT_TRUE(state.wishes.quit);
+  EXPECT_TRUE(state.requests.quit);
   run(state, "open-example");
-  EXPECT_TRUE(state.wishes.open_example);
+  EXPECT_TRUE(state.requests.open_example);
   run(state, "compute");
-  EXPECT_TRUE(state.wishes.compute);
+  EXPECT_TRUE(state.requests.compute);
   apply(state, OpenPath{"desk"});
-  EXPECT_EQ(state.wishes.open, "desk");
+  EXPECT_EQ(state.requests.open, "desk");
 }
 
 TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
@@ -318,12 +319,12 @@ TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
     if (!action.complete()) continue;
     WorkbenchState state;
     run(state, action.name);
-    EXPECT_EQ(state.frame, 0) << action.name;
-    EXPECT_FALSE(state.playing) << action.name;
+    EXPECT_EQ(state.view.frame, 0) << action.name;
+    EXPECT_FALSE(state.view.playing) << action.name;
     const std::string said = action.needs_recording      ? "no recording is open"
                              : action.name == "continue" ? "no session was closed yet"
                                                          : "";
-    EXPECT_EQ(state.message, said) << action.name;
+    EXPECT_EQ(state.messages.text, said) << action.name;
     if (action.value) action.value(state);
   }
 }
@@ -331,28 +332,28 @@ TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
 TEST(Workbench, UnknownActionIsNamed) {
   WorkbenchState state;
   run(state, "fly");
-  EXPECT_EQ(state.message, "no action is called \"fly\"; F1 lists them");
+  EXPECT_EQ(state.messages.text, "no action is called \"fly\"; F1 lists them");
 }
 
 TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
   WorkbenchState state = opened(60);
-  const Settings first = state.settings;
+  const Settings first = state.document.settings;
   run(state, "ransac");
-  const Settings second = state.settings;
+  const Settings second = state.document.settings;
   for (const double px : {2.1, 2.2, 2.3}) {
-    Settings settings = state.settings;
+    Settings settings = state.document.settings;
     settings.options.ransac_threshold_px = px;
     apply(state, ChangeSettings{settings, true});
   }
   run(state, "undo");
-  EXPECT_EQ(state.settings, second);
+  EXPECT_EQ(state.document.settings, second);
   run(state, "undo");
-  EXPECT_EQ(state.settings, first);
+  EXPECT_EQ(state.document.settings, first);
   run(state, "undo");
-  EXPECT_EQ(state.settings, first);
+  EXPECT_EQ(state.document.settings, first);
   run(state, "redo");
   run(state, "redo");
-  EXPECT_EQ(state.settings.options.ransac_threshold_px, 2.3);
+  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.3);
 }
 
 TEST(Workbench, UndoTakesBackTheCubesPlace) {
@@ -361,34 +362,34 @@ TEST(Workbench, UndoTakesBackTheCubesPlace) {
   apply(state, MoveCube{there});
   apply(state, MoveCube{elsewhere});
   run(state, "undo");
-  EXPECT_EQ(state.cube_ray, there);
+  EXPECT_EQ(state.document.cube_ray, there);
   run(state, "redo");
-  EXPECT_EQ(state.cube_ray, elsewhere);
+  EXPECT_EQ(state.document.cube_ray, elsewhere);
   run(state, "reset-cube");
-  EXPECT_EQ(state.cube_ray, std::nullopt);
+  EXPECT_EQ(state.document.cube_ray, std::nullopt);
   run(state, "undo");
-  EXPECT_EQ(state.cube_ray, elsewhere);
+  EXPECT_EQ(state.document.cube_ray, elsewhere);
 }
 
 TEST(Workbench, RansacSwitchedTwiceIsLeftToTheMethodAgain) {
   WorkbenchState state = opened(60);
-  const Settings first = state.settings;
+  const Settings first = state.document.settings;
   run(state, "ransac");
-  EXPECT_EQ(state.settings.options.ransac, false);
+  EXPECT_EQ(state.document.settings.options.ransac, false);
   run(state, "ransac");
-  EXPECT_EQ(state.settings, first);
+  EXPECT_EQ(state.document.settings, first);
 }
 
 TEST(Workbench, NotesPassAndErrorsStay) {
   WorkbenchState state = opened(60);
   say(state, "saved");
   advance(state, 5);
-  EXPECT_EQ(state.message, "saved");
+  EXPECT_EQ(state.messages.text, "saved");
   advance(state, 60);
-  EXPECT_EQ(state.message, "");
+  EXPECT_EQ(state.messages.text, "");
   say(state, "cannot be read", Severity::error);
   advance(state, 600);
-  EXPECT_EQ(state.message, "cannot be read");
+  EXPECT_EQ(state.messages.text, "cannot be read");
 }
 
 }  // namespace

@@ -51,10 +51,10 @@ void drag_frame(const ChartItem& item,
                 int zero,
                 std::uint32_t rgb,
                 Commands& commands) {
-  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, state.frame - zero, rgb);
+  draw_chart_cursor(*ImGui::GetWindowDrawList(), item.to, state.view.frame - zero, rgb);
   if (!item.held || !item.hovered) return;
   const int frame = zero + static_cast<int>(std::lround(*item.hovered));
-  if (frame != state.frame) push(commands, GoToFrame{frame});
+  if (frame != state.view.frame) push(commands, GoToFrame{frame});
 }
 
 }  // namespace gpo

@@ -41,8 +41,8 @@ std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
   if (facts.of > facts.done) return fmt::format("computing {}/{}", facts.done, facts.of);
   const bool bound = facts.figure.charts.size() == 3;  // with truth
   const char* dotted = bound ? " \u00b7 dotted: the least that the PNE can be" : "";
-  if (state.experiment) return state.experiment_name + dotted;
-  return fmt::format("windows from frame {}{}", state.settings.start, dotted);
+  if (state.results.experiment) return state.results.experiment_name + dotted;
+  return fmt::format("windows from frame {}{}", state.document.settings.start, dotted);
 }
 
 /// The names in as many lines as they take. Returns where the charts begin [screen px].
@@ -65,19 +65,19 @@ float draw_names(const PanelInput& input,
   for (const Configuration& one : facts.configurations) {
     const float width = ImGui::CalcTextSize(title_of(one).c_str()).x + 2.4F * line;
     next(width);
-    const auto& hidden = state.hidden_curves;
+    const auto& hidden = state.view.hidden_curves;
     const bool shown = std::ranges::find(hidden, key_of(one)) == hidden.end();
     draw_name(one, shown, {width, height}, commands);
   }
   const std::string text = facts.note.empty() ? state_text(state, facts) : facts.note;
-  const float close = state.experiment ? 60 * s : 0;
+  const float close = state.results.experiment ? 60 * s : 0;
   x += 10 * s;
   next(ImGui::CalcTextSize(text.c_str()).x + 10 * s);
   ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, std::round(y + 3 * s)});
   const float room = place.right() - ImGui::GetCursorScreenPos().x - 8 * s - close;
   clipped_text(
       text, room, facts.of > facts.done ? color_of(Role::accent) : color_of(Role::text_dim));
-  if (state.experiment) {
+  if (state.results.experiment) {
     ImGui::SameLine();
     if (ImGui::SmallButton("Close")) push(commands, RunAction{"close-results"});
     tooltip("The curves show this recording again");
@@ -92,16 +92,16 @@ void draw_chart(const PanelInput& input,
                 Commands& commands) {
   const WorkbenchState& state = input.state;
   const ChartItem item = chart_item("curves " + chart.y_label, place, views, chart, false);
-  if (!state.recording) return;
+  if (!state.document.recording) return;
   // Over the length of the window that ends at the frame.
-  drag_frame(item, state, state.settings.start - 1, color_of(Role::text), commands);
+  drag_frame(item, state, state.document.settings.start - 1, color_of(Role::text), commands);
 }
 
 std::string why_empty(const WorkbenchState& state, const CurveFacts& facts) {
-  if (!state.recording && !state.experiment)
+  if (!state.document.recording && !state.results.experiment)
     return "Open a recording, or a results.csv that `evaluate` wrote, to see errors over the "
            "length of the window";
-  if (facts.done > 0 && std::size(state.hidden_curves) > 0)
+  if (facts.done > 0 && std::size(state.view.hidden_curves) > 0)
     return "All curves are hidden: click a name to show them";
   if (facts.done > 0 && facts.done == facts.of)
     return "None of the compared methods could be computed on these windows";
@@ -115,7 +115,7 @@ void curves_drawer(const PanelInput& input,
                    Views& views,
                    Commands& commands) {
   const CurveFacts& facts = views.curves.of(input.state);
-  if (!input.state.recording && !input.state.experiment)
+  if (!input.state.document.recording && !input.state.results.experiment)
     return draw_empty(place, why_empty(input.state, facts));
   const float top = draw_names(input, place, facts, commands);
   const Rectangle below{place.x, top, place.width, std::max(1.0F, place.bottom() - top)};

@@ -19,11 +19,11 @@ void log_drawer(const PanelInput& input,
                 const Rectangle& place,
                 Views& /*views*/,
                 Commands& /*commands*/) {
-  if (input.state.log.empty()) return draw_empty(place, "No messages yet");
+  if (input.state.messages.lines.empty()) return draw_empty(place, "No messages yet");
   const float s = input.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginChild("lines", {place.width - 12 * s, place.height - 6 * s});
-  for (const LogLine& line : input.state.log) {
+  for (const LogLine& line : input.state.messages.lines) {
     colored_text(color_of(line.severity), line.text);
   }
   if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1);

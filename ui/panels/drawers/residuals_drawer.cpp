@@ -51,12 +51,12 @@ void residuals_drawer(const PanelInput& input,
   if (!inspection->initialization->ok)
     return draw_empty(
         place, "No plane and no poses, so no residuals: " + inspection->initialization->reason);
-  const WindowResiduals& residuals = update(views.residuals, input.state.inspection);
+  const WindowResiduals& residuals = update(views.residuals, input.state.results.inspection);
   const float left = std::floor(0.4F * place.width);
   chart_item("histogram of residuals",
              {place.x, place.y, left, place.height},
              views,
-             residual_histogram(residuals, *inspection, input.state.frame));
+             residual_histogram(residuals, *inspection, input.state.view.frame));
   draw_rms(input,
            {place.x + left, place.y, place.width - left, place.height},
            residuals,

@@ -166,7 +166,8 @@ void table_drawer(const PanelInput& input,
                   const Rectangle& place,
                   Views& /*views*/,
                   Commands& commands) {
-  if (!input.state.recording) return draw_empty(place, "Open a recording to compare methods on it");
+  if (!input.state.document.recording)
+    return draw_empty(place, "Open a recording to compare methods on it");
   const std::vector<Compared> results = compared_with_current(input.state);
   const std::vector<ComparedRow> rows = compared_rows(results, input.timings);
   const float s = input.scale;
@@ -180,7 +181,7 @@ void table_drawer(const PanelInput& input,
     TableOrder order = kept_order();
     header(rows, order);
     keep_order(order);
-    const Configuration current = called_among_compared(input.state, input.state.settings);
+    const Configuration current = called_among_compared(input.state, input.state.document.settings);
     for (const std::size_t i : in_order(rows, order))
       draw_row(rows[i], results[i], rows[i].configuration == current, commands);
     copy_menu(rows);

@@ -117,7 +117,7 @@ cv::Mat patch_at(const cv::Mat& picture, const Eigen::Vector2d& raw_px) {
 /// Brings the place into the texture, where it is not there yet. Until its picture is there the
 /// last one stays. Where there is none, the picture's own panel says why.
 void update(Patch& patch, const PanelInput& input, const TrackFrame& frame) {
-  const auto& recording = input.state.recording;
+  const auto& recording = input.state.document.recording;
   const bool another = patch.recording != recording;
   if (!another && patch.frame == frame.frame && patch.middle_px == frame.raw_px) return;
   const FetchedPicture picture =
@@ -154,7 +154,7 @@ void draw_patch(const Patch& patch, const char* what, float scale) {
 void draw_patches(const PanelInput& input, const TrackLife& life, Views& views) {
   const TrackFrame* now = &life.frames.front();
   for (const TrackFrame& frame : life.frames)
-    if (frame.frame <= input.state.frame) now = &frame;
+    if (frame.frame <= input.state.view.frame) now = &frame;
   update(views.patches[0], input, life.frames.front());
   update(views.patches[1], input, *now);
   draw_patch(views.patches[0], "First", input.scale);
@@ -191,7 +191,7 @@ void track_drawer(const PanelInput& input,
   const float patches = (2 * kPatch_px * kMagnification + 20) * s;
   const float rest = place.width - patches - 24 * s;
   const float table = std::round(std::max(0.55F * rest, std::min(rest, 420 * s)));
-  draw_table(life, input.state.frame, table, place.height - top, commands);
+  draw_table(life, input.state.view.frame, table, place.height - top, commands);
   ImGui::EndGroup();
   if (rest - table > 160 * s)
     draw_plot(input,

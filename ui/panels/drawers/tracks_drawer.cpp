@@ -36,7 +36,7 @@ void draw_header() {
 
 /// Those of this inspection, sorted as the table's head says.
 const std::vector<TrackRow>& rows_of(const PanelInput& input, KeptTrackRows& kept) {
-  const auto& inspection = input.state.inspection;
+  const auto& inspection = input.state.results.inspection;
   ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
   const bool another = kept.of != inspection;
   if (another) kept = {inspection, track_rows(*inspection)};

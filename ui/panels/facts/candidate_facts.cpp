@@ -54,10 +54,11 @@ std::vector<std::string> candidate_cells(const HomographyCandidate& candidate) {
 }
 
 std::string why_no_study(const WorkbenchState& state, const std::string& doing) {
-  if (!state.study || !state.inspection || state.study->window != state.inspection->window)
+  if (!state.results.study || !state.results.inspection ||
+      state.results.study->window != state.results.inspection->window)
     return doing;
-  if (state.study->error.empty()) return "";
-  return "The window's normals could not be studied: " + state.study->error;
+  if (state.results.study->error.empty()) return "";
+  return "The window's normals could not be studied: " + state.results.study->error;
 }
 
 }  // namespace gpo

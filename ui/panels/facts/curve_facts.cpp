@@ -21,14 +21,14 @@ struct Sample {
 /// Shortest first. Counts what is done into `facts`.
 std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
   std::vector<Sample> samples;
-  std::vector<int> lengths = curve_lengths(state.settings.frames);
+  std::vector<int> lengths = curve_lengths(state.document.settings.frames);
   std::ranges::reverse(lengths);
   for (const int length : lengths) {
-    Settings window = state.settings;
+    Settings window = state.document.settings;
     window.frames = length;
     for (const Settings& settings : compared_settings(state, window)) {
       ++facts.of;
-      const Surveyed* found = find_surveyed(state.surveyed.get(), settings);
+      const Surveyed* found = find_surveyed(state.results.surveyed.get(), settings);
       if (found == nullptr) continue;
       ++facts.done;
       if (found->inspection)
@@ -42,7 +42,8 @@ std::vector<Configuration> shown_of(const WorkbenchState& state,
                                     const std::vector<Configuration>& all) {
   std::vector<Configuration> shown;
   std::ranges::copy_if(all, std::back_inserter(shown), [&](const Configuration& one) {
-    return std::ranges::find(state.hidden_curves, key_of(one)) == state.hidden_curves.end();
+    return std::ranges::find(state.view.hidden_curves, key_of(one)) ==
+           state.view.hidden_curves.end();
   });
   return shown;
 }
@@ -68,9 +69,9 @@ Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configur
 
 CurveFacts facts_of_survey(const WorkbenchState& state) {
   CurveFacts facts;
-  for (const Settings& settings : compared_settings(state, state.settings))
+  for (const Settings& settings : compared_settings(state, state.document.settings))
     facts.configurations.push_back(called_among_compared(state, settings));
-  if (!state.recording) return facts;
+  if (!state.document.recording) return facts;
   const std::vector<Sample> samples = samples_of(state, facts);
   if (samples.empty()) return facts;
   std::vector<Row> rows;
@@ -96,7 +97,7 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
   CurveFacts facts;
   bool truth = false;
   std::vector<std::string> keys;
-  for (const Row& row : *state.experiment) {
+  for (const Row& row : *state.results.experiment) {
     truth = truth || row.pne_deg || row.ate_m;
     if (std::ranges::find(keys, row.configuration) != keys.end()) continue;
     keys.push_back(row.configuration);
@@ -104,8 +105,8 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
   }
   const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
   if (plan.configurations.empty()) return facts;
-  facts.figure = truth ? figure_over_length(*state.experiment, plan)
-                       : figure_without_truth(*state.experiment, plan);
+  facts.figure = truth ? figure_over_length(*state.results.experiment, plan)
+                       : figure_without_truth(*state.results.experiment, plan);
   if (!truth) facts.note = "These results were measured without ground truth: no errors";
   return facts;
 }
@@ -113,20 +114,21 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
 }  // namespace
 
 CurveFacts curve_facts(const WorkbenchState& state) {
-  return state.experiment ? facts_of_file(state) : facts_of_survey(state);
+  return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
 }
 
 const CurveFacts& KeptCurveFacts::of(const WorkbenchState& state) {
-  const bool same = surveyed_ == state.surveyed && experiment_ == state.experiment &&
-                    inspection_ == state.inspection && settings_ == state.settings &&
-                    compared_ == state.compared && hidden_ == state.hidden_curves;
+  const bool same =
+      surveyed_ == state.results.surveyed && experiment_ == state.results.experiment &&
+      inspection_ == state.results.inspection && settings_ == state.document.settings &&
+      compared_ == state.document.compared && hidden_ == state.view.hidden_curves;
   if (same) return facts_;
-  surveyed_ = state.surveyed;
-  experiment_ = state.experiment;
-  inspection_ = state.inspection;
-  settings_ = state.settings;
-  compared_ = state.compared;
-  hidden_ = state.hidden_curves;
+  surveyed_ = state.results.surveyed;
+  experiment_ = state.results.experiment;
+  inspection_ = state.results.inspection;
+  settings_ = state.document.settings;
+  compared_ = state.document.compared;
+  hidden_ = state.view.hidden_curves;
   facts_ = curve_facts(state);
   return facts_;
 }

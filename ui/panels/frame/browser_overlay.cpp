@@ -64,7 +64,7 @@ void places(const PanelInput& input, BrowserEntry& entry) {
   if (!input.example.empty()) place("Examples", input.example.parent_path());
   place("/", "/");
   std::vector<fs::path> seen;
-  for (const fs::path& recent : input.state.recent) {
+  for (const fs::path& recent : input.state.files.recent) {
     const fs::path folder = recent.parent_path();
     if (seen.size() >= 3 || std::ranges::count(seen, folder) > 0) continue;
     seen.push_back(folder);
@@ -116,7 +116,7 @@ int draw_rows(std::span<const FolderEntry> found, int chosen, bool opens, float 
 
 void choose(const PanelInput& input, const fs::path& path, Commands& commands) {
   push(commands, RunAction{"escape"});
-  push(commands, RunAction{input.state.browse->action + " " + quoted(path)});
+  push(commands, RunAction{input.state.view.browse->action + " " + quoted(path)});
 }
 
 /// A folder that is no recording is entered; everything else is chosen.
@@ -125,7 +125,7 @@ void accept(const PanelInput& input,
             const FolderEntry* row,
             Commands& commands) {
   const TypedPath typed = typed_path(entry.text.data());
-  const bool opens = input.state.browse->action == "open";
+  const bool opens = input.state.view.browse->action == "open";
   std::error_code none;
   if (row != nullptr && row->folder && (!opens || row->what.empty()))
     return type_out(entry, (typed.folder / row->name / "").string());
@@ -171,7 +171,7 @@ void browser_overlay(const PanelInput& input,
                      Views& views,
                      Commands& commands) {
   const float s = input.scale;
-  const Browse& browse = *input.state.browse;
+  const Browse& browse = *input.state.view.browse;
   BrowserEntry& entry = views.browser;
   const bool saves = browse.action != "open";
   if (!entry.open) type_out(entry, browse.text);

@@ -33,7 +33,7 @@ bool button(const char* title, const Rectangle& place, float scale, bool first) 
 
 void recent_list(const PanelInput& input, const Rectangle& place, Commands& commands) {
   constexpr std::size_t kMost = 6;
-  const std::vector<std::filesystem::path>& recent = input.state.recent;
+  const std::vector<std::filesystem::path>& recent = input.state.files.recent;
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * input.scale});
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
@@ -79,7 +79,7 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
   ImGui::Dummy({1, 8 * s});
   if (button("Open ...", place, s, true)) push(commands, RunAction{"browse"});
   if (button("Open the example", place, s, false)) push(commands, RunAction{"open-example"});
-  if (input.state.has_last_session && button("Continue the last session", place, s, false))
+  if (input.state.files.has_last_session && button("Continue the last session", place, s, false))
     push(commands, RunAction{"continue"});
   recent_list(input, place, commands);
 }

@@ -36,8 +36,9 @@ struct Pointer {
 
   /// Nothing while the mouse is elsewhere or nothing is shown there.
   std::optional<std::int64_t> track() const {
-    if (!state.inspection || !ImGui::IsItemHovered() || !state.view.tracks) return std::nullopt;
-    const Inspection& inspection = *state.inspection;
+    if (!state.results.inspection || !ImGui::IsItemHovered() || !state.view.toggles.tracks)
+      return std::nullopt;
+    const Inspection& inspection = *state.results.inspection;
     const auto column =
         track_at(inspection, frame - inspection.window->start, mapping, at, 10 * scale);
     return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
@@ -46,8 +47,8 @@ struct Pointer {
 
 void zoom_and_pan(const Pointer& pointer, Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
-  const PictureZoom& zoom = pointer.state.picture_zoom;
-  const Camera& camera = pointer.state.recording->camera;
+  const PictureZoom& zoom = pointer.state.view.picture_zoom;
+  const Camera& camera = pointer.state.document.recording->camera;
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     const double by = std::pow(1.25, io.MouseWheel);
     push(commands, ZoomPicture{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
@@ -67,9 +68,9 @@ std::vector<std::int64_t> tracks_in_rectangle(const Pointer& pointer) {
                                 pointer.at.cwiseMax(pointer.pressed_at));
   std::vector<std::int64_t> ids = tracks_in_view(pointer.state);
   std::erase_if(ids, [&](std::int64_t id) {
-    const Tracks& tracks = *pointer.state.inspection->tracks;
+    const Tracks& tracks = *pointer.state.results.inspection->tracks;
     const Vector2d raw_px =
-        tracks.raw_px[pointer.state.frame - tracks.start].col(*column_of(tracks, id));
+        tracks.raw_px[pointer.state.view.frame - tracks.start].col(*column_of(tracks, id));
     return !box.contains(to_screen(pointer.mapping, raw_px));
   });
   return ids;
@@ -104,8 +105,9 @@ void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
 void move_cube(const Pointer& pointer, Commands& commands) {
   const WorkbenchState& state = pointer.state;
   const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
-  if (!clicked || !state.inspection || !state.inspection->initialization->ok) return;
-  const Inspection& inspection = *state.inspection;
+  if (!clicked || !state.results.inspection || !state.results.inspection->initialization->ok)
+    return;
+  const Inspection& inspection = *state.results.inspection;
   const auto ray = point_on_plane(inspection,
                                   pointer.frame - inspection.window->start,
                                   to_picture(pointer.mapping, pointer.at),
@@ -123,19 +125,21 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Camera& camera = state.recording->camera;
-  const Pointer pointer{state,
-                        frame,
-                        rect,
-                        map_picture(camera, rect, state.picture_zoom, state.view.undistorted),
-                        input.scale};
+  const Camera& camera = state.document.recording->camera;
+  const Pointer pointer{
+      state,
+      frame,
+      rect,
+      map_picture(camera, rect, state.view.picture_zoom, state.view.toggles.undistorted),
+      input.scale};
   zoom_and_pan(pointer, commands);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
   select(pointer, track, commands);
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const Inspection waiting = input.inspection() ? Inspection{} : nothing_inspected(state.recording);
+  const Inspection waiting =
+      input.inspection() ? Inspection{} : nothing_inspected(state.document.recording);
   ViewOptions options = view_options(state, views);
   options.show.legend &= room_for_legend(place, input.scale);
   draw_image_view(list,
@@ -143,7 +147,7 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                   input.inspection() ? *input.inspection() : waiting,
                   frame,
                   shown_picture(views),
-                  state.picture_zoom,
+                  state.view.picture_zoom,
                   options);
   if (input.inspection()) {
     const Inspection& inspection = *input.inspection();

@@ -24,8 +24,8 @@ std::string line_of_click(const Action& action) {
 
 /// Files that were opened before, with their folders.
 void recent_menu(const PanelInput& input, Commands& commands) {
-  if (!ImGui::BeginMenu("Open recent", !input.state.recent.empty())) return;
-  for (const std::filesystem::path& path : input.state.recent) {
+  if (!ImGui::BeginMenu("Open recent", !input.state.files.recent.empty())) return;
+  for (const std::filesystem::path& path : input.state.files.recent) {
     ImGui::PushID(path.c_str());
     const std::string folder = path.parent_path().string();
     if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(commands, OpenPath{path});
@@ -90,15 +90,15 @@ void offer(const std::string& name, const std::string& why, Commands& commands) 
 }
 
 bool calibration_may_help(const PanelInput& input) {
-  const Recording& recording = *input.state.recording;
+  const Recording& recording = *input.state.document.recording;
   const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
   return recording.camera_source == CameraSource::guess && recording.pictures && !calibrating;
 }
 
 bool another_start_may_help(const WorkbenchState& state) {
-  const Inspection* inspection = state.inspection.get();
+  const Inspection* inspection = state.results.inspection.get();
   return inspection != nullptr && inspection->initialization && !inspection->initialization->ok &&
-         state.frame_count() > state.settings.frames && !state.scan;
+         state.frame_count() > state.document.settings.frames && !state.results.scan;
 }
 
 void offers(const PanelInput& input, Commands& commands) {
@@ -120,8 +120,8 @@ void menu_bar(const PanelInput& input, Commands& commands) {
     draw_menu(menu, input, commands);
     ImGui::EndMenu();
   }
-  if (input.state.recording) offers(input, commands);
-  if (input.state.recording) draw_facts(*input.state.recording, input.scale);
+  if (input.state.document.recording) offers(input, commands);
+  if (input.state.document.recording) draw_facts(*input.state.document.recording, input.scale);
   ImGui::EndMainMenuBar();
 }
 

@@ -100,7 +100,8 @@ void palette_overlay(const PanelInput& input,
                      Commands& commands) {
   const float s = input.scale;
   PaletteEntry& entry = views.palette;
-  if (!entry.open && !input.state.palette->empty()) type_out(entry, *input.state.palette + " ");
+  if (!entry.open && !input.state.view.palette->empty())
+    type_out(entry, *input.state.view.palette + " ");
   entry.open = true;
   const OverlayScope overlay("palette", window, 640 * s, s);
   ImGui::SetNextItemWidth(-1);

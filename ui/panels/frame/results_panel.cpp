@@ -108,7 +108,8 @@ void draw_verdict(const Initialization& result, float left, float right, float g
 }
 
 void draw_state(const PanelInput& input, float right) {
-  const bool stale = input.inspection() && !(input.inspection()->settings == input.state.settings);
+  const bool stale =
+      input.inspection() && !(input.inspection()->settings == input.state.document.settings);
   const char* text = input.worker.busy ? "computing" : stale ? "of earlier settings" : "";
   ImGui::PushFont(font(Font::small));
   continue_line_at(right - ImGui::CalcTextSize(text).x);
@@ -129,7 +130,7 @@ void results_panel(const PanelInput& input, const Rectangle& place) {
       input.inspection() ? input.inspection()->initialization.get() : nullptr;
   bool first = true;
   for (const ResultGroup& group :
-       result_groups(input.inspection(), input.timings, input.state.cube_side)) {
+       result_groups(input.inspection(), input.timings, input.state.document.cube_side)) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(input, right);

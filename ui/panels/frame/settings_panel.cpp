@@ -26,7 +26,7 @@ struct SettingRows {
   const PanelInput& input;
   Commands& commands;
   float label_width;
-  Settings settings = input.state.settings;  ///< as the user changes them
+  Settings settings = input.state.document.settings;  ///< as the user changes them
   bool changed = false;
   std::string idle = {};  ///< why the setting at hand does nothing
 
@@ -36,8 +36,8 @@ struct SettingRows {
   }
 
   void draw(const Setting& setting) {
-    const Settings& now = input.state.settings;
-    idle = why_idle(setting, now, input.state.recording.get());
+    const Settings& now = input.state.document.settings;
+    idle = why_idle(setting, now, input.state.document.recording.get());
     const bool other = setting.get(now) != setting.get(Settings{});
     ImGui::BeginDisabled(!idle.empty());
     ImGui::PushID(setting.key.c_str());
@@ -126,14 +126,14 @@ struct SettingRows {
 
   /// Why the recording does not have a choice; empty where it does.
   std::string why_not(const Setting& setting, const SettingChoice& one) const {
-    const bool asks = setting.why_not != nullptr && input.state.recording;
-    return asks ? setting.why_not(*input.state.recording, one.key) : "";
+    const bool asks = setting.why_not != nullptr && input.state.document.recording;
+    return asks ? setting.why_not(*input.state.document.recording, one.key) : "";
   }
 
   /// "automatic (gyro-calibrated)": what it comes to in the recording.
   std::string title_of(const SettingChoice& one) const {
-    if (one.key != "automatic" || !input.state.recording) return one.title;
-    return fmt::format("{} ({})", one.title, automatic_rotations(*input.state.recording));
+    if (one.key != "automatic" || !input.state.document.recording) return one.title;
+    return fmt::format("{} ({})", one.title, automatic_rotations(*input.state.document.recording));
   }
 
   void combo(const Setting& setting, const std::string& chosen) {
@@ -174,7 +174,7 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
   const char* help =
       "Side of the cube, in distances of the plane. 0: automatic, or whole squares of a chessboard";
   rows.label("Cube side", help);
-  double side = input.state.cube_side;
+  double side = input.state.document.cube_side;
   const double least = 0;
   const double most = 2;
   if (ImGui::DragScalar("##cube_side",
@@ -192,7 +192,7 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
 
 /// At the right of the heading, where there is something to reset.
 void reset_button(const PanelInput& input, Commands& commands) {
-  const Settings& settings = input.state.settings;
+  const Settings& settings = input.state.document.settings;
   const int frames = input.state.frame_count();
   if (settings == (frames > 0 ? fit_window({}, frames) : Settings{})) return;
   const char* title = "reset";

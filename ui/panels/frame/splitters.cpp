@@ -48,7 +48,7 @@ void splitter(Splitter which,
         {line.x, line.y}, {line.right(), line.bottom()}, imgui_color(Role::accent));
   }
   const ImVec2 at = ImGui::GetIO().MousePos;
-  const Division& now = input.state.division;
+  const Division& now = input.state.view.division;
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     push(commands, DivideWindow{automatic(now, which)});
   } else if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 1)) {

@@ -67,8 +67,8 @@ void status_line(const PanelInput& input, const Rectangle& place) {
     const PanelScope panel("status", place, {12 * s, padding});
     const float right = place.width - 12 * s;
     const bool error = !input.worker.error.empty();
-    const std::string& message = error ? input.worker.error : input.state.message;
-    const Severity severity = message.empty() ? Severity::note : input.state.message_severity;
+    const std::string& message = error ? input.worker.error : input.state.messages.text;
+    const Severity severity = message.empty() ? Severity::note : input.state.messages.severity;
     const std::uint32_t color = error ? gpo::color_of(Role::bad) : color_of(severity);
     if (const auto work = current_work(input)) {
       const float left = draw_progress(*work, s);

@@ -15,7 +15,8 @@ void picture_alone(const PanelInput& input,
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto other = flipped_result(input.state);
   const Inspection* inspection = other ? other->inspection.get() : input.inspection();
-  const Inspection waiting = inspection ? Inspection{} : nothing_inspected(input.state.recording);
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_inspected(input.state.document.recording);
   const int frame = update_picture(input, views);
   draw_image_view(list,
                   screen_rect(place),
@@ -35,11 +36,11 @@ void compare_alone(const PanelInput& input,
   const WorkbenchState& state = input.state;
   const int frame = update_picture(input, views);
   ViewOptions options = view_options(state, views);
-  options.compare_zoom = state.compare_zoom;
+  options.compare_zoom = state.view.compare_zoom;
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
                     screen_rect(place),
                     compare_columns(compared_results(state)),
-                    *state.recording,
+                    *state.document.recording,
                     frame,
                     shown_picture(views),
                     options);

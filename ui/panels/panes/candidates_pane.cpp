@@ -78,16 +78,16 @@ void candidates_pane(const PanelInput& input,
                       "The readings of the frame's homography appear when the window is computed");
   std::string why = why_no_study(state, "Reading the homographies of all frames \u2026");
   if (!why.empty()) return draw_empty(place, why);
-  const int frame = state.frame - state.study->window->start;
-  why = why_no_candidates(*state.study, frame);
+  const int frame = state.view.frame - state.results.study->window->start;
+  why = why_no_candidates(*state.results.study, frame);
   if (!why.empty()) return draw_empty(place, why);
-  const std::vector<HomographyCandidate>& candidates = state.study->candidates[frame];
+  const std::vector<HomographyCandidate>& candidates = state.results.study->candidates[frame];
   const float s = input.scale, inset = 12 * s;
   ImGui::SetCursorScreenPos({place.x + inset, place.y + 8 * s});
   ImGui::BeginGroup();
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + place.width - 2 * inset);
   ImGui::TextUnformatted(
-      fmt::format("Frame {}: {}", state.frame, candidates_sentence(candidates)).c_str());
+      fmt::format("Frame {}: {}", state.view.frame, candidates_sentence(candidates)).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
   const float top = ImGui::GetItemRectMax().y + 8 * s;

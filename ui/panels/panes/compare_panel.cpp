@@ -74,7 +74,7 @@ void chip(const std::string& key,
 
 /// The current settings, as they are or with the other RANSAC, beside what is compared.
 Configuration current(const WorkbenchState& state, std::optional<bool> ransac) {
-  Settings settings = state.settings;
+  Settings settings = state.document.settings;
   if (ransac) settings.options.ransac = ransac;
   return called_among_compared(state, settings);
 }
@@ -84,7 +84,8 @@ void entry(const PanelInput& input,
            const std::string& title,
            Commands& commands) {
   const std::string key = key_of(one);
-  const bool there = std::ranges::find(input.state.compared, key) != input.state.compared.end();
+  const bool there =
+      std::ranges::find(input.state.document.compared, key) != input.state.document.compared.end();
   const float side = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + side * 0.15F},
@@ -101,8 +102,8 @@ void list_of_all(const PanelInput& input, Commands& commands) {
   heading("CURRENT SETTINGS");
   const WorkbenchState& state = input.state;
   const Configuration now = current(state, {});
-  entry(input, now, title_of(configuration_of(state.settings)), commands);
-  const bool ransac = uses_ransac(state.settings.options);
+  entry(input, now, title_of(configuration_of(state.document.settings)), commands);
+  const bool ransac = uses_ransac(state.document.settings.options);
   entry(input,
         current(state, !ransac),
         fmt::format("the same {} RANSAC", ransac ? "without" : "with"),
@@ -121,9 +122,10 @@ void list_of_all(const PanelInput& input, Commands& commands) {
 /// that removes it, and a "+" that lists what can be added. Returns how high that is [px].
 float compare_chips(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const float s = input.scale;
-  const auto& keys = input.state.compared;
+  const auto& keys = input.state.document.compared;
   float x = place.x + kGap * s, y = place.y + kGap * s;
-  const std::vector<Settings> settings = compared_settings(input.state, input.state.settings);
+  const std::vector<Settings> settings =
+      compared_settings(input.state, input.state.document.settings);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Configuration one = called_among_compared(input.state, settings[i]);
     const float width =
@@ -164,12 +166,12 @@ void zoom_and_pan(const ScreenRect& rect,
                   const WorkbenchState& state,
                   Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
-  const Camera& camera = state.recording->camera;
+  const Camera& camera = state.document.recording->camera;
   const Vector2d at(io.MousePos.x, io.MousePos.y), by(io.MouseDelta.x, io.MouseDelta.y);
   if (ImGui::IsItemHovered() && io.MouseWheel != 0)
     push(commands, ZoomCompare{zoom_about(zoom, camera, rect, at, std::pow(1.25, io.MouseWheel))});
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-    const bool whole = state.compare_zoom && state.compare_zoom->factor <= 1;
+    const bool whole = state.view.compare_zoom && state.view.compare_zoom->factor <= 1;
     push(commands, ZoomCompare{whole ? std::nullopt : std::optional(PictureZoom{})});
   } else if (ImGui::IsItemActive() && !by.isZero()) {
     push(commands, ZoomCompare{pan(zoom, camera, rect, by)});
@@ -184,7 +186,7 @@ void choose_by_heading(const PanelInput& input,
   button("heading " + name, place.heading);
   if (ImGui::IsItemClicked()) push(commands, ChangeSettings{one.settings});
   const bool current =
-      called_among_compared(input.state, input.state.settings) == one.configuration;
+      called_among_compared(input.state, input.state.document.settings) == one.configuration;
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (ImGui::IsItemHovered() && !current) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
@@ -199,18 +201,20 @@ ScreenRect draw_caption(const PanelInput& input, const Rectangle& place, ImDrawL
   const float s = input.scale;
   const WorkbenchState& state = input.state;
   const float height = std::round(22 * s);
-  const int first = state.settings.start, last = first + state.settings.frames - 1;
-  const bool inside = state.frame >= first && state.frame <= last;
+  const int first = state.document.settings.start,
+            last = first + state.document.settings.frames - 1;
+  const bool inside = state.view.frame >= first && state.view.frame <= last;
   const std::string text = fmt::format("frame {}{} window {}–{}{}",
-                                       state.frame,
+                                       state.view.frame,
                                        inside ? " of the" : ", outside of the",
                                        first,
                                        last,
-                                       state.flip ? " · first two swapped" : "");
+                                       state.view.flip ? " · first two swapped" : "");
   const Vector2d at(place.x + 12 * s, place.y + 4 * s);
   write_text(list, Font::small, at, text, color_of(Role::text_dim));
   const auto width = static_cast<float>(text_width(Font::small, text));
-  const bool truth = state.inspection && state.inspection->truth && state.view.truth;
+  const bool truth =
+      state.results.inspection && state.results.inspection->truth && state.view.toggles.truth;
   if (inside && place.width > width + 330 * s)
     draw_cube_legend(list, {place.x + 42 * s + width, place.y + 3 * s}, truth);
   return {{place.x, place.y + height}, {place.width, place.height - height}};
@@ -235,14 +239,15 @@ void draw_columns(const PanelInput& input,
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
   ViewOptions options = view_options(state, views);
-  options.compare_zoom = state.compare_zoom;
+  options.compare_zoom = state.view.compare_zoom;
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_compare_view(list, rect, columns, *state.recording, frame, shown_picture(views), options);
+  draw_compare_view(
+      list, rect, columns, *state.document.recording, frame, shown_picture(views), options);
   const auto places =
-      compare_places(rect, count, aspect_of(state.recording->camera), options.top_line);
+      compare_places(rect, count, aspect_of(state.document.recording->camera), options.top_line);
   const PictureZoom zoom =
-      compare_zoom(columns, *state.recording, frame, places.front().picture.size, options);
+      compare_zoom(columns, *state.document.recording, frame, places.front().picture.size, options);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::string name = key_of(results[i].configuration);
     choose_by_heading(input, places[i], results[i], name, commands);
@@ -265,7 +270,8 @@ void compare_panel(const PanelInput& input,
                    Commands& commands) {
   const PanelScope panel("compare", place, {0, 0});
   const WorkbenchState& state = input.state;
-  if (!state.recording) return draw_empty(place, "Open a recording to compare methods on it");
+  if (!state.document.recording)
+    return draw_empty(place, "Open a recording to compare methods on it");
   const int frame = update_picture(input, views);
   const float chips = compare_chips(input, place, commands);
   const Rectangle below{place.x, place.y + chips, place.width, place.height - chips};

@@ -48,14 +48,16 @@ void normals_pane(const PanelInput& input,
   hit_area("normals", {place.width, place.height});
   const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
   const ScreenRect inner = disc_rect(rect);
-  const NormalsContent content{*input.inspection(), state.study, answers(state), state.frame};
-  draw_normals_view(*ImGui::GetWindowDrawList(), rect, views.normals, content, state.normals_zoom);
-  zoom_and_pan(inner, state.normals_zoom, commands);
+  const NormalsContent content{
+      *input.inspection(), state.results.study, answers(state), state.view.frame};
+  draw_normals_view(
+      *ImGui::GetWindowDrawList(), rect, views.normals, content, state.view.normals_zoom);
+  zoom_and_pan(inner, state.view.normals_zoom, commands);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const Vector2d within = Vector2d(mouse.x, mouse.y) - inner.min;
   const bool over = (within.array() >= 0).all() && (within.array() < inner.size.array()).all();
   if (!ImGui::IsItemHovered() || ImGui::IsItemActive() || !over) return;
-  const DiscMapping to = map_disc(inner, state.normals_zoom);
+  const DiscMapping to = map_disc(inner, state.view.normals_zoom);
   const std::string text = normal_text(views.normals, content, to.to_disc({mouse.x, mouse.y}));
   if (!text.empty()) show_tooltip(text);
 }

@@ -87,9 +87,9 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   hit_area("view",
            {place.width, place.height},
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
-  const double side = cube_side(inspection, state.cube_side);
-  const OrbitCamera camera = state.orbit.value_or(
-      scene_camera(inspection, side, place.width / place.height, state.viewpoint, state.frame));
+  const double side = cube_side(inspection, state.document.cube_side);
+  const OrbitCamera camera = state.view.orbit.value_or(scene_camera(
+      inspection, side, place.width / place.height, state.view.viewpoint, state.view.frame));
   const ScreenRect rect = screen_rect(place);
   orbit_and_zoom(camera, place.height, commands);
   const Hover hover = hover_in(inspection, rect, camera, input.scale);
@@ -99,12 +99,17 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   ViewOptions options = view_options(state, views);
   options.show.legend &= room_for_legend(place, input.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
-  draw_scene_view(
-      *ImGui::GetWindowDrawList(), rect, views.scene, inspection, state.frame, camera, options);
+  draw_scene_view(*ImGui::GetWindowDrawList(),
+                  rect,
+                  views.scene,
+                  inspection,
+                  state.view.frame,
+                  camera,
+                  options);
   draw_highlight_in_scene(*ImGui::GetWindowDrawList(),
                           rect,
                           inspection,
-                          state.frame - inspection.window->start,
+                          state.view.frame - inspection.window->start,
                           camera,
                           highlight_of(state));
   if (hover.track) track_tooltip(input, views, *hover.track);

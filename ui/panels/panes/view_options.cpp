@@ -22,20 +22,21 @@ namespace {
 
 /// Of the inspection that the state shows; computed anew where it is another.
 std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state, KeptTrackColors& kept) {
-  if (kept.of != state.inspection || kept.coloring != state.coloring) {
-    kept = {state.inspection, state.coloring, nullptr};
-    if (state.inspection) kept.colors = track_colors(*state.inspection, state.coloring);
+  if (kept.of != state.results.inspection || kept.coloring != state.view.coloring) {
+    kept = {state.results.inspection, state.view.coloring, nullptr};
+    if (state.results.inspection)
+      kept.colors = track_colors(*state.results.inspection, state.view.coloring);
   }
   return kept.colors;
 }
 
 /// The state's model; read anew where it is another.
 const KeptModel& model_of(const WorkbenchState& state, KeptModel& kept) {
-  if (kept.name == state.model) return kept;
-  kept = {state.model, nullptr, {}};
-  if (state.model.empty()) return kept;
+  if (kept.name == state.document.model) return kept;
+  kept = {state.document.model, nullptr, {}};
+  if (state.document.model.empty()) return kept;
   try {
-    kept.model = std::make_shared<const SolidModel>(read_solid_model(state.model));
+    kept.model = std::make_shared<const SolidModel>(read_solid_model(state.document.model));
   } catch (const InputError& error) {
     kept.error = error.what();
   }
@@ -46,20 +47,20 @@ constexpr double kTowerSides = 5;
 
 double height_sides(const WorkbenchState& state, const KeptModel& kept) {
   if (kept.model) return kept.model->height_sides;
-  return state.view.tower ? kTowerSides : 1;
+  return state.view.toggles.tower ? kTowerSides : 1;
 }
 
 }  // namespace
 
 ViewOptions view_options(const WorkbenchState& state, Views& views) {
   const KeptModel& model = model_of(state, views.model);
-  ViewOptions options{.show = state.view,
-                      .cube_side = state.cube_side,
+  ViewOptions options{.show = state.view.toggles,
+                      .cube_side = state.document.cube_side,
                       .cube_height_sides = height_sides(state, model),
                       .model = model.model,
                       .model_error = model.error,
                       .colors = colors_of(state, views.colors)};
-  options.show.legend &= state.inspection != nullptr;
+  options.show.legend &= state.results.inspection != nullptr;
   return options;
 }
 
@@ -77,7 +78,7 @@ std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results)
 
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   WorkbenchState shown = state;
-  shown.inspection = other.inspection;
+  shown.results.inspection = other.inspection;
   return shown;
 }
 
@@ -102,8 +103,8 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
 
 Highlight highlight_of(const WorkbenchState& state) {
   Highlight highlight;
-  if (!state.inspection) return highlight;
-  const Tracks& tracks = *state.inspection->tracks;
+  if (!state.results.inspection) return highlight;
+  const Tracks& tracks = *state.results.inspection->tracks;
   for (const std::int64_t id : state.selection.tracks)
     if (const auto column = column_of(tracks, id)) highlight.picked.push_back(*column);
   if (state.selection.focus) highlight.focus = column_of(tracks, *state.selection.focus);

@@ -88,25 +88,26 @@ void scan_strip(const PanelInput& input, const Rectangle& place, Commands& comma
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(
       {place.x, place.y}, {place.right(), place.bottom()}, imgui_color(Role::raised));
-  if (!state.scan) return;
+  if (!state.results.scan) return;
   const TimeAxis axis{
-      place.x, place.right(), state.frame_count(), holding(state.time_span, state.frame)};
+      place.x, place.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
   ImGui::SetCursorScreenPos({place.x, place.y});
   const bool clicked = hit_area("scan", {place.width, place.height});
   list.PushClipRect({place.x, place.y}, {place.right(), place.bottom()}, true);
-  draw_columns(list, *state.scan, axis, place);
-  const float x = std::round(slot_middle(axis, state.settings.start));
+  draw_columns(list, *state.results.scan, axis, place);
+  const float x = std::round(slot_middle(axis, state.document.settings.start));
   list.AddLine({x, place.y}, {x, place.bottom()}, imgui_color(Role::accent), 2 * input.scale);
-  if (!ImGui::IsItemHovered()) draw_label(list, legend(*state.scan), place, input.scale);
+  if (!ImGui::IsItemHovered()) draw_label(list, legend(*state.results.scan), place, input.scale);
   list.PopClipRect();
-  const ScannedStart* under = start_at(*state.scan, frame_at(axis, ImGui::GetIO().MousePos.x));
+  const ScannedStart* under =
+      start_at(*state.results.scan, frame_at(axis, ImGui::GetIO().MousePos.x));
   if (ImGui::IsItemHovered()) {
     const float share = ImGui::GetIO().MousePos.x / ImGui::GetIO().DisplaySize.x;
     ImGui::SetNextWindowPos({ImGui::GetIO().MousePos.x, place.y - 8 * input.scale}, 0, {share, 1});
     tooltip(under ? scan_text(*under) + "\nClick: starts there" : "not scanned");
   }
   if (!clicked || under == nullptr) return;
-  Settings settings = state.settings;
+  Settings settings = state.document.settings;
   settings.start = under->start;
   push(commands, ChangeSettings{settings});
   push(commands, GoToFrame{under->start + settings.frames - 1});

@@ -116,7 +116,7 @@ void drag_window_ends(const PanelInput& input,
                       const TimeAxis& axis,
                       const Rectangle& bar,
                       Commands& commands) {
-  const Settings& settings = input.state.settings;
+  const Settings& settings = input.state.document.settings;
   const float reach = 5 * input.scale;
   const float x = ImGui::GetIO().MousePos.x;
   const auto handle = [&](const char* name, int frame, auto moved) {
@@ -164,7 +164,7 @@ void draw_overview(ImDrawList& list, const TimeAxis& axis, float bottom, float s
 void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
   const WorkbenchState& state = input.state;
   const TimeAxis axis{
-      bar.x, bar.right(), state.frame_count(), holding(state.time_span, state.frame)};
+      bar.x, bar.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
   if (axis.frames < 1) return;
@@ -185,18 +185,18 @@ void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands
     const float share = x / ImGui::GetIO().DisplaySize.x;
     ImGui::SetNextWindowPos({x, bar.y - 8 * input.scale}, 0, {share, 1});
     const std::string text = shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
-    tooltip(note_at(state.bookmarks, frame) + text);
+    tooltip(note_at(state.document.bookmarks, frame) + text);
   }
   list.PushClipRect({bar.x, bar.y - 8 * input.scale}, {bar.right(), bar.bottom()}, true);
-  draw_window_ends(list, state.settings, axis, bar.y, bar.bottom(), input.scale);
+  draw_window_ends(list, state.document.settings, axis, bar.y, bar.bottom(), input.scale);
   if (shown) {
     draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
     draw_motion(list, *shown, axis, bar.y + 4 * input.scale, bar.bottom() - 2 * input.scale);
     draw_verdict_signs(list, *shown, axis, bar.bottom() - 9 * input.scale, input.scale);
     draw_scale_mark(list, *shown, axis, bar.y, bar.bottom(), input.scale);
   }
-  draw_bookmarks(list, state.bookmarks, axis, bar.y, input.scale);
-  draw_cursor(list, slot_middle(axis, state.frame), bar.y, bar.bottom(), input.scale);
+  draw_bookmarks(list, state.document.bookmarks, axis, bar.y, input.scale);
+  draw_cursor(list, slot_middle(axis, state.view.frame), bar.y, bar.bottom(), input.scale);
   draw_overview(list, axis, bar.bottom(), input.scale);
   list.PopClipRect();
 }
@@ -207,11 +207,12 @@ void draw_playing(const PanelInput& input, Commands& commands) {
   const float gap = 6 * input.scale;
   ImGui::PushFont(font(Font::small));
   ImGui::SameLine(0, gap);
-  if (ImGui::SmallButton(fmt::format("{:g}\u00d7", state.speed).c_str()))
-    push(commands, RunAction{state.speed >= 8 ? "speed 0.125" : "faster"});
+  if (ImGui::SmallButton(fmt::format("{:g}\u00d7", state.view.speed).c_str()))
+    push(commands, RunAction{state.view.speed >= 8 ? "speed 0.125" : "faster"});
   tooltip("Speed of playing; click: twice as fast (+), from 8\u00d7 on again at 1/8. - halves it");
   ImGui::SameLine(0, gap);
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(state.loop ? Role::accent : Role::text_dim));
+  ImGui::PushStyleColor(ImGuiCol_Text,
+                        imgui_color(state.view.loop ? Role::accent : Role::text_dim));
   if (ImGui::SmallButton("loop")) push(commands, RunAction{"loop"});
   ImGui::PopStyleColor();
   tooltip("Playing repeats the window (L)");
@@ -221,23 +222,23 @@ void draw_playing(const PanelInput& input, Commands& commands) {
 /// "frame 29 / 59" over "0.967 s": counted from 0, as everywhere.
 void draw_numbers(const PanelInput& input, float left, float top, Commands& commands) {
   const WorkbenchState& state = input.state;
-  if (!state.recording) return;
-  const auto& times = state.recording->timestamps_ns;
-  const double seconds = static_cast<double>(times[state.frame] - times.front()) * 1e-9;
+  if (!state.document.recording) return;
+  const auto& times = state.document.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times[state.view.frame] - times.front()) * 1e-9;
   ImGui::SetCursorScreenPos({left, top});
   ImGui::TextUnformatted(
-      fmt::format("frame {} / {}", state.frame, state.frame_count() - 1).c_str());
+      fmt::format("frame {} / {}", state.view.frame, state.frame_count() - 1).c_str());
   ImGui::SetCursorScreenPos({left, top + ImGui::GetTextLineHeightWithSpacing()});
-  const int start = state.settings.start;
+  const int start = state.document.settings.start;
   colored_text(Role::text_dim, fmt::format("{:.3f} s", seconds));
-  tooltip(
-      fmt::format("The window spans frames {} to {}", start, start + state.settings.frames - 1));
+  tooltip(fmt::format(
+      "The window spans frames {} to {}", start, start + state.document.settings.frames - 1));
   draw_playing(input, commands);
 }
 
 float width_of_longest_time(const PanelInput& input) {
-  if (!input.state.recording) return 0;
-  const auto& times = input.state.recording->timestamps_ns;
+  if (!input.state.document.recording) return 0;
+  const auto& times = input.state.document.recording->timestamps_ns;
   const double seconds = static_cast<double>(times.back() - times.front()) * 1e-9;
   return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
 }
@@ -246,7 +247,7 @@ float width_of_longest_time(const PanelInput& input) {
 void draw_over_time(const PanelInput& input, Rectangle bar, bool legend, Commands& commands) {
   if (bar.empty()) return;
   const float s = input.scale;
-  if (input.state.view.scan) {
+  if (input.state.view.toggles.scan) {
     const float strip = std::round(kScanHeight * s);
     scan_strip(input, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, commands);
     bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
@@ -265,7 +266,7 @@ void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& c
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * s, 4 * s});
   const float side = std::round(std::min(30 * s, place.height - 16 * s));
   ImGui::SetCursorPosY(std::round((place.height - side) / 2));
-  const Icon play = input.state.playing ? Icon::pause : Icon::play;
+  const Icon play = input.state.view.playing ? Icon::pause : Icon::play;
   const std::array<std::pair<Icon, const char*>, 5> buttons = {{{Icon::first, "first"},
                                                                 {Icon::back, "previous"},
                                                                 {play, "play"},

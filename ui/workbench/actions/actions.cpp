@@ -92,7 +92,7 @@ const Action* action_of_character(char32_t character) {
 }
 
 bool enabled(const Action& action, const WorkbenchState& state) {
-  return state.recording || !action.needs_recording;
+  return state.document.recording || !action.needs_recording;
 }
 
 bool takes_a_file(const Action& action) {

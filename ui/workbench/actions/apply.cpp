@@ -26,15 +26,17 @@ void apply(WorkbenchState& state, const Command& command) {
     change_settings(state, c.settings, c.dragging);
   };
   const auto go = [&](const GoToFrame& c) { go_to_frame(state, c.frame); };
-  const auto cube = [&](const SetCubeSide& c) { state.cube_side = std::clamp(c.side, 0.0, 2.0); };
+  const auto cube = [&](const SetCubeSide& c) {
+    state.document.cube_side = std::clamp(c.side, 0.0, 2.0);
+  };
   const auto move = [&](const MoveCube& c) { move_cube(state, c.ray); };
-  const auto zoom = [&](const ZoomPicture& c) { state.picture_zoom = c.zoom; };
-  const auto zoom_all = [&](const ZoomCompare& c) { state.compare_zoom = c.zoom; };
-  const auto normals = [&](const ZoomNormals& c) { state.normals_zoom = c.zoom; };
-  const auto orbit = [&](const OrbitScene& c) { state.orbit = c.camera; };
-  const auto fit = [&](const FitScene&) { state.orbit.reset(); };
-  const auto divide = [&](const DivideWindow& c) { state.division = c.division; };
-  const auto open = [&](const OpenPath& c) { state.wishes.open = c.path; };
+  const auto zoom = [&](const ZoomPicture& c) { state.view.picture_zoom = c.zoom; };
+  const auto zoom_all = [&](const ZoomCompare& c) { state.view.compare_zoom = c.zoom; };
+  const auto normals = [&](const ZoomNormals& c) { state.view.normals_zoom = c.zoom; };
+  const auto orbit = [&](const OrbitScene& c) { state.view.orbit = c.camera; };
+  const auto fit = [&](const FitScene&) { state.view.orbit.reset(); };
+  const auto divide = [&](const DivideWindow& c) { state.view.division = c.division; };
+  const auto open = [&](const OpenPath& c) { state.requests.open = c.path; };
   const auto hover = [&](const HoverOver& c) { state.hover = c.hover; };
   const auto select = [&](const SelectTracks& c) { state.selection = c.selection; };
   std::visit(Overloaded{run,

@@ -21,7 +21,7 @@ void compare_these(State& state, const std::string& list) {
   std::vector<std::string> keys;
   for (const Configuration& one : parse_configurations(list, state.methods))
     keys.push_back(key_of(one));
-  state.compared = std::move(keys);
+  state.document.compared = std::move(keys);
 }
 
 /// Without what only repeats a default of the method.
@@ -32,26 +32,27 @@ std::string shortest_key(const std::string& text, const MethodTable& methods) {
 /// The compared one that comes to the same by default.
 auto find_compared(State& state, const std::string& text) {
   const auto key_of_one = [&](const std::string& one) { return shortest_key(one, state.methods); };
-  return std::ranges::find(state.compared, key_of_one(text), key_of_one);
+  return std::ranges::find(state.document.compared, key_of_one(text), key_of_one);
 }
 
 void compare_also(State& state, const std::string& list) {
   for (const Configuration& one : parse_configurations(list, state.methods)) {
     const std::string key = key_of(one);
-    if (find_compared(state, key) == state.compared.end()) state.compared.push_back(key);
+    if (find_compared(state, key) == state.document.compared.end())
+      state.document.compared.push_back(key);
   }
 }
 
 void compare_no_longer(State& state, const std::string& text) {
   const std::string key = key_of(parse_configuration(text, state.methods));
   const auto found = find_compared(state, text);
-  if (found == state.compared.end())
+  if (found == state.document.compared.end())
     throw InputError(fmt::format("compare remove: '{}' is not among the compared ones: {}",
                                  key,
-                                 fmt::join(state.compared, ", ")));
-  if (state.compared.size() == 1)
+                                 fmt::join(state.document.compared, ", ")));
+  if (state.document.compared.size() == 1)
     throw InputError("compare remove: the last one stays; `compare METHODS` chooses others");
-  state.compared.erase(found);
+  state.document.compared.erase(found);
 }
 
 /// An action whose one argument is a list of configurations, or one.
@@ -116,9 +117,9 @@ void add_looks(std::vector<Action>& table) {
               "Shows all columns enlarged around a point; without numbers around the cubes"};
   zoom.arguments = "[FACTOR [X Y]]";
   zoom.run = [](State& s, const Arguments& arguments) {
-    s.compare_zoom.reset();
+    s.view.compare_zoom.reset();
     if (!arguments.empty())
-      s.compare_zoom = zoom_in("compare zoom", arguments, s.recording->camera);
+      s.view.compare_zoom = zoom_in("compare zoom", arguments, s.document.recording->camera);
   };
   table.push_back(zoom);
   Action flip = toggle("flip",
@@ -126,7 +127,7 @@ void add_looks(std::vector<Action>& table) {
                        {key(GLFW_KEY_X, "X")},
                        "While held: the picture shows the first compared other result, in place; "
                        "side by side the first two change places",
-                       [](State& s) -> bool& { return s.flip; });
+                       [](State& s) -> bool& { return s.view.flip; });
   flip.held = true;
   table.push_back(flip);
 }
@@ -134,11 +135,11 @@ void add_looks(std::vector<Action>& table) {
 void switch_curve(State& state, const Arguments& arguments) {
   expect_count("curve", arguments, 1, 2);
   const std::string key = shortest_key(arguments[0], state.methods);
-  const auto found = std::ranges::find(state.hidden_curves, key);
-  const bool shown = found == state.hidden_curves.end();
+  const auto found = std::ranges::find(state.view.hidden_curves, key);
+  const bool shown = found == state.view.hidden_curves.end();
   const bool show = switched("curve", {arguments.begin() + 1, arguments.end()}, shown);
-  if (show && !shown) state.hidden_curves.erase(found);
-  if (!show && shown) state.hidden_curves.push_back(key);
+  if (show && !shown) state.view.hidden_curves.erase(found);
+  if (!show && shown) state.view.hidden_curves.push_back(key);
 }
 
 void add_curves(std::vector<Action>& table) {
@@ -154,8 +155,8 @@ void add_curves(std::vector<Action>& table) {
                     {},
                     "The curves show this recording again, no longer those of a results.csv",
                     [](State& s) {
-                      s.experiment.reset();
-                      s.experiment_name.clear();
+                      s.results.experiment.reset();
+                      s.results.experiment_name.clear();
                     })));
 }
 
@@ -167,7 +168,7 @@ void add_compare_actions(std::vector<Action>& table) {
                          pane.title,
                          {letter('C')},
                          pane.tooltip,
-                         [](State& s) -> bool& { return s.panes.compare; }));
+                         [](State& s) -> bool& { return s.view.panes.compare; }));
   table.back().submenu = "Open";
   add_submenu(table, "Compare", add_choice);
   add_submenu(table, "Compare", add_looks);

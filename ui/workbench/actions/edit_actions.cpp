@@ -23,14 +23,14 @@ void add_undo(std::vector<Action>& table) {
       {control('Z')},
       "Takes back the last change of the settings, of the excluded tracks or of the cube's place",
       gpo::undo);
-  undo.value = [](const State& s) { return std::to_string(s.undo.size()); };
+  undo.value = [](const State& s) { return std::to_string(s.document.undo.size()); };
   Action redo = plain("redo",
                       "Redo",
                       "Edit",
                       {control('Y')},
                       "Makes the change again that was taken back",
                       gpo::redo);
-  redo.value = [](const State& s) { return std::to_string(s.redo.size()); };
+  redo.value = [](const State& s) { return std::to_string(s.document.redo.size()); };
   table.push_back(undo);
   table.push_back(redo);
   table.push_back(plain("reset-cube",
@@ -90,7 +90,7 @@ void add_selection(std::vector<Action>& table) {
 /// Leaves the selected tracks out of the window.
 void exclude_selected(State& state) {
   if (state.selection.tracks.empty()) throw InputError("no track is selected");
-  Settings settings = state.settings;
+  Settings settings = state.document.settings;
   auto& out = settings.exclude;
   out.insert(out.end(), state.selection.tracks.begin(), state.selection.tracks.end());
   std::ranges::sort(out);
@@ -112,7 +112,7 @@ void add_exclusion(std::vector<Action>& table) {
                         {},
                         "Leaves out no track and solves again",
                         [](State& s) {
-                          Settings settings = s.settings;
+                          Settings settings = s.document.settings;
                           settings.exclude.clear();
                           change_settings(s, settings);
                         }));

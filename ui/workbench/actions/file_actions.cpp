@@ -35,13 +35,13 @@ void take_screenshot(State& state, const Arguments& arguments) {
     else
       shot.view = arguments[i];
   }
-  state.wishes.screenshots.push_back(shot);
+  state.requests.screenshots.push_back(shot);
 }
 
 /// FILE [FPS]
 void export_video(State& state, const Arguments& arguments) {
   expect_count("export-video", arguments, 1, 2);
-  MovieWish movie{arguments[0]};
+  MovieRequest movie{arguments[0]};
   if (movie.file.extension() != ".mp4")
     throw InputError(fmt::format("export-video: '{}', expected a file name that ends in .mp4",
                                  movie.file.string()));
@@ -49,9 +49,9 @@ void export_video(State& state, const Arguments& arguments) {
   if (arguments.size() > 1 && !(movie.rate_hz >= 1 && movie.rate_hz <= 240))
     throw InputError(
         fmt::format("export-video: '{}', expected 1 to 240 frames a second", arguments[1]));
-  if (state.wishes.movie) throw InputError("export-video: another movie is being written");
+  if (state.requests.movie) throw InputError("export-video: another movie is being written");
   check_writable(movie.file);
-  state.wishes.movie = movie;
+  state.requests.movie = movie;
 }
 
 /// A file of the current inspection.
@@ -62,7 +62,8 @@ Action export_of(const std::string& what, std::string title, std::string (*text)
   action.arguments = "FILE";
   action.run = [what, text](State& state, const Arguments& arguments) {
     expect_count(("export " + what).c_str(), arguments, 1, 1);
-    if (!state.inspection) throw InputError("nothing is computed yet that could be written");
+    if (!state.results.inspection)
+      throw InputError("nothing is computed yet that could be written");
     check_writable(arguments[0]);
     write_file(arguments[0], text(state));
     say(state, "saved " + arguments[0]);
@@ -80,7 +81,8 @@ Action trajectory_export(const std::string& what,
   action.arguments = "FILE [tum|euroc|kitti]";
   action.run = [what, path](State& state, const Arguments& arguments) {
     expect_count(("export " + what).c_str(), arguments, 1, 2);
-    if (!state.inspection) throw InputError("nothing is computed yet that could be written");
+    if (!state.results.inspection)
+      throw InputError("nothing is computed yet that could be written");
     const auto format =
         arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
     check_writable(arguments[0]);
@@ -90,14 +92,19 @@ Action trajectory_export(const std::string& what,
   return action;
 }
 
-std::string whole_result(const State& state) { return json_text(to_json(*state.inspection), 2); }
+std::string whole_result(const State& state) {
+  return json_text(to_json(*state.results.inspection), 2);
+}
 
 std::optional<double> unit_of(const State& state) {
-  return state.metric ? std::optional(meters_a_unit(*state.inspection)) : std::nullopt;
+  return state.document.metric ? std::optional(meters_a_unit(*state.results.inspection))
+                               : std::nullopt;
 }
-std::string points(const State& state) { return to_ply(*state.inspection, unit_of(state)); }
-CameraPath poses(const State& state) { return estimated_path(*state.inspection, unit_of(state)); }
-CameraPath true_poses(const State& state) { return true_path(*state.inspection); }
+std::string points(const State& state) { return to_ply(*state.results.inspection, unit_of(state)); }
+CameraPath poses(const State& state) {
+  return estimated_path(*state.results.inspection, unit_of(state));
+}
+CameraPath true_poses(const State& state) { return true_path(*state.results.inspection); }
 
 /// ACTION [PATH]: what is shown at first, or the folder of what is open.
 void browse(State& state, const Arguments& arguments) {
@@ -109,13 +116,13 @@ void browse(State& state, const Arguments& arguments) {
         fmt::format("browse: '{}', expected an action that takes a file", wanted.action));
   if (!enabled(*action, state)) throw InputError("no recording is open");
   std::error_code none;
-  const bool opens = wanted.action == "open" && state.recording;
+  const bool opens = wanted.action == "open" && state.document.recording;
   const std::filesystem::path folder =
-      opens ? state.recording->path.parent_path() : std::filesystem::current_path(none);
+      opens ? state.document.recording->path.parent_path() : std::filesystem::current_path(none);
   wanted.text = (std::filesystem::absolute(folder, none) / "").string();
   if (arguments.size() > 1) wanted.text = arguments[1];
-  state.palette.reset();
-  state.browse = wanted;
+  state.view.palette.reset();
+  state.view.browse = wanted;
 }
 
 void add_browse(std::vector<Action>& table) {
@@ -143,7 +150,7 @@ void add_open(std::vector<Action>& table) {
   open.needs_recording = false;
   open.run = [](State& state, const Arguments& arguments) {
     expect_count("open", arguments, 1, 1);
-    state.wishes.open = arguments[0];
+    state.requests.open = arguments[0];
   };
   table.push_back(open);
   table.push_back(anytime(plain("open-example",
@@ -151,17 +158,17 @@ void add_open(std::vector<Action>& table) {
                                 "File",
                                 {},
                                 "Opens the recording that comes with the program",
-                                [](State& s) { s.wishes.open_example = true; })));
+                                [](State& s) { s.requests.open_example = true; })));
 }
 
 /// Without a name: where it was saved before; the first time the window asks.
 void save_session(State& state, const Arguments& arguments) {
   expect_count("save-session", arguments, 0, 1);
   std::filesystem::path file =
-      arguments.empty() ? state.session_file : std::filesystem::path(arguments[0]);
-  if (file.empty()) file = state.recording->name + ".session.json";
-  if (arguments.empty() && state.session_file.empty() && state.asks) {
-    state.browse = Browse{"save-session", std::filesystem::absolute(file).string()};
+      arguments.empty() ? state.files.session_file : std::filesystem::path(arguments[0]);
+  if (file.empty()) file = state.document.recording->name + ".session.json";
+  if (arguments.empty() && state.files.session_file.empty() && state.files.asks) {
+    state.view.browse = Browse{"save-session", std::filesystem::absolute(file).string()};
     return;
   }
   if (file.extension() != ".json")
@@ -169,8 +176,8 @@ void save_session(State& state, const Arguments& arguments) {
         fmt::format("save-session: '{}', expected a file name that ends in .json", file.string()));
   check_writable(file);
   write_file(file, session_text(state));
-  state.session_file = std::filesystem::absolute(file);
-  say(state, "saved " + state.session_file.string());
+  state.files.session_file = std::filesystem::absolute(file);
+  say(state, "saved " + state.files.session_file.string());
 }
 
 void add_sessions(std::vector<Action>& table) {
@@ -191,7 +198,7 @@ void add_sessions(std::vector<Action>& table) {
                                 [](State& s) {
                                   if (!std::filesystem::exists(last_session_file()))
                                     throw InputError("no session was closed yet");
-                                  s.wishes.open = last_session_file();
+                                  s.requests.open = last_session_file();
                                 })));
 }
 
@@ -208,7 +215,7 @@ void add_file_actions(std::vector<Action>& table) {
             {letter('S')},
             "Writes the current frame with its overlays as a PNG into the current folder",
             [](State& s) {
-              s.wishes.screenshots.push_back({"", "picture"});
+              s.requests.screenshots.push_back({"", "picture"});
             }));
   Action screenshot{"screenshot",
                     "Save a view as a picture",
@@ -244,12 +251,12 @@ void add_file_actions(std::vector<Action>& table) {
                          {},
                          "Camera poses and map points are written in meters, by the accelerometer; "
                          "otherwise in distances of the plane",
-                         [](State& s) -> bool& { return s.metric; });
+                         [](State& s) -> bool& { return s.document.metric; });
   metric.menu = "File";
   table.push_back(metric);
   table.push_back(
       anytime(plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
-        s.wishes.quit = true;
+        s.requests.quit = true;
       })));
 }
 

@@ -12,14 +12,14 @@ namespace {
 using State = WorkbenchState;
 
 void escape(State& state) {
-  if (state.browse) {
-    state.browse.reset();
-  } else if (state.palette) {
-    state.palette.reset();
-  } else if (state.show_help) {
-    state.show_help = false;
+  if (state.view.browse) {
+    state.view.browse.reset();
+  } else if (state.view.palette) {
+    state.view.palette.reset();
+  } else if (state.view.show_help) {
+    state.view.show_help = false;
   } else {
-    state.wishes.cancel = true;
+    state.requests.cancel = true;
   }
 }
 
@@ -33,12 +33,12 @@ void add_help_actions(std::vector<Action>& table) {
                  "Finds a command by a part of its name and runs it"};
   palette.arguments = "[TEXT]";
   palette.run = [](State& s, const Arguments& arguments) {
-    if (s.palette && arguments.empty())
-      s.palette.reset();
+    if (s.view.palette && arguments.empty())
+      s.view.palette.reset();
     else
-      s.palette = fmt::format("{}", fmt::join(arguments, " "));
+      s.view.palette = fmt::format("{}", fmt::join(arguments, " "));
   };
-  palette.checked = [](const State& s) { return s.palette.has_value(); };
+  palette.checked = [](const State& s) { return s.view.palette.has_value(); };
   palette.needs_recording = false;
   palette.opens_field = true;
   table.push_back(palette);
@@ -47,8 +47,8 @@ void add_help_actions(std::vector<Action>& table) {
                       "Help",
                       {key(GLFW_KEY_F1, "F1"), letter('?')},
                       "Lists every key and its state",
-                      [](State& s) { s.show_help = !s.show_help; });
-  help.checked = [](const State& s) { return s.show_help; };
+                      [](State& s) { s.view.show_help = !s.view.show_help; });
+  help.checked = [](const State& s) { return s.view.show_help; };
   help.needs_recording = false;
   table.push_back(help);
   table.push_back(anytime(plain("escape",

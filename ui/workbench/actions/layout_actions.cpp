@@ -33,10 +33,10 @@ Action maximize_part() {
       "click on a tab"};
   maximize.arguments = "[picture|side|drawer|none]";
   maximize.run = [](State& s, const Arguments& arguments) {
-    s.division.maximized = part_in(arguments, s.division.maximized);
+    s.view.division.maximized = part_in(arguments, s.view.division.maximized);
   };
-  maximize.checked = [](const State& s) { return s.division.maximized != WindowPart::none; };
-  maximize.value = [](const State& s) { return std::string(to_string(s.division.maximized)); };
+  maximize.checked = [](const State& s) { return s.view.division.maximized != WindowPart::none; };
+  maximize.value = [](const State& s) { return std::string(to_string(s.view.division.maximized)); };
   maximize.needs_recording = false;
   return maximize;
 }
@@ -47,28 +47,29 @@ void add_parts(std::vector<Action>& table) {
                          "Left column",
                          {key(GLFW_KEY_F9, "F9")},
                          "Settings and result",
-                         [](State& s) -> bool& { return s.division.column; }));
+                         [](State& s) -> bool& { return s.view.division.column; }));
   table.push_back(toggle("timeline",
                          "Time line",
                          {},
                          "Frames, bars and verdicts below everything else",
-                         [](State& s) -> bool& { return s.division.timeline; }));
+                         [](State& s) -> bool& { return s.view.division.timeline; }));
   table.push_back(toggle("fullscreen",
                          "Full screen",
                          {key(GLFW_KEY_F11, "F11")},
                          "The window takes the whole screen",
-                         [](State& s) -> bool& { return s.fullscreen; }));
+                         [](State& s) -> bool& { return s.view.fullscreen; }));
   table.push_back(
       anytime(plain("reset-layout",
                     "Reset the layout",
                     "View",
                     {},
                     "Column, picture, side pane and drawer share the window as at the start",
-                    [](State& s) { s.division = {}; })));
+                    [](State& s) { s.view.division = {}; })));
 }
 
 void set_zoom(State& state, double zoom) {
-  state.text_zoom = std::clamp(std::round(zoom / kZoomStep) * kZoomStep, kLeastZoom, kMostZoom);
+  state.view.text_zoom =
+      std::clamp(std::round(zoom / kZoomStep) * kZoomStep, kLeastZoom, kMostZoom);
 }
 
 Shortcut control_key(int glfw_key, std::string label) {
@@ -88,14 +89,14 @@ void add_text_sizes(std::vector<Action>& table) {
              control_key(GLFW_KEY_EQUAL, "Ctrl+="),
              control_key(GLFW_KEY_KP_ADD, "Ctrl+keypad +")},
             "Text, signs and buttons a tenth larger",
-            [](State& s) { set_zoom(s, s.text_zoom + kZoomStep); }));
+            [](State& s) { set_zoom(s, s.view.text_zoom + kZoomStep); }));
   add(plain("smaller",
             "Smaller text",
             "View",
             {control_key(GLFW_KEY_MINUS, "Ctrl+minus"),
              control_key(GLFW_KEY_KP_SUBTRACT, "Ctrl+keypad -")},
             "Text, signs and buttons a tenth smaller",
-            [](State& s) { set_zoom(s, s.text_zoom - kZoomStep); }));
+            [](State& s) { set_zoom(s, s.view.text_zoom - kZoomStep); }));
   Action size{"text-size",
               "Text size",
               "View",
@@ -106,7 +107,7 @@ void add_text_sizes(std::vector<Action>& table) {
     expect_count("text-size", arguments, 0, 1);
     set_zoom(s, arguments.empty() ? 1 : number_in("text-size", arguments) / 100);
   };
-  size.value = [](const State& s) { return fmt::format("{:.0f} %", 100 * s.text_zoom); };
+  size.value = [](const State& s) { return fmt::format("{:.0f} %", 100 * s.view.text_zoom); };
   add(std::move(size));
 }
 

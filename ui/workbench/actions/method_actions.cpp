@@ -44,7 +44,7 @@ std::vector<Action> settings_by_name() {
           2,
           "Gives a setting another value",
           [](const State& s, const Arguments& a) {
-            return with_setting(s.settings, a[0], a[1], s.methods);
+            return with_setting(s.document.settings, a[0], a[1], s.methods);
           }},
       Row{"preset",
           "Choose a preset",
@@ -53,7 +53,7 @@ std::vector<Action> settings_by_name() {
           1,
           "All settings but the window: the best that we have, or what the paper does",
           [](const State& s, const Arguments& a) {
-            return with_preset(s.settings, choice<Preset>(a[0]));
+            return with_preset(s.document.settings, choice<Preset>(a[0]));
           }},
       Row{"reset",
           "Reset settings",
@@ -62,7 +62,7 @@ std::vector<Action> settings_by_name() {
           1,
           "Gives a setting, or all of them with window and method, its default value",
           [](const State& s, const Arguments& a) {
-            return a.empty() ? Settings{} : with_default(s.settings, a[0]);
+            return a.empty() ? Settings{} : with_default(s.document.settings, a[0]);
           }},
   };
   std::vector<Action> actions;
@@ -80,16 +80,17 @@ std::vector<Action> settings_by_name() {
 }
 
 void add_settings(std::vector<Action>& table) {
-  Action ransac =
-      plain("ransac",
-            "RANSAC",
-            "Method",
-            {letter('R')},
-            "Rejects outliers by a homography from the reference frame",
-            [](State& s) {
-              change_settings(s, switched(s.settings, "ransac", !uses_ransac(s.settings.options)));
-            });
-  ransac.checked = [](const State& s) { return uses_ransac(s.settings.options); };
+  Action ransac = plain(
+      "ransac",
+      "RANSAC",
+      "Method",
+      {letter('R')},
+      "Rejects outliers by a homography from the reference frame",
+      [](State& s) {
+        change_settings(
+            s, switched(s.document.settings, "ransac", !uses_ransac(s.document.settings.options)));
+      });
+  ransac.checked = [](const State& s) { return uses_ransac(s.document.settings.options); };
   ransac.needs_recording = false;
   table.push_back(ransac);
   for (Action& action : settings_by_name()) table.push_back(std::move(action));
@@ -97,16 +98,16 @@ void add_settings(std::vector<Action>& table) {
 
 /// A camera that a file tells is not to be replaced by one that is found in the pictures.
 void wish_calibration(State& s) {
-  if (!s.recording->pictures) throw InputError("calibrate: the recording has no pictures");
-  if (s.recording->camera_source == CameraSource::file)
+  if (!s.document.recording->pictures) throw InputError("calibrate: the recording has no pictures");
+  if (s.document.recording->camera_source == CameraSource::file)
     throw InputError("calibrate: the camera comes from a file and stays");
-  s.wishes.calibrate = true;
+  s.requests.calibrate = true;
 }
 
 /// The scan is shown, so that one sees what it finds.
 void wish_start(State& s) {
-  s.view.scan = true;
-  s.wishes.find_start = true;
+  s.view.toggles.scan = true;
+  s.requests.find_start = true;
 }
 
 }  // namespace
@@ -118,11 +119,13 @@ Action choice_of_method(const MethodChoice& method) {
                         {},
                         method.row().help,
                         [method](State& s) {
-                          Settings settings = s.settings;
+                          Settings settings = s.document.settings;
                           settings.options.method = method;
                           change_settings(s, settings);
                         });
-  action.checked = [method](const State& s) { return s.settings.options.method == method; };
+  action.checked = [method](const State& s) {
+    return s.document.settings.options.method == method;
+  };
   action.needs_recording = false;
   return action;
 }
@@ -135,7 +138,7 @@ void add_method_actions(std::vector<Action>& table) {
                         "Method",
                         {key(GLFW_KEY_F5, "F5")},
                         "Computes with the same settings, say after Esc",
-                        [](State& s) { s.wishes.compute = true; }));
+                        [](State& s) { s.requests.compute = true; }));
   table.push_back(plain("calibrate",
                         "Calibrate from the plane",
                         "Method",

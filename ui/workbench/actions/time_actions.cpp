@@ -20,18 +20,18 @@ namespace {
 using State = WorkbenchState;
 
 auto frame_text(int (*frame)(const State&)) {
-  return [frame](const State& s) { return s.recording ? std::to_string(frame(s)) : ""; };
+  return [frame](const State& s) { return s.document.recording ? std::to_string(frame(s)) : ""; };
 }
 
 void step(State& state, int frames) {
-  state.playing = false;
-  go_to_frame(state, state.frame + frames);
+  state.view.playing = false;
+  go_to_frame(state, state.view.frame + frames);
 }
 
 void play(State& state) {
-  state.playing = !state.playing;
-  state.play_seconds = 0;
-  if (state.playing && state.frame + 1 >= state.frame_count()) state.frame = 0;
+  state.view.playing = !state.view.playing;
+  state.view.play_seconds = 0;
+  if (state.view.playing && state.view.frame + 1 >= state.frame_count()) state.view.frame = 0;
 }
 
 void add_playing(std::vector<Action>& table) {
@@ -41,7 +41,7 @@ void add_playing(std::vector<Action>& table) {
                         {{0, false, false, U' ', "Space"}},
                         "Plays at the recording's own rate",
                         play);
-  action.value = [](const State& s) { return s.playing ? "playing" : "paused"; };
+  action.value = [](const State& s) { return s.view.playing ? "playing" : "paused"; };
   table.push_back(action);
 }
 
@@ -49,21 +49,22 @@ void add_speed(std::vector<Action>& table) {
   Action speed{"speed", "Speed", "Time", {}, "Of playing, in the recording's own"};
   speed.arguments = "FACTOR";
   speed.needs_recording = false;
-  speed.value = [](const State& s) { return fmt::format("{:g}\u00d7", s.speed); };
+  speed.value = [](const State& s) { return fmt::format("{:g}\u00d7", s.view.speed); };
   speed.run = [](State& s, const Arguments& arguments) {
     expect_count("speed", arguments, 1, 1);
-    s.speed = std::clamp(number_in("speed", arguments), 0.05, 20.0);
+    s.view.speed = std::clamp(number_in("speed", arguments), 0.05, 20.0);
   };
   table.push_back(speed);
   for (const auto& [name, title, sign, factor] :
        {std::tuple{"faster", "Twice as fast", '+', 2.0}, {"slower", "Half as fast", '-', 0.5}}) {
-    Action action =
-        plain(name,
-              title,
-              "Time",
-              {letter(sign)},
-              "Changes the speed of playing",
-              [factor = factor](State& s) { s.speed = std::clamp(s.speed * factor, 0.125, 8.0); });
+    Action action = plain(name,
+                          title,
+                          "Time",
+                          {letter(sign)},
+                          "Changes the speed of playing",
+                          [factor = factor](State& s) {
+                            s.view.speed = std::clamp(s.view.speed * factor, 0.125, 8.0);
+                          });
     action.value = speed.value;
     action.needs_recording = false;
     table.push_back(action);
@@ -71,26 +72,26 @@ void add_speed(std::vector<Action>& table) {
   Action loop{"loop", "Loop", "Time", {letter('L')}, "Playing repeats the window"};
   loop.arguments = "[on|off]";
   loop.needs_recording = false;
-  loop.checked = [](const State& s) { return s.loop; };
+  loop.checked = [](const State& s) { return s.view.loop; };
   loop.run = [](State& s, const Arguments& arguments) {
-    s.loop = switched("loop", arguments, s.loop);
+    s.view.loop = switched("loop", arguments, s.view.loop);
   };
   table.push_back(loop);
 }
 
 std::vector<Bookmark>::iterator bookmark_from(State& state, int frame) {
-  return std::ranges::lower_bound(state.bookmarks, frame, {}, &Bookmark::frame);
+  return std::ranges::lower_bound(state.document.bookmarks, frame, {}, &Bookmark::frame);
 }
 
 /// Puts one at the current frame; where there is one already, gives it another note, or without a
 /// note takes it away.
 void bookmark(State& state, const Arguments& arguments) {
   const std::string note = fmt::format("{}", fmt::join(arguments, " "));
-  const auto at = bookmark_from(state, state.frame);
-  if (at == state.bookmarks.end() || at->frame != state.frame)
-    state.bookmarks.insert(at, {state.frame, note});
+  const auto at = bookmark_from(state, state.view.frame);
+  if (at == state.document.bookmarks.end() || at->frame != state.view.frame)
+    state.document.bookmarks.insert(at, {state.view.frame, note});
   else if (note.empty())
-    state.bookmarks.erase(at);
+    state.document.bookmarks.erase(at);
   else
     at->note = note;
 }
@@ -102,7 +103,7 @@ void add_bookmarks(std::vector<Action>& table) {
               {letter('M')},
               "Marks this frame, with a note if one is given; again: takes the mark away"};
   mark.arguments = "[NOTE]";
-  mark.value = [](const State& s) { return std::to_string(s.bookmarks.size()); };
+  mark.value = [](const State& s) { return std::to_string(s.document.bookmarks.size()); };
   mark.run = bookmark;
   table.push_back(mark);
   table.push_back(plain("next-bookmark",
@@ -111,8 +112,8 @@ void add_bookmarks(std::vector<Action>& table) {
                         {letter('.')},
                         "Goes to the next marked frame",
                         [](State& s) {
-                          const auto next = bookmark_from(s, s.frame + 1);
-                          if (next != s.bookmarks.end()) go_to_frame(s, next->frame);
+                          const auto next = bookmark_from(s, s.view.frame + 1);
+                          if (next != s.document.bookmarks.end()) go_to_frame(s, next->frame);
                         }));
   table.push_back(plain("previous-bookmark",
                         "Previous bookmark",
@@ -120,8 +121,9 @@ void add_bookmarks(std::vector<Action>& table) {
                         {letter(',')},
                         "Goes to the marked frame before",
                         [](State& s) {
-                          const auto next = bookmark_from(s, s.frame);
-                          if (next != s.bookmarks.begin()) go_to_frame(s, std::prev(next)->frame);
+                          const auto next = bookmark_from(s, s.view.frame);
+                          if (next != s.document.bookmarks.begin())
+                            go_to_frame(s, std::prev(next)->frame);
                         }));
 }
 
@@ -146,7 +148,7 @@ void add_steps(std::vector<Action>& table) {
                           {row.shortcut},
                           "Shows another frame; the window stays where it is",
                           [frames = row.frames](State& s) { step(s, frames); });
-    action.value = frame_text([](const State& s) { return s.frame; });
+    action.value = frame_text([](const State& s) { return s.view.frame; });
     action.repeats = true;
     table.push_back(action);
   }
@@ -159,7 +161,7 @@ void add_steps(std::vector<Action>& table) {
       throw InputError(fmt::format("frame: {} is not in the recording, which has frames 0 to {}",
                                    wanted,
                                    s.frame_count() - 1));
-    s.playing = false;
+    s.view.playing = false;
     go_to_frame(s, wanted);
   };
   table.push_back(frame);
@@ -172,17 +174,22 @@ void add_window(std::vector<Action>& table) {
       "Time",
       {letter('[')},
       "Makes this frame the reference frame",
-      [](State& s) { change_settings(s, start_window_at(s.settings, s.frame, s.frame_count())); });
-  start.value = frame_text([](const State& s) { return s.settings.start; });
+      [](State& s) {
+        change_settings(s, start_window_at(s.document.settings, s.view.frame, s.frame_count()));
+      });
+  start.value = frame_text([](const State& s) { return s.document.settings.start; });
   table.push_back(start);
-  Action end = plain(
-      "window-end",
-      "Window ends here",
-      "Time",
-      {letter(']')},
-      "Makes this frame the last of the window",
-      [](State& s) { change_settings(s, end_window_at(s.settings, s.frame, s.frame_count())); });
-  end.value = frame_text([](const State& s) { return s.settings.start + s.settings.frames - 1; });
+  Action end =
+      plain("window-end",
+            "Window ends here",
+            "Time",
+            {letter(']')},
+            "Makes this frame the last of the window",
+            [](State& s) {
+              change_settings(s, end_window_at(s.document.settings, s.view.frame, s.frame_count()));
+            });
+  end.value = frame_text(
+      [](const State& s) { return s.document.settings.start + s.document.settings.frames - 1; });
   table.push_back(end);
 }
 
@@ -197,17 +204,18 @@ void show_time(State& s, const Arguments& arguments) {
                                    first,
                                    count,
                                    s.frame_count() - 1));
-    s.time_span = zoomed({first, count}, s.frame_count(), 0, 1);
+    s.view.time_span = zoomed({first, count}, s.frame_count(), 0, 1);
     return;
   }
-  const std::string what = arguments.empty()          ? s.time_span.count > 0 ? "all" : "window"
-                           : arguments[0] == "all"    ? "all"
+  const std::string what = arguments.empty()       ? s.view.time_span.count > 0 ? "all" : "window"
+                           : arguments[0] == "all" ? "all"
                            : arguments[0] == "window" ? "window"
                                                       : "";
   if (what.empty())
     throw InputError(
         fmt::format("time-line: '{}', expected all, window, or two frame numbers", arguments[0]));
-  s.time_span = what == "all" ? TimeSpan{} : around_window(s.settings, s.frame_count());
+  s.view.time_span =
+      what == "all" ? TimeSpan{} : around_window(s.document.settings, s.frame_count());
 }
 
 void add_time_line(std::vector<Action>& table) {

@@ -47,12 +47,12 @@ Action number(const ViewNumber& row) {
   action.arguments = row.arguments;
   action.submenu = row.submenu;
   action.needs_recording = false;
-  action.value = [&row](const State& s) { return row.text(s.view.*row.value); };
+  action.value = [&row](const State& s) { return row.text(s.view.toggles.*row.value); };
   if (row.has_steps())
-    action.checked = [&row](const State& s) { return s.view.*row.value > row.off; };
+    action.checked = [&row](const State& s) { return s.view.toggles.*row.value > row.off; };
   action.run = [&row](State& s, const Arguments& arguments) {
     expect_count(row.action, arguments, row.has_steps() ? 0 : 1, *row.arguments == 0 ? 0 : 1);
-    s.view.*row.value = number_after(row, s.view.*row.value, arguments);
+    s.view.toggles.*row.value = number_after(row, s.view.toggles.*row.value, arguments);
   };
   return action;
 }
@@ -67,9 +67,10 @@ Action model() {
                 "off: the cube again"};
   action.arguments = "FILE (.obj, .ply, .gltf, .glb)|robot|off";
   action.value = [](const State& s) {
-    return s.model.empty() ? "off" : std::filesystem::path(s.model).filename().string();
+    return s.document.model.empty() ? "off"
+                                    : std::filesystem::path(s.document.model).filename().string();
   };
-  action.checked = [](const State& s) { return !s.model.empty(); };
+  action.checked = [](const State& s) { return !s.document.model.empty(); };
   action.submenu = kCubeMenu;
   action.needs_recording = false;
   action.run = [](State& s, const Arguments& arguments) {
@@ -77,9 +78,9 @@ Action model() {
     const std::string& wanted = arguments[0];
     std::error_code none;
     if (wanted == "off") {
-      s.model.clear();
+      s.document.model.clear();
     } else if (wanted == "robot" || std::filesystem::is_regular_file(wanted, none)) {
-      s.model = wanted;
+      s.document.model = wanted;
     } else {
       throw InputError(fmt::format("model: '{}', expected a file, robot or off", wanted));
     }
@@ -89,11 +90,12 @@ Action model() {
 
 void add_toggles(std::vector<Action>& table) {
   for (const ViewToggle& one : kViewToggles) {
-    table.push_back(toggle(one.key,
-                           one.title,
-                           letters(one.letter),
-                           one.tooltip,
-                           [shown = one.shown](State& s) -> bool& { return s.view.*shown; }));
+    table.push_back(
+        toggle(one.key,
+               one.title,
+               letters(one.letter),
+               one.tooltip,
+               [shown = one.shown](State& s) -> bool& { return s.view.toggles.*shown; }));
     table.back().submenu = one.submenu;
   }
   for (const ViewNumber& one : kViewNumbers) table.push_back(number(one));
@@ -120,25 +122,25 @@ void add_panes(std::vector<Action>& table) {
     table.push_back(open_pane(
         pane,
         [&pane](State& s) {
-          s.panes.side = &pane;
-          s.panes.compare = false;
-          uncover(s.division, WindowPart::side);
+          s.view.panes.side = &pane;
+          s.view.panes.compare = false;
+          uncover(s.view.division, WindowPart::side);
         },
-        [&pane](const State& s) { return s.panes.side == &pane && !s.panes.compare; }));
+        [&pane](const State& s) { return s.view.panes.side == &pane && !s.view.panes.compare; }));
   for (const Pane& pane : drawers())
     table.push_back(open_pane(
         pane,
         [&pane](State& s) {
-          s.panes.drawer = &pane;
-          uncover(s.division, WindowPart::drawer);
+          s.view.panes.drawer = &pane;
+          uncover(s.view.division, WindowPart::drawer);
         },
-        [&pane](const State& s) { return s.panes.drawer == &pane; }));
+        [&pane](const State& s) { return s.view.panes.drawer == &pane; }));
   table.push_back(anytime(plain("view no-drawer",
                                 "Close the drawer",
                                 "View",
                                 {},
                                 "Picture and side pane take all of the height",
-                                [](State& s) { s.panes.drawer = nullptr; })));
+                                [](State& s) { s.view.panes.drawer = nullptr; })));
 }
 
 /// An action a value of what `chosen` returns.
@@ -154,11 +156,11 @@ void add_choices(std::vector<Action>& table, const std::string& name, T& (*chose
 }
 
 void add_themes(std::vector<Action>& table) {
-  add_choices<Theme>(table, "theme ", [](State& s) -> Theme& { return s.theme; });
+  add_choices<Theme>(table, "theme ", [](State& s) -> Theme& { return s.view.theme; });
 }
 
 void add_colorings(std::vector<Action>& table) {
-  add_choices<Coloring>(table, "color-by ", [](State& s) -> Coloring& { return s.coloring; });
+  add_choices<Coloring>(table, "color-by ", [](State& s) -> Coloring& { return s.view.coloring; });
 }
 
 void add_viewpoints(std::vector<Action>& table) {
@@ -170,10 +172,12 @@ void add_viewpoints(std::vector<Action>& table) {
               {key(GLFW_KEY_KP_0 + row.keypad - '0', std::string("Keypad ") + row.keypad)},
               row.tooltip,
               [&row](State& s) {
-                s.viewpoint = row.value;
-                s.orbit.reset();
+                s.view.viewpoint = row.value;
+                s.view.orbit.reset();
               });
-    action.checked = [&row](const State& s) { return s.viewpoint == row.value && !s.orbit; };
+    action.checked = [&row](const State& s) {
+      return s.view.viewpoint == row.value && !s.view.orbit;
+    };
     table.push_back(action);
   }
 }
@@ -185,17 +189,17 @@ void add_cameras(std::vector<Action>& table) {
                         {letter('F')},
                         "Shows all of the picture, of the scene and of the normals",
                         [](State& s) {
-                          s.picture_zoom = {};
-                          s.compare_zoom.reset();
-                          s.normals_zoom = {};
-                          s.orbit.reset();
-                          s.viewpoint = Viewpoint::oblique;
+                          s.view.picture_zoom = {};
+                          s.view.compare_zoom.reset();
+                          s.view.normals_zoom = {};
+                          s.view.orbit.reset();
+                          s.view.viewpoint = Viewpoint::oblique;
                         }));
   Action zoom{"zoom", "Zoom the picture", "View", {}, "Shows the picture enlarged around a point"};
   zoom.arguments = "FACTOR [X Y]";
   zoom.run = [](State& s, const Arguments& arguments) {
     expect_count("zoom", arguments, 1, 3);
-    s.picture_zoom = zoom_in("zoom", arguments, s.recording->camera);
+    s.view.picture_zoom = zoom_in("zoom", arguments, s.document.recording->camera);
   };
   table.push_back(zoom);
   Action normals{"zoom-normals",
@@ -212,7 +216,7 @@ void add_cameras(std::vector<Action>& table) {
     if (arguments.size() > 1)
       wanted.center = {number_in("zoom-normals", arguments, 1) / 90,
                        number_in("zoom-normals", arguments, 2) / 90};
-    s.normals_zoom = within_limits(wanted);
+    s.view.normals_zoom = within_limits(wanted);
   };
   table.push_back(normals);
 }

@@ -54,7 +54,7 @@ fs::path recent_list() { return user_state_folder() / "recent.json"; }
 fs::path last_session_file() { return user_state_folder() / "last-session.json"; }
 
 void save_last_session(const WorkbenchState& state) {
-  if (state.recording) write_quietly(last_session_file(), session_text(state));
+  if (state.document.recording) write_quietly(last_session_file(), session_text(state));
 }
 
 std::vector<fs::path> recent_files() {

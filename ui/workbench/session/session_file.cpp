@@ -36,7 +36,9 @@ void write_own_methods(const MethodTable& methods, Json& json) {
 
 std::string session_text(const WorkbenchState& state) {
   Json json = {{"kind", kKind}, {"version", kVersion}};
-  json["recording"] = state.recording ? Json(fs::absolute(state.recording->path).string()) : Json();
+  json["recording"] = state.document.recording
+                          ? Json(fs::absolute(state.document.recording->path).string())
+                          : Json();
   write_own_methods(state.methods, json);
   for (const SessionField& field : session_fields()) json[field.key] = field.write(state);
   return json_text(json, 2);
@@ -71,8 +73,8 @@ SavedSession read_session(const fs::path& file, const MethodTable& methods) {
 
 void continue_session(WorkbenchState& state, const SavedSession& session) {
   for (const SessionField& field : session_fields()) field.copy(*session.state, state);
-  state.settings = fit_window(state.settings, state.frame_count());
-  state.frame = std::clamp(state.frame, 0, std::max(0, state.frame_count() - 1));
+  state.document.settings = fit_window(state.document.settings, state.frame_count());
+  state.view.frame = std::clamp(state.view.frame, 0, std::max(0, state.frame_count() - 1));
 }
 
 bool is_session(const fs::path& file) {

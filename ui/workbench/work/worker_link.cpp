@@ -32,26 +32,26 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   link.worker = worker.status();
   link.survey = survey.status();
   const Published published = worker.latest();
-  const bool opened = published.recording && published.recording != state.recording;
+  const bool opened = published.recording && published.recording != state.document.recording;
   if (opened) {
     adopt(state, published.recording);
     survey.open(published.recording);
     if (link.remembers_files && !link.opening.empty()) {
       remember_file(link.opening);
-      state.recent = recent_files();
+      state.files.recent = recent_files();
     }
   }
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
-  if (published.inspection != link.published || state.cube_ray != link.cube_ray)
-    state.inspection = with_cube(published.inspection, state.cube_ray);
+  if (published.inspection != link.published || state.document.cube_ray != link.cube_ray)
+    state.results.inspection = with_cube(published.inspection, state.document.cube_ray);
   link.published = published.inspection;
-  link.cube_ray = state.cube_ray;
-  state.surveyed = survey.results();
+  link.cube_ray = state.document.cube_ray;
+  state.results.surveyed = survey.results();
   const auto study = survey.latest_study();
-  if (study && study != state.study && !study->error.empty())
+  if (study && study != state.results.study && !study->error.empty())
     say(state, "the window's normals could not be studied: " + study->error, Severity::error);
-  state.study = study;
+  state.results.study = study;
   if (link.worker.error != link.error) {
     link.error = link.worker.error;
     if (!link.error.empty()) say(state, link.error, Severity::error);
@@ -61,24 +61,24 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
 
 /// Whether a camera is to be found, because the user wants it or wants it for all that is opened.
 bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
-  const bool wished = std::exchange(state.wishes.calibrate, false);
-  const bool guessed = state.recording && state.recording->pictures &&
-                       state.recording->camera_source == CameraSource::guess;
+  const bool wished = std::exchange(state.requests.calibrate, false);
+  const bool guessed = state.document.recording && state.document.recording->pictures &&
+                       state.document.recording->camera_source == CameraSource::guess;
   return wished || (opened && link.calibrates && guessed);
 }
 
 /// Whose normals the open pane shows; null: none does.
 std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
-  return needs_of(state.panes).study ? state.inspection : nullptr;
+  return needs_of(state.view.panes).study ? state.results.inspection : nullptr;
 }
 
 /// Starts where the scan found the first window that is ready, once all is scanned where the best
 /// one is. Whether it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
-  if (!link.finding_start || !state.scan) return false;
-  const ScannedStart* best = best_start(state.scan->starts);
+  if (!link.finding_start || !state.results.scan) return false;
+  const ScannedStart* best = best_start(state.results.scan->starts);
   const bool ready = best != nullptr && best->readiness == Readiness::ready;
-  if (!ready && !state.scan->finished()) return false;
+  if (!ready && !state.results.scan->finished()) return false;
   link.finding_start = false;
   if (best == nullptr) {
     say(state,
@@ -86,7 +86,7 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
         Severity::warning);
     return false;
   }
-  Settings settings = state.settings;
+  Settings settings = state.document.settings;
   settings.start = best->start;
   change_settings(state, settings);
   go_to_frame(state, settings.start + settings.frames - 1);
@@ -96,28 +96,29 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
 
 /// Whether there is a start that was asked for.
 bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
-  const bool wanted = state.view.scan && !link.survey_canceled;
-  if (!state.view.scan || !state.recording) {
-    state.scan.reset();
+  const bool wanted = state.view.toggles.scan && !link.survey_canceled;
+  if (!state.view.toggles.scan || !state.document.recording) {
+    state.results.scan.reset();
     link.finding_start = false;
   }
   // One that is canceled stays as far as it came.
-  scan.want(wanted ? state.recording : nullptr, state.settings);
+  scan.want(wanted ? state.document.recording : nullptr, state.document.settings);
   link.scan = scan.status();
-  if (wanted) state.scan = scan.latest();
+  if (wanted) state.results.scan = scan.latest();
   return go_to_found_start(state, link);
 }
 
 /// Shows the figures of a results.csv.
 void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   try {
-    state.experiment = std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
+    state.results.experiment =
+        std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
   } catch (const InputError& error) {
     return say(state, error.what(), Severity::error);
   }
-  state.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.panes.drawer = find_drawer("curves");
-  say(state, std::to_string(state.experiment->size()) + " results in " + file.string());
+  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.view.panes.drawer = find_drawer("curves");
+  say(state, std::to_string(state.results.experiment->size()) + " results in " + file.string());
 }
 
 /// A session's recording is opened first; one that has moved is asked for. Whether the worker has
@@ -130,14 +131,14 @@ bool open_path(WorkbenchState& state,
     open_results(state, path);
     return false;
   }
-  auto& waiting = state.waiting_session;
+  auto& waiting = state.files.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
   std::filesystem::path recording = path;
   try {
     if (is_session(path)) {
       if (link.add_methods) link.add_methods(path, state);
-      state.waiting_session = read_session(path, state.methods);
-      recording = state.waiting_session->recording;
+      state.files.waiting_session = read_session(path, state.methods);
+      recording = state.files.waiting_session->recording;
     }
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);
@@ -163,12 +164,12 @@ void synchronize(WorkbenchState& state,
                  Scan& scan,
                  const std::filesystem::path& example) {
   const bool opened = receive(state, link, worker, survey);
-  const bool open_example = std::exchange(state.wishes.open_example, false);
-  const auto open = std::exchange(state.wishes.open, {});
+  const bool open_example = std::exchange(state.requests.open_example, false);
+  const auto open = std::exchange(state.requests.open, {});
   const bool calibrate = wants_calibration(state, link, opened);
-  const bool find_start = std::exchange(state.wishes.find_start, false);
-  const bool again = std::exchange(state.wishes.compute, false);
-  if (std::exchange(state.wishes.cancel, false) && link.busy()) {
+  const bool find_start = std::exchange(state.requests.find_start, false);
+  const bool again = std::exchange(state.requests.compute, false);
+  if (std::exchange(state.requests.cancel, false) && link.busy()) {
     worker.cancel();
     link.survey_canceled = true;
     link.finding_start = false;
@@ -176,15 +177,16 @@ void synchronize(WorkbenchState& state,
         std::exchange(link.calibrating, false) ? "the calibration was canceled; nothing was kept"
                                                : "canceled; F5 computes again");
   }
-  const bool compute = state.recording && (opened || again || state.settings != link.requested);
+  const bool compute =
+      state.document.recording && (opened || again || state.document.settings != link.requested);
   if (open_example) worker.open(example);
   const bool opening = open && open_path(state, link, worker, *open);
   if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {
-    worker.request(state.settings);
-    link.requested = state.settings;
+    worker.request(state.document.settings);
+    link.requested = state.document.settings;
   }
   if (opened) link.finding_start = false;
   if (find_start) link.finding_start = true;

@@ -24,19 +24,19 @@ using testing::SizeIs;
 WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& options = {}) {
   const Inspection made = made_inspection(options);
   WorkbenchState state;
-  state.settings = made.settings;
+  state.document.settings = made.settings;
   adopt(state, made.recording);
-  state.compared = {"gpo", "ba"};
+  state.document.compared = {"gpo", "ba"};
   SurveyResults results;
   for (const int length : lengths)
     for (const char* key : {"gpo", "ba"}) {
       auto one = std::make_shared<Inspection>(made);
-      one->settings = apply(parse_configuration(key), state.settings);
+      one->settings = apply(parse_configuration(key), state.document.settings);
       one->settings.frames = length;
       if (one->evaluation) one->evaluation->pne_deg = 10.0 / length;
       results.push_back({one->settings, one, ""});
     }
-  state.surveyed = std::make_shared<const SurveyResults>(results);
+  state.results.surveyed = std::make_shared<const SurveyResults>(results);
   return state;
 }
 
@@ -61,7 +61,7 @@ TEST(CurveFacts, ErrorsOverTheLengthsThatAreComputed) {
 
 TEST(CurveFacts, AllThatIsWantedIsCounted) {
   WorkbenchState state = state_with({});
-  state.panes.drawer = find_drawer("curves");
+  state.view.panes.drawer = find_drawer("curves");
   EXPECT_EQ(static_cast<std::size_t>(curve_facts(state).of), wanted_inspections(state).size());
 }
 
@@ -95,7 +95,7 @@ TEST(CurveFacts, AFileTakesTheirPlaceUntilItIsClosed) {
     rows.back().pne_deg = pne;
     settings.start += 10;
   }
-  state.experiment = std::make_shared<const std::vector<Row>>(rows);
+  state.results.experiment = std::make_shared<const std::vector<Row>>(rows);
   KeptCurveFacts kept;
   const CurveFacts& facts = kept.of(state);
   ASSERT_THAT(facts.configurations, SizeIs(1));

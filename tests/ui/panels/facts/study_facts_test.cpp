@@ -13,17 +13,17 @@ TEST(StudyFacts, SayWhyThereIsNoneToLookAt) {
   EXPECT_EQ(why_no_study(state, "computing"), "computing");
   Inspection inspection;
   inspection.window = std::make_shared<const Window>();
-  state.inspection = std::make_shared<const Inspection>(inspection);
+  state.results.inspection = std::make_shared<const Inspection>(inspection);
   EXPECT_EQ(why_no_study(state, "computing"), "computing");
   NormalStudy study;
   study.window = inspection.window;
-  state.study = std::make_shared<const NormalStudy>(study);
+  state.results.study = std::make_shared<const NormalStudy>(study);
   EXPECT_EQ(why_no_study(state, "computing"), "");
   study.error = "no memory";
-  state.study = std::make_shared<const NormalStudy>(study);
+  state.results.study = std::make_shared<const NormalStudy>(study);
   EXPECT_THAT(why_no_study(state, "computing"), testing::HasSubstr("no memory"));
   study.window = std::make_shared<const Window>();
-  state.study = std::make_shared<const NormalStudy>(study);
+  state.results.study = std::make_shared<const NormalStudy>(study);
   EXPECT_EQ(why_no_study(state, "computing"), "computing") << "of another window";
 }
 

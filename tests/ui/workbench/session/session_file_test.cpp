@@ -59,13 +59,13 @@ class SessionFile : public testing::Test {
 
 TEST_F(SessionFile, FindsTheUsersOwnMethods) {
   state_.methods.add(Method{.key = "mine", .title = "mine", .command = "mine=cat"});
-  state_.settings.options.method = state_.methods.find("mine");
-  state_.compared = {"mine+no-ransac", "gpo"};
+  state_.document.settings.options.method = state_.methods.find("mine");
+  state_.document.compared = {"mine+no-ransac", "gpo"};
   const std::string text = session_text(state_);
   EXPECT_NE(text.find("mine=cat"), std::string::npos);
   const auto read = read_session(write(text), state_.methods).state;
-  EXPECT_EQ(read->settings, state_.settings);
-  EXPECT_EQ(read->compared, state_.compared);
+  EXPECT_EQ(read->settings, state_.document.settings);
+  EXPECT_EQ(read->compared, state_.document.compared);
   EXPECT_THAT(refusal(text), HasSubstr("unknown value 'mine'"));
 }
 
@@ -84,19 +84,19 @@ TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
                            "compare gpo,ba+no-ransac",
                            "zoom 3"})
     run_line(state_, line);
-  state_.orbit = OrbitCamera{.yaw_deg = 33};
-  state_.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
+  state_.view.orbit = OrbitCamera{.yaw_deg = 33};
+  state_.document.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
   state_.selection = selected(std::vector<std::int64_t>{5, 2});
   const std::string text = session_text(state_);
   const SavedSession session = read_session(write(text));
   EXPECT_EQ(session.recording, folder_ / "desk");
   WorkbenchState other;
-  other.waiting_session = session;
-  adopt(other, state_.recording);
+  other.files.waiting_session = session;
+  adopt(other, state_.document.recording);
   EXPECT_EQ(session_text(other), text);
-  EXPECT_EQ(other.settings, state_.settings);
+  EXPECT_EQ(other.document.settings, state_.document.settings);
   EXPECT_EQ(other.selection.focus, 2);
-  EXPECT_THAT(other.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
+  EXPECT_THAT(other.document.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
 }
 
 /// As the program wrote it when it kept no table of a session's fields.
@@ -135,8 +135,8 @@ constexpr const char* kOldSession = R"({
 
 TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
   WorkbenchState other;
-  other.waiting_session = read_session(write(kOldSession));
-  adopt(other, state_.recording);
+  other.files.waiting_session = read_session(write(kOldSession));
+  adopt(other, state_.document.recording);
   const auto before = nlohmann::ordered_json::parse(kOldSession);
   const auto after = nlohmann::ordered_json::parse(session_text(other));
   std::vector<std::string> keys_before, keys_after;
@@ -150,8 +150,8 @@ TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
   EXPECT_EQ(keys_after, keys_before);
   for (const auto& [key, value] : before.at("settings").items())
     EXPECT_EQ(after.at("settings").at(key), value) << key;
-  EXPECT_EQ(other.panes.drawer, find_drawer("timing"));
-  EXPECT_EQ(other.view.uncertainty, 10);
+  EXPECT_EQ(other.view.panes.drawer, find_drawer("timing"));
+  EXPECT_EQ(other.view.toggles.uncertainty, 10);
 }
 
 TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
@@ -159,12 +159,12 @@ TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
       read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
                              "orbit": null, "view": {"tails": false}, "panes": {}})"));
   const WorkbenchState fresh;
-  EXPECT_EQ(session.state->speed, 2);
-  EXPECT_FALSE(session.state->view.tails);
-  EXPECT_EQ(session.state->view.cube, fresh.view.cube);
-  EXPECT_EQ(session.state->panes, fresh.panes);
-  EXPECT_EQ(session.state->settings, fresh.settings);
-  EXPECT_FALSE(session.state->orbit);
+  EXPECT_EQ(session.state->view.speed, 2);
+  EXPECT_FALSE(session.state->view.toggles.tails);
+  EXPECT_EQ(session.state->view.toggles.cube, fresh.view.toggles.cube);
+  EXPECT_EQ(session.state->view.panes, fresh.view.panes);
+  EXPECT_EQ(session.state->document.settings, fresh.document.settings);
+  EXPECT_FALSE(session.state->view.orbit);
 }
 
 TEST_F(SessionFile, FindsARecordingThatMovedTogetherWithIt) {

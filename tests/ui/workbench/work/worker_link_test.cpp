@@ -90,18 +90,19 @@ class WorkerLinkTest : public testing::Test {
 TEST_F(WorkerLinkTest, ScansTheRecordingWhereSomebodyWantsThat) {
   apply(state_, OpenPath{"desk"});
   settle();
-  EXPECT_EQ(state_.scan, nullptr);
+  EXPECT_EQ(state_.results.scan, nullptr);
   apply(state_, RunAction{"scan on"});
   while (synchronize(), link_.busy()) std::this_thread::yield();
-  ASSERT_NE(state_.scan, nullptr);
-  EXPECT_EQ(state_.scan->of, 31);
-  ASSERT_EQ(state_.scan->starts.size(), 31U);
-  EXPECT_FALSE(state_.scan->starts[7].ok);
-  EXPECT_FALSE(state_.scan->starts[7].reason.empty()) << "this recording has neither pictures "
-                                                         "nor tracks";
+  ASSERT_NE(state_.results.scan, nullptr);
+  EXPECT_EQ(state_.results.scan->of, 31);
+  ASSERT_EQ(state_.results.scan->starts.size(), 31U);
+  EXPECT_FALSE(state_.results.scan->starts[7].ok);
+  EXPECT_FALSE(state_.results.scan->starts[7].reason.empty())
+      << "this recording has neither pictures "
+         "nor tracks";
   apply(state_, RunAction{"scan off"});
   synchronize();
-  EXPECT_EQ(state_.scan, nullptr);
+  EXPECT_EQ(state_.results.scan, nullptr);
 }
 
 TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
@@ -112,27 +113,29 @@ TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
   apply(state_, RunAction{"find-start"});
   while (synchronize(), link_.finding_start) std::this_thread::yield();
   settle();
-  ASSERT_NE(state_.scan, nullptr);
-  const ScannedStart* best = best_start(state_.scan->starts);
+  ASSERT_NE(state_.results.scan, nullptr);
+  const ScannedStart* best = best_start(state_.results.scan->starts);
   ASSERT_NE(best, nullptr);
   EXPECT_EQ(best->readiness, Readiness::ready);
-  EXPECT_TRUE(state_.message.starts_with("starts at ")) << state_.message;
-  EXPECT_EQ(starts().back(), state_.settings.start);
-  EXPECT_EQ(state_.frame, state_.settings.start + state_.settings.frames - 1);
-  EXPECT_NE(state_.settings.start, 30);
+  EXPECT_TRUE(state_.messages.text.starts_with("starts at ")) << state_.messages.text;
+  EXPECT_EQ(starts().back(), state_.document.settings.start);
+  EXPECT_EQ(state_.view.frame,
+            state_.document.settings.start + state_.document.settings.frames - 1);
+  EXPECT_NE(state_.document.settings.start, 30);
   apply(state_, RunAction{"undo"});
-  EXPECT_EQ(state_.settings.start, 30);
+  EXPECT_EQ(state_.document.settings.start, 30);
 }
 
 TEST_F(WorkerLinkTest, SaysWhereThereIsNoStart) {
   apply(state_, OpenPath{"desk"});
   settle();
   apply(state_, RunAction{"find-start"});
-  EXPECT_TRUE(state_.view.scan);
+  EXPECT_TRUE(state_.view.toggles.scan);
   while (synchronize(), link_.busy()) std::this_thread::yield();
-  EXPECT_EQ(state_.settings.start, 0);
-  EXPECT_EQ(state_.message_severity, Severity::warning);
-  EXPECT_EQ(state_.message, "no start can be initialized; the strip above the time line says why");
+  EXPECT_EQ(state_.document.settings.start, 0);
+  EXPECT_EQ(state_.messages.severity, Severity::warning);
+  EXPECT_EQ(state_.messages.text,
+            "no start can be initialized; the strip above the time line says why");
 }
 
 TEST_F(WorkerLinkTest, EscapeAndAHiddenStripEndTheSearchForAStart) {
@@ -155,11 +158,11 @@ TEST_F(WorkerLinkTest, EscapeAndAHiddenStripEndTheSearchForAStart) {
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
   apply(state_, OpenPath{"desk"});
   settle();
-  ASSERT_NE(state_.recording, nullptr);
-  EXPECT_EQ(state_.recording->name, "desk");
-  EXPECT_EQ(state_.frame, 29);
-  ASSERT_NE(state_.inspection, nullptr);
-  EXPECT_EQ(state_.inspection->settings, state_.settings);
+  ASSERT_NE(state_.document.recording, nullptr);
+  EXPECT_EQ(state_.document.recording->name, "desk");
+  EXPECT_EQ(state_.view.frame, 29);
+  ASSERT_NE(state_.results.inspection, nullptr);
+  EXPECT_EQ(state_.results.inspection->settings, state_.document.settings);
   settle();
   EXPECT_THAT(starts(), ElementsAre(0));
 }
@@ -167,7 +170,7 @@ TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
 TEST_F(WorkerLinkTest, OpensTheExample) {
   apply(state_, RunAction{"open-example"});
   settle();
-  EXPECT_EQ(state_.recording->name, "example");
+  EXPECT_EQ(state_.document.recording->name, "example");
 }
 
 TEST_F(WorkerLinkTest, RemembersWhatCouldBeOpened) {
@@ -208,9 +211,9 @@ TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
   EXPECT_TRUE(link_.worker.busy);
   apply(state_, RunAction{"escape"});
   settle();
-  EXPECT_EQ(state_.inspection->settings.start, 0);
-  EXPECT_EQ(state_.settings.start, 7);
-  EXPECT_EQ(state_.message, "canceled; F5 computes again");
+  EXPECT_EQ(state_.results.inspection->settings.start, 0);
+  EXPECT_EQ(state_.document.settings.start, 7);
+  EXPECT_EQ(state_.messages.text, "canceled; F5 computes again");
 }
 
 TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
@@ -218,9 +221,9 @@ TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
   settle();
   apply(state_, OpenPath{"bad"});
   settle();
-  EXPECT_EQ(state_.recording->name, "desk");
+  EXPECT_EQ(state_.document.recording->name, "desk");
   EXPECT_EQ(link_.worker.error, "bad: no such folder");
-  ASSERT_NE(state_.inspection, nullptr);
+  ASSERT_NE(state_.results.inspection, nullptr);
 }
 
 TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
@@ -234,40 +237,40 @@ TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
   apply(state_, OpenPath{"desk"});
   do {
     turn();
-  } while (link_.busy() || !state_.inspection);
+  } while (link_.busy() || !state_.results.inspection);
   apply(state_, RunAction{"view candidates"});
   do {
     turn();
-  } while (!state_.study);
+  } while (!state_.results.study);
   for (int i = 0; i < 5; ++i) turn();
   EXPECT_FALSE(link_.busy());
   EXPECT_EQ(tried, 1);
   const auto says_so = [](const LogLine& line) {
     return line.severity == Severity::error && line.text.ends_with("no frame has enough tracks");
   };
-  EXPECT_EQ(std::ranges::count_if(state_.log, says_so), 1);
+  EXPECT_EQ(std::ranges::count_if(state_.messages.lines, says_so), 1);
 }
 
 TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
-  state_.wishes.quit = state_.wishes.compute = true;
-  state_.wishes.screenshots.push_back({});
+  state_.requests.quit = state_.requests.compute = true;
+  state_.requests.screenshots.push_back({});
   synchronize();
-  EXPECT_TRUE(state_.wishes.quit);
-  EXPECT_EQ(state_.wishes.screenshots.size(), 1U);
-  EXPECT_FALSE(state_.wishes.compute);
+  EXPECT_TRUE(state_.requests.quit);
+  EXPECT_EQ(state_.requests.screenshots.size(), 1U);
+  EXPECT_FALSE(state_.requests.compute);
 }
 
 TEST_F(WorkerLinkTest, OneClickCalibratesAndKeepsFrameAndBookmarks) {
   apply(state_, OpenPath{"bare.mp4"});
   settle();
   apply(state_, GoToFrame{7});
-  state_.bookmarks = {{7, "here"}};
+  state_.document.bookmarks = {{7, "here"}};
   apply(state_, RunAction{"calibrate"});
   settle();
-  EXPECT_EQ(state_.recording->camera_source, CameraSource::self_calibrated);
-  EXPECT_EQ(state_.frame, 7);
-  EXPECT_THAT(state_.bookmarks, ElementsAre(Bookmark{7, "here"}));
-  ASSERT_NE(state_.inspection, nullptr);
+  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
+  EXPECT_EQ(state_.view.frame, 7);
+  EXPECT_THAT(state_.document.bookmarks, ElementsAre(Bookmark{7, "here"}));
+  ASSERT_NE(state_.results.inspection, nullptr);
 }
 
 TEST_F(WorkerLinkTest, ACanceledCalibrationLeavesTheGuess) {
@@ -277,27 +280,27 @@ TEST_F(WorkerLinkTest, ACanceledCalibrationLeavesTheGuess) {
   apply(state_, RunAction{"calibrate"});
   synchronize();
   EXPECT_TRUE(link_.worker.busy);
-  state_.wishes.cancel = true;
+  state_.requests.cancel = true;
   synchronize();
-  EXPECT_EQ(state_.message, "the calibration was canceled; nothing was kept");
+  EXPECT_EQ(state_.messages.text, "the calibration was canceled; nothing was kept");
   hold_ = false;
   settle();
-  EXPECT_EQ(state_.recording->camera_source, CameraSource::guess);
+  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::guess);
 }
 
 TEST_F(WorkerLinkTest, CalibratesWhatIsOpenedWithAGuessWhereTheUserWantsIt) {
   link_.calibrates = true;
   apply(state_, OpenPath{"bare.mp4"});
   settle();
-  EXPECT_EQ(state_.recording->camera_source, CameraSource::self_calibrated);
+  EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
 }
 
 TEST_F(WorkerLinkTest, ACameraFromAFileStays) {
   apply(state_, OpenPath{"desk"});
   settle();
   apply(state_, RunAction{"calibrate"});
-  EXPECT_FALSE(state_.wishes.calibrate);
-  EXPECT_THAT(state_.message, testing::HasSubstr("calibrate: the recording has no pictures"));
+  EXPECT_FALSE(state_.requests.calibrate);
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("calibrate: the recording has no pictures"));
 }
 
 }  // namespace
