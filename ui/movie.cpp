@@ -10,9 +10,9 @@
 namespace gpo {
 namespace {
 
-double rate_of(const MovieRequest& wish, const Recording& recording) {
+double rate_of(const MovieRequest& request, const Recording& recording) {
   constexpr double kUnknown_hz = 30;
-  if (wish.rate_hz > 0) return wish.rate_hz;
+  if (request.rate_hz > 0) return request.rate_hz;
   const double own = rate_hz(recording.timestamps_ns);
   return own > 0 ? own : kUnknown_hz;
 }
@@ -27,14 +27,14 @@ cv::Size size_of(const WorkbenchState& state) {
 
 }  // namespace
 
-Movie::Movie(const MovieRequest& wish, const WorkbenchState& state)
+Movie::Movie(const MovieRequest& request, const WorkbenchState& state)
     : state_(state),
       view_(state.view.panes.compare ? "compare" : "picture"),
       size_(size_of(state)),
       first_(state.document.settings.start),
       frames_(std::min(state.document.settings.frames,
                        state.frame_count() - state.document.settings.start)),
-      video_(wish.file, rate_of(wish, *state.document.recording), size_) {}
+      video_(request.file, rate_of(request, *state.document.recording), size_) {}
 
 void Movie::step(const Draw& draw) {
   if (finished()) return;

@@ -18,7 +18,7 @@ class Movie {
 
   /// Of what the state shows now; what changes in the window later does not change the movie.
   /// Throws InputError where the file cannot be written.
-  Movie(const MovieRequest& wish, const WorkbenchState& state);
+  Movie(const MovieRequest& request, const WorkbenchState& state);
 
   /// Draws and writes the next frame, and after the last one gives the file its name. Throws
   /// InputError.

@@ -31,7 +31,7 @@ class WorkbenchHost {
   bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
   cv::Size size = cv::Size(1280, 720);  ///< of the window [px]
 
-  /// Exchanges with worker, survey and scan, and fulfills the wishes of the state but `quit`.
+  /// Exchanges with worker, survey and scan, and fulfills the requests of the state but `quit`.
   /// Returns at once; a movie that is written takes one of its frames a call.
   void synchronize();
   /// Whether something is computed or written.

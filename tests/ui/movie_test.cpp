@@ -119,7 +119,7 @@ TEST_F(MovieTest, InCompareModeTheColumnsMove) {
   };
   WorkbenchState two = state;
   two.view.panes.compare = true;
-  two.document.compared = {"gpo", "ba"};
+  two.document.compared = parse_configurations("gpo,ba");
   two.document.settings.frames = 4;
   Movie movie({file, 10}, two);
   while (!movie.finished()) movie.step(draw);

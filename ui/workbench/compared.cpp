@@ -66,13 +66,6 @@ std::vector<Compared> unmoved_results(const WorkbenchState& state) {
   return all;
 }
 
-std::vector<Configuration> compared_list(const WorkbenchState& state) {
-  std::vector<Configuration> list;
-  for (const std::string& key : state.document.compared)
-    list.push_back(parse_configuration(key, state.methods));
-  return list;
-}
-
 /// Of the first compared configuration that comes to other settings than the current ones.
 std::optional<std::size_t> first_other(const WorkbenchState& state) {
   const Configuration current = called_among_compared(state, state.document.settings);
@@ -86,7 +79,7 @@ std::optional<std::size_t> first_other(const WorkbenchState& state) {
 }  // namespace
 
 Settings compared_base(const WorkbenchState& state) {
-  return base_of(compared_list(state), state.document.settings);
+  return base_of(state.document.compared, state.document.settings);
 }
 
 Configuration called_among_compared(const WorkbenchState& state, const Settings& settings) {
@@ -94,7 +87,7 @@ Configuration called_among_compared(const WorkbenchState& state, const Settings&
 }
 
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {
-  const std::vector<Configuration> list = compared_list(state);
+  const std::vector<Configuration>& list = state.document.compared;
   const Settings base = base_of(list, window);
   std::vector<Settings> all;
   all.reserve(list.size());
@@ -117,7 +110,7 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state) {
   return all;
 }
 
-std::optional<std::string> flipped(const WorkbenchState& state) {
+std::optional<Configuration> flipped(const WorkbenchState& state) {
   if (!state.view.flip) return std::nullopt;
   const auto other = first_other(state);
   return other ? std::optional(state.document.compared[*other]) : std::nullopt;
@@ -146,9 +139,8 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted;
   if (!state.document.recording) return wanted;
   const PaneNeeds needs = needs_of(state.view.panes);
-  const std::optional<std::string> other = flipped(state);
-  if (!needs.compared && other)
-    wanted.push_back(apply(parse_configuration(*other, state.methods), compared_base(state)));
+  const std::optional<Configuration> other = flipped(state);
+  if (!needs.compared && other) wanted.push_back(apply(*other, compared_base(state)));
   if (!needs.compared) return wanted;
   const auto want_each = [&](int frames) {
     Settings window = state.document.settings;

@@ -43,7 +43,7 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state);
 
 /// The key of the configuration that the picture shows in place of the current one: the first
 /// compared one that is another. Nothing where `flip` is off or there is none.
-std::optional<std::string> flipped(const WorkbenchState& state);
+std::optional<Configuration> flipped(const WorkbenchState& state);
 
 /// That configuration and what is known of it.
 std::optional<Compared> flipped_result(const WorkbenchState& state);

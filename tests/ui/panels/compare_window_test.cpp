@@ -35,7 +35,7 @@ class CompareWindow : public DrawingTest {
     state_.document.settings = own->settings;
     adopt(state_, own->recording);
     state_.results.inspection = own;
-    state_.document.compared = {"gpo", "ba"};
+    state_.document.compared = parse_configurations("gpo,ba");
     add("gpo", {});
     add("ba", {.estimate_error = 4});
     apply(state_, GoToFrame{24});
@@ -143,7 +143,7 @@ TEST_F(CompareWindow, AChipsCrossRemovesIt) {
 
 TEST_F(CompareWindow, WhatIsMissingSaysSoInItsPlace) {
   const cv::Mat whole = view("compare", "compare_two.png");
-  state_.document.compared.push_back("pba");
+  state_.document.compared.push_back({"pba"});
   const cv::Mat three = view("compare", "compare_missing.png");
   const cv::Mat last = three.colRange(610, 900);
   EXPECT_GT(count(last, color_of(Role::accent)), 30);  // "computing"

@@ -16,7 +16,7 @@ TEST(ShownResults, AreTheCurrentOneAndTheComparedOnesThatExist) {
   made.settings.options.method = "gpo";
   const auto current = std::make_shared<const Inspection>(made);
   state.results.inspection = current;
-  state.document.compared = {"gpo", "ba", "gpo+no-ransac"};
+  state.document.compared = parse_configurations("gpo,ba,gpo+no-ransac");
   const Settings& settings = current->settings;
   SurveyResults surveyed;
   for (const char* key : {"gpo", "gpo+no-ransac"})

@@ -298,7 +298,7 @@ TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
   EXPECT_TRUE(state.requests.cancel);
 }
 
-TEST(Workbench, WishesAreLeftForTheWindow) {
+TEST(Workbench, LeavesRequestsForTheWindow) {
   WorkbenchState state = opened();
   run(state, "save-picture");
   ASSERT_EQ(state.requests.screenshots.size(), 1U);

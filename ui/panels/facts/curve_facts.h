@@ -33,7 +33,8 @@ class KeptCurveFacts {
   std::shared_ptr<const std::vector<Row>> experiment_;
   std::shared_ptr<const Inspection> inspection_;
   Settings settings_;
-  std::vector<std::string> compared_, hidden_;
+  std::vector<Configuration> compared_;
+  std::vector<std::string> hidden_;
   CurveFacts facts_;
 };
 

@@ -84,8 +84,8 @@ void entry(const PanelInput& input,
            const std::string& title,
            Commands& commands) {
   const std::string key = key_of(one);
-  const bool there =
-      std::ranges::find(input.state.document.compared, key) != input.state.document.compared.end();
+  const auto& compared = input.state.document.compared;
+  const bool there = std::ranges::find(compared, one) != compared.end();
   const float side = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + side * 0.15F},
@@ -122,16 +122,16 @@ void list_of_all(const PanelInput& input, Commands& commands) {
 /// that removes it, and a "+" that lists what can be added. Returns how high that is [px].
 float compare_chips(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const float s = input.scale;
-  const auto& keys = input.state.document.compared;
+  const auto& compared = input.state.document.compared;
   float x = place.x + kGap * s, y = place.y + kGap * s;
   const std::vector<Settings> settings =
       compared_settings(input.state, input.state.document.settings);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
+  for (std::size_t i = 0; i < compared.size(); ++i) {
     const Configuration one = called_among_compared(input.state, settings[i]);
     const float width =
         std::round(ImGui::CalcTextSize(title_of(one).c_str()).x + (12 + kHeight) * s);
     place_next(x, y, width, place, s);
-    chip(keys[i], one, keys.size() == 1, width, s, commands);
+    chip(key_of(compared[i]), one, compared.size() == 1, width, s, commands);
   }
   const float side = std::round(kHeight * s);
   place_next(x, y, side, place, s);

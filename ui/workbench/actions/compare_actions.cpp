@@ -18,41 +18,37 @@ using State = WorkbenchState;
 constexpr const char* kOfThePaper = "gpo,pnp_ba,ba,pba";
 
 void compare_these(State& state, const std::string& list) {
-  std::vector<std::string> keys;
-  for (const Configuration& one : parse_configurations(list, state.methods))
-    keys.push_back(key_of(one));
-  state.document.compared = std::move(keys);
+  state.document.compared = parse_configurations(list, state.methods);
 }
 
 /// Without what only repeats a default of the method.
-std::string shortest_key(const std::string& text, const MethodTable& methods) {
-  return key_of(configuration_of(apply(parse_configuration(text, methods), {})));
-}
+Configuration shortest(const Configuration& one) { return configuration_of(apply(one, {})); }
 
 /// The compared one that comes to the same by default.
-auto find_compared(State& state, const std::string& text) {
-  const auto key_of_one = [&](const std::string& one) { return shortest_key(one, state.methods); };
-  return std::ranges::find(state.document.compared, key_of_one(text), key_of_one);
+auto find_compared(State& state, const Configuration& one) {
+  return std::ranges::find(state.document.compared, shortest(one), shortest);
 }
 
 void compare_also(State& state, const std::string& list) {
-  for (const Configuration& one : parse_configurations(list, state.methods)) {
-    const std::string key = key_of(one);
-    if (find_compared(state, key) == state.document.compared.end())
-      state.document.compared.push_back(key);
-  }
+  auto& compared = state.document.compared;
+  for (const Configuration& one : parse_configurations(list, state.methods))
+    if (find_compared(state, one) == compared.end()) compared.push_back(one);
 }
 
 void compare_no_longer(State& state, const std::string& text) {
-  const std::string key = key_of(parse_configuration(text, state.methods));
-  const auto found = find_compared(state, text);
-  if (found == state.document.compared.end())
+  auto& compared = state.document.compared;
+  const Configuration removed = parse_configuration(text, state.methods);
+  const auto found = find_compared(state, removed);
+  if (found == compared.end()) {
+    std::vector<std::string> keys;
+    for (const Configuration& one : compared) keys.push_back(key_of(one));
     throw InputError(fmt::format("compare remove: '{}' is not among the compared ones: {}",
-                                 key,
-                                 fmt::join(state.document.compared, ", ")));
-  if (state.document.compared.size() == 1)
+                                 key_of(removed),
+                                 fmt::join(keys, ", ")));
+  }
+  if (compared.size() == 1)
     throw InputError("compare remove: the last one stays; `compare METHODS` chooses others");
-  state.document.compared.erase(found);
+  compared.erase(found);
 }
 
 /// An action whose one argument is a list of configurations, or one.
@@ -134,7 +130,7 @@ void add_looks(std::vector<Action>& table) {
 
 void switch_curve(State& state, const Arguments& arguments) {
   expect_count("curve", arguments, 1, 2);
-  const std::string key = shortest_key(arguments[0], state.methods);
+  const std::string key = key_of(shortest(parse_configuration(arguments[0], state.methods)));
   const auto found = std::ranges::find(state.view.hidden_curves, key);
   const bool shown = found == state.view.hidden_curves.end();
   const bool show = switched("curve", {arguments.begin() + 1, arguments.end()}, shown);

@@ -97,7 +97,7 @@ void add_settings(std::vector<Action>& table) {
 }
 
 /// A camera that a file tells is not to be replaced by one that is found in the pictures.
-void wish_calibration(State& s) {
+void request_calibration(State& s) {
   if (!s.document.recording->pictures) throw InputError("calibrate: the recording has no pictures");
   if (s.document.recording->camera_source == CameraSource::file)
     throw InputError("calibrate: the camera comes from a file and stays");
@@ -105,7 +105,7 @@ void wish_calibration(State& s) {
 }
 
 /// The scan is shown, so that one sees what it finds.
-void wish_start(State& s) {
+void request_start(State& s) {
   s.view.toggles.scan = true;
   s.requests.find_start = true;
 }
@@ -145,14 +145,14 @@ void add_method_actions(std::vector<Action>& table) {
                         {},
                         "Finds the camera in the pictures of a recording that has no calibration "
                         "(some 30 s) and keeps it for the next time",
-                        wish_calibration));
+                        request_calibration));
   table.push_back(plain("find-start",
                         "Find a start",
                         "Method",
                         {},
                         "Initializes from everywhere in the recording and goes to the first start "
                         "that is ready, else to the surest",
-                        wish_start));
+                        request_start));
 }
 
 }  // namespace gpo

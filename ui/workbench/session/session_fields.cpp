@@ -104,6 +104,11 @@ struct ToJson {
   Json operator()(const Selection& selection) const {
     return {{"tracks", selection.tracks}, {"focus", (*this)(selection.focus)}};
   }
+  Json operator()(const std::vector<Configuration>& compared) const {
+    Json json = Json::array();
+    for (const Configuration& one : compared) json.push_back(key_of(one));
+    return json;
+  }
   Json operator()(const std::vector<Bookmark>& bookmarks) const {
     Json json = Json::array();
     for (const Bookmark& one : bookmarks)
@@ -180,6 +185,12 @@ struct FromJson {
     picked("focus", focus);
     if (selection.contains(focus)) selection.focus = focus;
   }
+  void operator()(const char* key, std::vector<Configuration>& compared) const {
+    std::vector<std::string> keys;
+    read(key, keys);
+    compared.clear();
+    for (const std::string& one : keys) compared.push_back(parse_configuration(one, methods));
+  }
   void operator()(const char* key, std::vector<Bookmark>& bookmarks) const {
     for (const Json& json : read.json().at(key)) {
       Bookmark one;
@@ -191,62 +202,58 @@ struct FromJson {
   }
 };
 
-/// A member of the state; `limits`, where there are any: the least and the largest that it can be.
-template <class T>
-SessionField field(const char* key, T State::*member, auto... limits) {
+template <class Part>
+auto& part_of(auto& state) {
+  if constexpr (std::same_as<Part, Document>) {
+    return state.document;
+  } else if constexpr (std::same_as<Part, ViewState>) {
+    return state.view;
+  } else {
+    return state;
+  }
+}
+
+/// A member of the state or of one of its parts; `limits`, where there are any: the least and the
+/// largest that it can be.
+template <class Part, class T>
+SessionField field(const char* key, T Part::*member, auto... limits) {
   return {key,
-          [member](const State& state) { return ToJson{}(state.*member); },
+          [member](const State& state) { return ToJson{}(part_of<Part>(state).*member); },
           [key, member, limits...](const SessionReader& read, State& state) {
-            FromJson{read, state.methods}(key, state.*member, limits...);
+            FromJson{read, state.methods}(key, part_of<Part>(state).*member, limits...);
           },
-          [member](const State& from, State& to) { to.*member = from.*member; }};
-}
-
-/// ... that is put right once it is read.
-template <class T>
-SessionField field_with(const char* key,
-                        T State::*member,
-                        void (*put_right)(T&, const MethodTable&)) {
-  SessionField made = field(key, member);
-  made.read = [read = made.read, member, put_right](const SessionReader& from, State& state) {
-    read(from, state);
-    put_right(state.*member, state.methods);
-  };
-  return made;
-}
-
-/// As keys are written today. Throws InputError for one that is unknown.
-void rewrite_keys(std::vector<std::string>& compared, const MethodTable& methods) {
-  for (std::string& one : compared) one = key_of(parse_configuration(one, methods));
+          [member](const State& from, State& to) {
+            part_of<Part>(to).*member = part_of<Part>(from).*member;
+          }};
 }
 
 }  // namespace
 
 std::span<const SessionField> session_fields() {
   static const std::vector<SessionField> table = {
-      field("settings", &State::settings),
-      field("frame", &State::frame, 0, 1'000'000'000),
-      field("speed", &State::speed, 0.01, 100.0),
-      field("loop", &State::loop),
-      field("theme", &State::theme),
-      field("view", &State::view),
-      field("panes", &State::panes),
-      field("division", &State::division),
-      field("text_zoom", &State::text_zoom, 0.5, 3.0),
-      field_with("compared", &State::compared, rewrite_keys),
-      field("hidden_curves", &State::hidden_curves),
-      field("compare_zoom", &State::compare_zoom),
-      field("metric", &State::metric),
-      field("cube_side", &State::cube_side, 0.0, 2.0),
-      field("cube_ray", &State::cube_ray),
-      field("model", &State::model),
-      field("picture_zoom", &State::picture_zoom),
-      field("normals_zoom", &State::normals_zoom),
-      field("viewpoint", &State::viewpoint),
-      field("coloring", &State::coloring),
-      field("orbit", &State::orbit),
+      field("settings", &Document::settings),
+      field("frame", &ViewState::frame, 0, 1'000'000'000),
+      field("speed", &ViewState::speed, 0.01, 100.0),
+      field("loop", &ViewState::loop),
+      field("theme", &ViewState::theme),
+      field("view", &ViewState::toggles),
+      field("panes", &ViewState::panes),
+      field("division", &ViewState::division),
+      field("text_zoom", &ViewState::text_zoom, 0.5, 3.0),
+      field("compared", &Document::compared),
+      field("hidden_curves", &ViewState::hidden_curves),
+      field("compare_zoom", &ViewState::compare_zoom),
+      field("metric", &Document::metric),
+      field("cube_side", &Document::cube_side, 0.0, 2.0),
+      field("cube_ray", &Document::cube_ray),
+      field("model", &Document::model),
+      field("picture_zoom", &ViewState::picture_zoom),
+      field("normals_zoom", &ViewState::normals_zoom),
+      field("viewpoint", &ViewState::viewpoint),
+      field("coloring", &ViewState::coloring),
+      field("orbit", &ViewState::orbit),
       field("selection", &State::selection),
-      field("bookmarks", &State::bookmarks)};
+      field("bookmarks", &Document::bookmarks)};
   return table;
 }
 

@@ -61,10 +61,10 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
 
 /// Whether a camera is to be found, because the user wants it or wants it for all that is opened.
 bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
-  const bool wished = std::exchange(state.requests.calibrate, false);
+  const bool requested = std::exchange(state.requests.calibrate, false);
   const bool guessed = state.document.recording && state.document.recording->pictures &&
                        state.document.recording->camera_source == CameraSource::guess;
-  return wished || (opened && link.calibrates && guessed);
+  return requested || (opened && link.calibrates && guessed);
 }
 
 /// Whose normals the open pane shows; null: none does.

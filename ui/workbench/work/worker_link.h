@@ -24,9 +24,9 @@ struct WorkerLink {
   std::string error;              ///< the worker's last one that was said
   std::filesystem::path opening;  ///< what is being opened; remembered once it is open
   bool remembers_files = false;   ///< in the user's list of recent files
-  bool calibrating = false;       ///< until there is a camera, a reason why not, or another wish
+  bool calibrating = false;       ///< until there is a camera, a reason why not, or another request
   bool calibrates = false;        ///< whatever is opened with a guessed camera
-  bool finding_start = false;     ///< until the scan has found one, or another wish
+  bool finding_start = false;     ///< until the scan has found one, or another request
   /// Called before a session is read: adds the methods that it names to the state's table. May
   /// throw InputError; null: none are added.
   std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
@@ -35,7 +35,7 @@ struct WorkerLink {
   bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };
 
-/// Hands the state's new settings and wishes (open, open_example, compute, calibrate, find_start,
+/// Hands the state's new settings and requests (open, open_example, compute, calibrate, find_start,
 /// cancel) to the worker, what the open views ask for to survey and scan, and takes over what they
 /// have published. Returns at once. `example`: the recording that comes with the program.
 void synchronize(WorkbenchState& state,

@@ -26,7 +26,7 @@ WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& op
   WorkbenchState state;
   state.document.settings = made.settings;
   adopt(state, made.recording);
-  state.document.compared = {"gpo", "ba"};
+  state.document.compared = parse_configurations("gpo,ba");
   SurveyResults results;
   for (const int length : lengths)
     for (const char* key : {"gpo", "ba"}) {

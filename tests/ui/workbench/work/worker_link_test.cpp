@@ -251,7 +251,7 @@ TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
   EXPECT_EQ(std::ranges::count_if(state_.messages.lines, says_so), 1);
 }
 
-TEST_F(WorkerLinkTest, WishesThatAreNotTheWorkersAreLeft) {
+TEST_F(WorkerLinkTest, LeavesRequestsThatAreNotForTheWorker) {
   state_.requests.quit = state_.requests.compute = true;
   state_.requests.screenshots.push_back({});
   synchronize();
