@@ -7,6 +7,7 @@
 #include "app/methods/method_commands.h"
 #include "app/pages.h"
 #include "app/terminal/interrupt.h"
+#include "app/terminal/quiet_libraries.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -17,19 +18,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <functional>
-#include <iostream>
 #include <system_error>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/core/ocl.hpp>
-#include <opencv2/core/utils/logger.hpp>
-
-extern "C" {
-#include <libavutil/log.h>
-}
 
 namespace gpo {
 namespace {
@@ -365,15 +359,6 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
         "unknown command '{}', expected one of {}", words.front(), names_of_commands(app, ", "));
   }
   return InputError(fmt::format("{}; see {} --help", message, help)).what();
-}
-
-/// What libraries would do to the whole process or say beside our own messages; the engine itself
-/// changes nothing of the kind.
-void quiet_libraries() {
-  cv::ocl::setUseOpenCL(false);  // the engine does not use it; only its drivers would be loaded
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  av_log_set_level(AV_LOG_QUIET);         // what it says of broken videos becomes an InputError
-  std::cerr.setstate(std::ios::failbit);  // OpenCV tells there of pictures; we use stderr itself
 }
 
 }  // namespace

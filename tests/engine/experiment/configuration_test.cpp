@@ -89,7 +89,7 @@ TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
   anchored.options.initializer.loss = Loss::huber;
   const Settings applied = apply(parse_configuration("gpo_joint+averaging"), anchored);
   EXPECT_EQ(applied.tracking, Tracking::anchored);
-  EXPECT_EQ(applied.initializer.loss, Loss::huber);
+  EXPECT_EQ(applied.options.initializer.loss, Loss::huber);
   EXPECT_EQ(apply(parse_configuration("gpo+frame-to-frame"), anchored).tracking,
             Tracking::frame_to_frame);
 }
@@ -108,8 +108,8 @@ TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettin
 TEST(Configuration, ChangesOnlyItsOwnSettings) {
   const Settings base{.start = 3, .frames = 7, .options = {.method = "gpo", .seed = 9}};
   Settings expected = base;
-  expected.ransac = false;
-  expected.rotations = RotationSource::truth;
+  expected.options.ransac = false;
+  expected.options.rotations = RotationSource::truth;
   EXPECT_EQ(apply(parse_configuration("gpo+no-ransac+truth"), base), expected);
 }
 
