@@ -4,10 +4,10 @@
 #include "app/commands/setting_options.h"
 #include "app/methods/method_commands.h"
 #include "app/pages.h"
+#include "app/pictures/snapshots.h"
 #include "app/terminal/interrupt.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "ui/workbench/panes.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -129,7 +129,7 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   CLI::Option* script = command->add_option(
       "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->check(CLI::IsMember(pane_names()))
+      ->check(CLI::IsMember(view_names()))
       ->excludes(script);
   command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(
