@@ -6,13 +6,12 @@
 #include "app/commands/setting_options.h"
 #include "app/methods/method_commands.h"
 #include "app/pages.h"
+#include "app/pictures/snapshots.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/quiet_libraries.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/inspection/settings/setting_values.h"
-#include "ui/workbench/panes.h"
-#include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -127,7 +126,7 @@ void add_snapshot(CLI::App& app, SnapshotArguments& arguments) {
   CLI::Option* script = command->add_option(
       "--script", arguments.script, "Commands of the window, one a line, instead of one view");
   command->add_option("--view", arguments.view, "What to draw")
-      ->check(CLI::IsMember(pane_names()))
+      ->check(CLI::IsMember(view_names()))
       ->excludes(script);
   command->add_option("--output", arguments.output, "PNG file to write")->excludes(script);
   command->add_option(

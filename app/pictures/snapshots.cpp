@@ -155,6 +155,8 @@ std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
   return all;
 }
 
+std::vector<std::string> view_names() { return pane_names(); }
+
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,
                     const std::stop_token& stop) {
@@ -162,7 +164,7 @@ DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
   if (pane == nullptr)
     throw SettingError(
         "view",
-        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
+        fmt::format("'{}', expected one of {}", request.view, fmt::join(view_names(), ", ")));
   const std::string_view key = pane->key;
   if (key == "compare") return draw_compare(recording, request);
   if (key == "curves") return draw_curves(recording, request);

@@ -42,6 +42,9 @@ struct DrawnView {
   std::vector<std::string> failures = {};                      ///< a line each, for people
 };
 
+/// The keys of the views and their other names: all that the window has.
+std::vector<std::string> view_names();
+
 /// Inspects and draws without a display. A view of one method throws InputError where it is
 /// stopped. Throws InputError.
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
