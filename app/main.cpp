@@ -313,7 +313,7 @@ void declare(CLI::App& app, AllArguments& arguments) {
 void find_methods(AllArguments& arguments, OwnMethods& own) {
   const ViewArguments& view = arguments.view;
   const auto& session = view.session ? view.session : view.recording;
-  if (session && is_session(*session)) own.add_session(*session);
+  if (session) own.add_session(*session);
   own.add_shards(arguments.evaluate.merge);
   for (Settings* settings : {&arguments.run.inspect.settings,
                              &arguments.snapshot.inspect.settings,

@@ -7,6 +7,7 @@
 #include "engine/commands/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <chrono>
 #include <cstdint>
@@ -123,6 +124,7 @@ OwnMethods::OwnMethods(const MethodArguments& arguments)
 
 void OwnMethods::add_session(const fs::path& file) {
   waiting.clear();
+  if (!is_session(file)) return;
   std::set<std::string> taken;
   for (const auto& method : table.own()) taken.insert(method->key);
   SpelledMethods fresh = methods_in_session(file);

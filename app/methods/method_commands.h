@@ -31,8 +31,8 @@ class OwnMethods {
   /// Adds those of the command line. Throws InputError.
   explicit OwnMethods(const MethodArguments& arguments);
 
-  /// Adds those that a session names, but for names that are known: what is told twice stays as it
-  /// is. Throws InputError, then nothing is added.
+  /// Adds the methods that a session names; nothing if the file is no session. A method whose name
+  /// is known stays as it is. Throws InputError, then nothing is added.
   void add_session(const std::filesystem::path& file);
   /// Adds the names of those that made shards, which are to be merged.
   void add_shards(const std::vector<std::filesystem::path>& folders);
