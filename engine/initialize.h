@@ -5,9 +5,9 @@
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/camera.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/initializers/common/initialization.h"
-#include "engine/initializers/common/initializer_options.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/common/initialization.h"
+#include "engine/methods/common/method_options.h"
+#include "engine/methods/methods.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -22,9 +22,10 @@
 #include <Eigen/Core>
 
 /// The front door: from what every SLAM front end has to a map's first cameras, points and planes.
-/// Everything here may be called from any thread; two calls, or two `Initializer`s, share nothing.
-/// Nothing is printed, nothing written. Bad input throws InputError (engine/base/error.h), and
-/// SettingError where it is an option's; what merely fails to initialize is a value that says why.
+/// Everything here may be called from any thread; two calls, or two `LiveInitializer`s, share
+/// nothing. Nothing is printed, nothing written. Bad input throws InputError (engine/base/error.h),
+/// and SettingError where it is an option's; what merely fails to initialize is a value that says
+/// why.
 namespace gpo {
 
 /// What a front end knows of a frame. Frame 0 of a window is its reference: a window uses the
@@ -51,13 +52,13 @@ struct InitializeOptions {
   Gravity gravity = Gravity::after;  ///< gravity and meters, where there are accelerations
   /// Camera center from the IMU, in its axes [m]; nothing: unknown, by some centimeters.
   std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;
-  InitializerOptions initializer = {};
+  MethodOptions method_options = {};
 
   bool operator==(const InitializeOptions&) const = default;
 };
 
 /// A window's result. World = its first camera; unit = the leading plane's distance from it.
-struct Initialized {
+struct WindowResult {
   Initialization
       initialization;  ///< `ok` or a reason; cameras, points, planes, uncertainty, verdict
   std::vector<std::int64_t> ids;  ///< of the window's tracks: what `MapPoint::track` counts
@@ -76,11 +77,11 @@ struct Initialized {
 /// One window, all frames of it; the same bits as `gpo-inspector run` for the same tracks.
 /// `automatic` takes the frames' rotations where they have any, else the gyroscope's, else the
 /// pictures'.
-Initialized initialize(const Camera& camera,
-                       std::span<const Frame> frames,
-                       const Gyroscope* gyroscope = nullptr,
-                       const InitializeOptions& options = {},
-                       const std::stop_token& stop = {});
+WindowResult initialize(const Camera& camera,
+                        std::span<const Frame> frames,
+                        const Gyroscope* gyroscope = nullptr,
+                        const InitializeOptions& options = {},
+                        const std::stop_token& stop = {});
 
 struct LiveOptions {
   InitializeOptions initialize = {};
@@ -102,22 +103,22 @@ struct LiveStatus {
   bool started_anew = false;  ///< with this frame, by which a ready answer is given up, too
   std::string reason;         ///< one line: why there is no answer, or why not a newer one
   /// The answer of the longest window that was solved and agrees with the first one; null: none.
-  std::shared_ptr<const Initialized> answer = nullptr;
+  std::shared_ptr<const WindowResult> answer = nullptr;
 };
 
 /// A window that grows with each frame until it is fit to initialize from. It is ready at the first
 /// length at which `initialize` finds it so; afterwards longer windows make the answer better, and
 /// none moves its normal by more than four standard deviations of the first one. What cannot be
 /// ready is told by homographies alone and not solved.
-class Initializer {
+class LiveInitializer {
  public:
   /// `gyroscope`: how it sits and how noisy it is, with or without samples.
-  explicit Initializer(const Camera& camera,
-                       const LiveOptions& options = {},
-                       std::optional<Gyroscope> gyroscope = std::nullopt);
-  ~Initializer();
-  Initializer(Initializer&&) noexcept;
-  Initializer& operator=(Initializer&&) noexcept;
+  explicit LiveInitializer(const Camera& camera,
+                           const LiveOptions& options = {},
+                           std::optional<Gyroscope> gyroscope = std::nullopt);
+  ~LiveInitializer();
+  LiveInitializer(LiveInitializer&&) noexcept;
+  LiveInitializer& operator=(LiveInitializer&&) noexcept;
 
   /// In order of time; before the frame that they belong to, as far as they are there. Rates in the
   /// gyroscope's own axes [rad/s].

@@ -88,7 +88,7 @@ arm64() {
   for name in eigen3/Eigen eigen3/unsupported ceres fmt glog gflags; do
     ln -sfn "/usr/include/$name" "$headers/${name#eigen3/}"
   done
-  find engine/base engine/geometry engine/window engine/initializers engine/truth engine/evaluation engine/inertial \
+  find engine/base engine/geometry engine/window engine/methods engine/truth engine/evaluation engine/inertial \
     -name '*.cpp' -print0 |
     xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O1 -Wall -Wextra -Werror -I. -isystem "$headers" \
       -S -o /dev/null

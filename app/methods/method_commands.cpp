@@ -3,8 +3,8 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/commands/command_method.h"
-#include "engine/commands/own_method.h"
+#include "engine/external_methods/command_method.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
@@ -91,7 +91,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
       .add_option("--method-command",
                   arguments.spelled.commands,
                   "A method of your own, NAME='COMMAND': it is given each window as a line of JSON "
-                  "and answers with one (engine/commands/README.md)")
+                  "and answers with one (engine/external_methods/README.md)")
       ->allow_extra_args(false)
       ->type_name("NAME=COMMAND");
   command

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "app/methods/method_log.h"
-#include "engine/commands/command_method.h"
-#include "engine/commands/spelled_methods.h"
+#include "engine/external_methods/command_method.h"
+#include "engine/external_methods/spelled_methods.h"
 
 #include <atomic>
 #include <filesystem>

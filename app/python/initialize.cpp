@@ -22,15 +22,15 @@ namespace {
 
 namespace py = pybind11;
 
-/// Python's Initialized.
+/// Python's WindowResult.
 struct TrackedWindow : Solved {
-  explicit TrackedWindow(std::shared_ptr<const Initialized> window)
+  explicit TrackedWindow(std::shared_ptr<const WindowResult> window)
       : Solved{{window, &window->initialization},
                {window, &window->window},
                {window, &window->ids},
                {window, window->inertial ? &*window->inertial : nullptr}},
         shared(std::move(window)) {}
-  std::shared_ptr<const Initialized> shared;
+  std::shared_ptr<const WindowResult> shared;
 };
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -191,18 +191,18 @@ TrackedWindow initialized(const CameraOrK& camera,
   const auto gyro = gyroscope_of(gyroscope);
   const Camera calibrated = camera_of(camera);
   return TrackedWindow(interruptible([&](const std::stop_token& stop) {
-    return std::make_shared<const Initialized>(
+    return std::make_shared<const WindowResult>(
         initialize(calibrated, window, gyro ? &*gyro : nullptr, options, stop));
   }));
 }
 
-std::unique_ptr<Initializer> initializer_of(const CameraOrK& camera,
-                                            const std::optional<py::dict>& gyroscope,
-                                            LiveOptions live,
-                                            const py::kwargs& given) {
+std::unique_ptr<LiveInitializer> initializer_of(const CameraOrK& camera,
+                                                const std::optional<py::dict>& gyroscope,
+                                                LiveOptions live,
+                                                const py::kwargs& given) {
   live.initialize = options_of_keywords(given);
   live.initialize.p_gyro_camera_m = lever_of(gyroscope);
-  return std::make_unique<Initializer>(camera_of(camera), live, gyroscope_of(gyroscope));
+  return std::make_unique<LiveInitializer>(camera_of(camera), live, gyroscope_of(gyroscope));
 }
 
 py::array undistorted(const Camera& camera, const Numbers& pixels) {
@@ -247,7 +247,7 @@ void bind_camera(py::module_& module) {
 }
 
 void bind_status(py::module_& module) {
-  py::class_<LiveStatus>(module, "LiveStatus", "What an Initializer knows after a frame.")
+  py::class_<LiveStatus>(module, "LiveStatus", "What an LiveInitializer knows after a frame.")
       .def_readonly("ready", &LiveStatus::ready)
       .def_readonly("metric", &LiveStatus::metric, "the answer is in known meters, too")
       .def_readonly("reference", &LiveStatus::reference, "the window's first frame, as added")
@@ -269,9 +269,9 @@ void bind_status(py::module_& module) {
       });
 }
 
-py::class_<Initializer> live_class(py::module_& module) {
+py::class_<LiveInitializer> live_class(py::module_& module) {
   const LiveOptions usual;
-  py::class_<Initializer> live(
+  py::class_<LiveInitializer> live(
       module,
       "Initializer",
       "A window that grows with each frame until it is fit to initialize from. With background "
@@ -300,7 +300,7 @@ void bind_live(py::module_& module) {
   live_class(module)
       .def(
           "add_gyroscope",
-          [](Initializer& live, std::int64_t timestamp_ns, const Numbers& rate_rad_s) {
+          [](LiveInitializer& live, std::int64_t timestamp_ns, const Numbers& rate_rad_s) {
             live.add_gyroscope(timestamp_ns, vectors_of(rate_rad_s, "rate_rad_s").front());
           },
           py::arg("timestamp_ns"),
@@ -308,7 +308,7 @@ void bind_live(py::module_& module) {
           "One sample, (3,) in the gyroscope's own axes; in order of time, best before its frame")
       .def(
           "add_imu",
-          [](Initializer& live,
+          [](LiveInitializer& live,
              std::int64_t timestamp_ns,
              const Numbers& rate_rad_s,
              const Numbers& acceleration_m_s2) {
@@ -322,7 +322,7 @@ void bind_live(py::module_& module) {
           "The same with the accelerometer's specific force, (3,) in the same axes")
       .def(
           "add_frame",
-          [](Initializer& live,
+          [](LiveInitializer& live,
              std::int64_t timestamp_ns,
              const Ids& ids,
              const Numbers& pixels,
@@ -336,9 +336,9 @@ void bind_live(py::module_& module) {
           py::arg("pixels"),
           py::arg("R_wc") = py::none(),
           "ids (n,), pixels (n, 2) as in the picture, R_wc (3, 3) where you know it")
-      .def_property_readonly("status", &Initializer::status)
+      .def_property_readonly("status", &LiveInitializer::status)
       .def("wait",
-           &Initializer::wait,
+           &LiveInitializer::wait,
            py::call_guard<py::gil_scoped_release>(),
            "Until no window is pending");
 }

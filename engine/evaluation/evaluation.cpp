@@ -4,8 +4,8 @@
 
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/statistics.h"
-#include "engine/initializers/certainty/shared_information.h"
-#include "engine/initializers/common/window_checks.h"
+#include "engine/methods/certainty/shared_information.h"
+#include "engine/methods/common/window_checks.h"
 
 #include <cmath>
 

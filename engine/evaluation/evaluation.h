@@ -5,7 +5,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/similarity.h"
-#include "engine/initializers/common/initialization.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 

@@ -88,7 +88,7 @@ struct Follower {
 };
 
 /// The camera now, from the answer's points that are still seen.
-bool pose_now(const gpo::Initialized& answer,
+bool pose_now(const gpo::WindowResult& answer,
               const Follower& now,
               const cv::Matx33d& K,
               cv::Mat& r,
@@ -159,7 +159,7 @@ int main(int argc, char** argv) try {
                            .cy = std::stod(arguments[4])};
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
 
-  gpo::Initializer initializer(camera);
+  gpo::LiveInitializer initializer(camera);
   Follower follower;
   bool drawn = false, said = false;
   do {
@@ -169,7 +169,7 @@ int main(int argc, char** argv) try {
     gpo::LiveStatus status = initializer.add_frame(follower.frame(time_ns));
     if (status.started_anew) {  // with new corners
       follower.begin(gray);
-      initializer = gpo::Initializer(camera);
+      initializer = gpo::LiveInitializer(camera);
       status = initializer.add_frame(follower.frame(time_ns));
     }
     // A file does not wait for the thread that solves, as a camera would.

@@ -41,7 +41,7 @@ class GpoReconstruction {
     }
     frame.raw_px.conservativeResize(2, static_cast<Eigen::Index>(frame.ids.size()));
     frames_.push_back(std::move(frame));
-    const gpo::Initialized result = gpo::initialize(camera_, frames_);
+    const gpo::WindowResult result = gpo::initialize(camera_, frames_);
     reason_ = result.initialization.verdict ? result.initialization.verdict->reason
                                             : result.initialization.reason;
     if (!result.is_ready()) return false;

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 #include <gpo/geometry/homography.h>
-#include <gpo/initializers/methods.h>
+#include <gpo/methods/methods.h>
 #include <gpo/version.h>
 #include <gpo/window/window.h>
 

@@ -3,7 +3,7 @@
 #include "engine/experiment/figures.h"
 
 #include "engine/experiment/summary.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 
 #include <algorithm>
 #include <array>

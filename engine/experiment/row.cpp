@@ -6,9 +6,9 @@
 #include "engine/experiment/configuration.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/initialize/method_defaults.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
+#include "engine/pipeline/method_defaults.h"
 
 #include <utility>
 #include <vector>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/geometry/pose.h"
-#include "engine/initializers/common/initialization.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/window/window.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 
-#include "engine/initialize/method_defaults.h"
+#include "engine/pipeline/method_defaults.h"
 
 namespace gpo {
 

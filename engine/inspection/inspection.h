@@ -4,10 +4,10 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/initializers/common/initialization.h"
 #include "engine/inspection/cube.h"
 #include "engine/inspection/motion.h"
 #include "engine/inspection/settings/settings.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

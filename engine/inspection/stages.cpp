@@ -4,11 +4,11 @@
 
 #include "engine/base/error.h"
 #include "engine/inertial/scale_since.h"
-#include "engine/initialize/method_defaults.h"
-#include "engine/initialize/pipeline.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_truth.h"
+#include "engine/pipeline/method_defaults.h"
+#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,12 +3,12 @@
 #include "engine/results/result_method.h"
 
 #include "engine/base/error.h"
-#include "engine/commands/answered.h"
-#include "engine/commands/own_method.h"
+#include "engine/external_methods/answered.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/plane_fit.h"
-#include "engine/initializers/common/sources.h"
+#include "engine/methods/common/sources.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

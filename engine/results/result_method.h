@@ -4,7 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 #include "engine/results/result_poses.h"
 #include "engine/window/window.h"
 

@@ -7,7 +7,7 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesize.h"
 #include "tests/app/program.h"
-#include "tests/engine/initialize/simulated_frames.h"
+#include "tests/engine/pipeline/simulated_frames.h"
 
 #include <algorithm>
 #include <ctime>
@@ -90,9 +90,9 @@ TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
   const int most = std::min(kMostFrames, recording->frame_count());
   Inspector inspector(recording);
   const auto longest = run(inspector, most);
-  Initializer initializer(
+  LiveInitializer initializer(
       recording->camera, {.background = false, .most_frames = most}, recording->gyroscope);
-  std::shared_ptr<const Initialized> first;
+  std::shared_ptr<const WindowResult> first;
   std::vector<double> ms;
   for (int i = 0; i < most; ++i) {
     const Frame frame = frame_of(*longest, i);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/window_files.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>

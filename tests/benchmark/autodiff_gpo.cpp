@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/autodiff_gpo.h"
 
-#include "engine/initializers/plane/delivery.h"
-#include "engine/initializers/plane/plane_motion.h"
-#include "engine/initializers/residuals/ceres_solver.h"
-#include "engine/initializers/residuals/direction.h"
+#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/residuals/ceres_solver.h"
+#include "engine/methods/residuals/direction.h"
 
 #include <memory>
 

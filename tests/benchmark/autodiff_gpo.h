@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/initializers/common/initialization.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/window/window.h"
 
 namespace gpo::bench {

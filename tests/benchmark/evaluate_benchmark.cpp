@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"

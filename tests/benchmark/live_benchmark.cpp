@@ -44,7 +44,7 @@ Stream desk_stream() {
 void add_frames(benchmark::State& state, const Stream& stream, bool background) {
   std::vector<double> means, worsts;
   while (state.KeepRunning()) {
-    Initializer initializer(
+    LiveInitializer initializer(
         stream.recording->camera, {.background = background}, stream.recording->gyroscope);
     std::vector<double> ms;
     for (const Frame& frame : stream.frames) {
@@ -84,7 +84,7 @@ void register_live_benchmarks() {
 
 void print_live_tables(const Results& results) {
   fmt::print(
-      "\n`Initializer::add_frame`, {} frames of {} tracks, the calling thread's time [ms]:\n\n",
+      "\n`LiveInitializer::add_frame`, {} frames of {} tracks, the calling thread's time [ms]:\n\n",
       kFrames,
       whole_number(results.least(kModes[0].name, "tracks")));
   print_head({"", "mean", "worst frame"});

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 #include "tests/benchmark/autodiff_gpo.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"

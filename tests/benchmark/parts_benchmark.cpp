@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initializers/certainty/growth.h"
-#include "engine/initializers/gpo.h"
-#include "engine/initializers/plane/closed_form_motion.h"
-#include "engine/initializers/plane/plane_kernel.h"
+#include "engine/methods/certainty/growth.h"
+#include "engine/methods/gpo.h"
+#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/plane_kernel.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/peak.h"
 #include "tests/benchmark/tables.h"

@@ -46,7 +46,7 @@ const Names kPure = {"engine/base/",
                      "engine/inertial/",
                      "engine/geometry/",
                      "engine/window/",
-                     "engine/initializers/",
+                     "engine/methods/",
                      "engine/truth/",
                      "engine/evaluation/"};
 const Names kLibrariesOfPicturesAndFiles = {"opencv2/",
@@ -248,7 +248,7 @@ TEST(Architecture, NoFunctionIsTooLongForAScreen) {
   // Two loops that the compiler is to see as a whole, and a table.
   EXPECT_THAT(long_ones,
               testing::ElementsAre("engine/frontend/tracking/look_kernel.cpp",
-                                   "engine/initializers/plane/plane_kernel.cpp",
+                                   "engine/methods/plane/plane_kernel.cpp",
                                    "tests/app/layouts_test.cpp"));
 }
 

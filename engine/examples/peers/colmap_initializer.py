@@ -10,7 +10,7 @@ COLMAP's own features, matches and mapper on the window's pictures, with the rec
 The cameras of its largest model are the answer; the plane is left to gpo-inspector, which fits it to
 what these cameras make of the window's tracks. Needs COLMAP (apt install colmap) and nothing else.
 One window a line on standard input, one answer a line on standard output:
-engine/commands/README.md.
+engine/external_methods/README.md.
 """
 import json
 import os

@@ -11,7 +11,7 @@ better model is chosen by the rule of ORB-SLAM (Mur-Artal et al. 2015, section I
 the reading with most points in front of both cameras is taken where it stands out; what is
 triangulated gives the other frames their cameras by PnP. The plane is left to gpo-inspector, which
 fits it to the points. Needs python3-opencv and python3-numpy. One window a line on standard input,
-one answer a line on standard output: engine/commands/README.md.
+one answer a line on standard output: engine/external_methods/README.md.
 """
 import json
 import sys

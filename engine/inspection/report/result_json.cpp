@@ -3,10 +3,10 @@
 #include "engine/inspection/report/result_json.h"
 
 #include "engine/files/json_text.h"
-#include "engine/initialize/method_defaults.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/settings/setting_values.h"
+#include "engine/methods/methods.h"
+#include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"

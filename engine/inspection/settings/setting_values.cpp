@@ -4,8 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/initialize/method_defaults.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
+#include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
 

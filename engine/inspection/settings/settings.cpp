@@ -13,10 +13,10 @@ Settings paper() {
   settings.options.rotations = RotationSource::raw;
   settings.tracking = Tracking::frame_to_frame;
   settings.options.inliers = Inliers::per_frame;
-  settings.options.initializer = {.solver = Solver::ceres,
-                                  .loss = Loss::squared,
-                                  .shutter = Shutter::global,
-                                  .planes = Planes::one};
+  settings.options.method_options = {.solver = Solver::ceres,
+                                     .loss = Loss::squared,
+                                     .shutter = Shutter::global,
+                                     .planes = Planes::one};
   return settings;
 }
 

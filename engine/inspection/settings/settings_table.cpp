@@ -3,9 +3,9 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/initialize/method_defaults.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/window/window_rotations.h"
+#include "engine/methods/methods.h"
+#include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -204,37 +204,37 @@ void add_option_rows(std::vector<Setting>& rows) {
     setting.help += fmt::format(" ({})", fmt::join(readers_of(setting.key), ", "));
     rows.push_back(row(field, std::move(setting)));
   };
-  add([](auto& s) -> auto& { return s.options.initializer.solver; },
+  add([](auto& s) -> auto& { return s.options.method_options.solver; },
       {.key = "solver",
        .title = "Solver",
        .help = "Who minimizes: our own Schur solver, or Ceres",
        .words = {{"schur", "schur", "by our own solver", 0x332288},
                  {"ceres", "ceres", "by Ceres", 0xAA4499}}});
-  add([](auto& s) -> auto& { return s.options.initializer.error; },
+  add([](auto& s) -> auto& { return s.options.method_options.error; },
       {.key = "error",
        .title = "Error",
        .help = "One-sided transfer error, or Sampson's",
        .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
                  {"sampson", "sampson", "with Sampson's error", 0x997700}}});
-  add([](auto& s) -> auto& { return s.options.initializer.loss; },
+  add([](auto& s) -> auto& { return s.options.method_options.loss; },
       {.key = "loss",
        .title = "Loss",
        .help = "Squared, or Huber's, linear for outliers",
        .words = {{"squared", "squared", "with squared loss", 0x004488},
                  {"huber", "huber", "with Huber's loss", 0xEE99AA}}});
-  add([](auto& s) -> auto& { return s.options.initializer.shutter; },
+  add([](auto& s) -> auto& { return s.options.method_options.shutter; },
       {.key = "shutter",
        .title = "Shutter",
        .help = "Rows read one after another at an estimated pace, or all at once",
        .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
-  add([](auto& s) -> auto& { return s.options.initializer.planes; },
+  add([](auto& s) -> auto& { return s.options.method_options.planes; },
       {.key = "planes",
        .title = "Planes",
        .help = "All planes of the window at once, or the leading one alone",
        .words = {{"all-planes", "all", "with all planes", 0x557733},
                  {"one-plane", "one", "with one plane", 0xCC8899}}});
-  add([](auto& s) -> auto& { return s.options.initializer.time_offset; },
+  add([](auto& s) -> auto& { return s.options.method_options.time_offset; },
       {.key = "time_offset",
        .title = "Time offset",
        .help = "Estimate the offset between the clocks of camera and gyroscope",

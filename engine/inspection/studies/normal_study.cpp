@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/normal_study.h"
 
-#include "engine/initializers/candidates/homography_candidates.h"
+#include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 

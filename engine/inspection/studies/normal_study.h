@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/initializers/dbscan.h"
-#include "engine/initializers/plane/normal_landscape.h"
 #include "engine/inspection/inspection.h"
+#include "engine/methods/dbscan.h"
+#include "engine/methods/plane/normal_landscape.h"
 #include "engine/window/window.h"
 
 #include <memory>

@@ -4,8 +4,8 @@
 
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/statistics.h"
-#include "engine/initializers/certainty/window_evidence.h"
 #include "engine/inspection/inspector.h"
+#include "engine/methods/certainty/window_evidence.h"
 
 #include <algorithm>
 #include <cmath>

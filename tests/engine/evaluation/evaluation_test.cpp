@@ -4,8 +4,8 @@
 
 #include "engine/geometry/plane_fit.h"
 #include "engine/geometry/statistics.h"
-#include "engine/initializers/common/map_points.h"
-#include "engine/initializers/common/window_checks.h"
+#include "engine/methods/common/map_points.h"
+#include "engine/methods/common/window_checks.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 

@@ -3,8 +3,8 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
+#include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 
@@ -40,9 +40,9 @@ TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
 TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
   const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
   const Settings settings = apply(squared, {});
-  EXPECT_EQ(settings.options.initializer.loss, Loss::squared);
-  EXPECT_EQ(settings.options.initializer.shutter, Shutter::global);
-  EXPECT_TRUE(settings.options.initializer.time_offset);
+  EXPECT_EQ(settings.options.method_options.loss, Loss::squared);
+  EXPECT_EQ(settings.options.method_options.shutter, Shutter::global);
+  EXPECT_TRUE(settings.options.method_options.time_offset);
   EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
   EXPECT_EQ(configuration_of(settings), squared);
   EXPECT_EQ(title_of(parse_configuration("gpo+ceres")), "GPO by Ceres");
@@ -69,7 +69,7 @@ TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
   EXPECT_EQ(shortest("pnp+planes"), "pnp");
   EXPECT_EQ(shortest("closed_form+per-frame"), "closed_form+per-frame");
   Settings unread{.options = {.method = "ba"}};
-  unread.options.initializer.loss = Loss::squared;
+  unread.options.method_options.loss = Loss::squared;
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
 }
 
@@ -86,10 +86,10 @@ TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
 TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
   Settings anchored;
   anchored.tracking = Tracking::anchored;
-  anchored.options.initializer.loss = Loss::huber;
+  anchored.options.method_options.loss = Loss::huber;
   const Settings applied = apply(parse_configuration("gpo_joint+averaging"), anchored);
   EXPECT_EQ(applied.tracking, Tracking::anchored);
-  EXPECT_EQ(applied.options.initializer.loss, Loss::huber);
+  EXPECT_EQ(applied.options.method_options.loss, Loss::huber);
   EXPECT_EQ(apply(parse_configuration("gpo+frame-to-frame"), anchored).tracking,
             Tracking::frame_to_frame);
 }

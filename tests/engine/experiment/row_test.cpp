@@ -73,7 +73,7 @@ TEST(Row, IsLabeledByTheSettingsThatWereUsed) {
 
 TEST(Row, HasNoCellOfWhatTheMethodDoesNotRead) {
   Settings settings{.options = {.method = "gpo"}};
-  settings.options.initializer.loss = Loss::squared;
+  settings.options.method_options.loss = Loss::squared;
   settings.options.gravity = Gravity::joint;
   auto cells = cells_of(refused_row("desk", settings, ""));
   EXPECT_EQ(cells.at("configuration"), "gpo");

@@ -4,10 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/moved_cube.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
+#include "engine/methods/methods.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/desk.h"

@@ -3,8 +3,8 @@
 #include "engine/window/frame_errors.h"
 
 #include "engine/frontend/make_window.h"
-#include "engine/initializers/plane/closed_form_motion.h"
-#include "engine/initializers/plane/rolling_shutter.h"
+#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/rolling_shutter.h"
 #include "engine/window/tracks.h"
 #include "tests/engine/simulated_window.h"
 

@@ -3,7 +3,7 @@
 #include "ui/workbench/compared.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/adopt.h"

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/initialize/method_defaults.h"
-#include "engine/initializers/methods.h"
+#include "engine/methods/methods.h"
+#include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/playing.h"

@@ -3,9 +3,9 @@
 #include "ui/panels/facts/facts.h"
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/plane_names.h"
+#include "engine/methods/methods.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/recording/camera_source.h"
 #include "engine/window/timestamps.h"

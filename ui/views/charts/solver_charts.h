@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/initializers/common/initialization.h"
+#include "engine/methods/common/initialization.h"
 
 #include <array>
 #include <cstdint>

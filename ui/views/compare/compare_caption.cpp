@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare/compare_caption.h"
 
-#include "engine/initialize/method_defaults.h"
+#include "engine/pipeline/method_defaults.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_look.h"

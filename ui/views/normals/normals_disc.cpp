@@ -3,7 +3,7 @@
 #include "ui/views/normals/normals_disc.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/initializers/plane/normal_landscape.h"
+#include "engine/methods/plane/normal_landscape.h"
 #include "ui/views/scene/uncertainty_geometry.h"
 
 #include <algorithm>

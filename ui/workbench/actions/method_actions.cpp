@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/initialize/method_defaults.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
+#include "engine/methods/methods.h"
+#include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/undo.h"
 

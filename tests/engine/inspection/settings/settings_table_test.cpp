@@ -3,9 +3,9 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/initializers/methods.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
+#include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>
@@ -149,10 +149,10 @@ TEST(SettingValues, AsUsedAreEqualWhereTheyComeToTheSame) {
   Settings said{.options = {.method = "ba"}};
   said.options.ransac = false;
   said.options.inliers = Inliers::planes;
-  said.options.initializer.loss = Loss::squared;
+  said.options.method_options.loss = Loss::squared;
   EXPECT_EQ(as_used(said), as_used({.options = {.method = "ba"}}));
   said.options.method = "gpo_joint";
-  EXPECT_EQ(as_used(said).options.initializer.loss, Loss::squared);
+  EXPECT_EQ(as_used(said).options.method_options.loss, Loss::squared);
 }
 
 TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {

@@ -3,7 +3,7 @@
 #include "engine/inspection/studies/normal_study.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/initializers/candidates/homography_candidates.h"
+#include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -3,9 +3,9 @@
 #include "engine/inspection/studies/track_life.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/initializers/common/window_checks.h"
-#include "engine/initializers/gpo.h"
 #include "engine/inspection/studies/residuals.h"
+#include "engine/methods/common/window_checks.h"
+#include "engine/methods/gpo.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

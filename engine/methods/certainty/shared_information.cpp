@@ -1,0 +1,87 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/shared_information.h"
+
+#include "engine/geometry/decompositions.h"
+#include "engine/geometry/pose.h"
+#include "engine/methods/plane/plane_motion.h"
+
+namespace gpo {
+namespace {
+
+int shared_size(RotationModel model) { return model == RotationModel::bias ? 5 : 2; }
+
+/// A frame's information over what it shares (normal, bias) and what is its own (phi where the
+/// rotations are free, translation last).
+struct SplitInformation {
+  Eigen::MatrixXd ss, so, oo;
+};
+
+SplitInformation split(const Window& window,
+                       int frame,
+                       const FrameNormals& normals,
+                       RotationModel model) {
+  const auto& F = normals.JtJ;
+  if (model == RotationModel::free)
+    return {F.topLeftCorner<2, 2>(), F.topRightCorner<2, 6>(), F.bottomRightCorner<6, 6>()};
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, shared_size(model));
+  M.topLeftCorner<2, 2>().setIdentity();
+  if (model == RotationModel::bias) M.bottomRightCorner<3, 3>() = window.gyro->d_bias[frame];
+  return {M.transpose() * F.topLeftCorner<5, 5>() * M,
+          M.transpose() * F.topRightCorner<5, 3>(),
+          F.bottomRightCorner<3, 3>()};
+}
+
+}  // namespace
+
+SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px) {
+  const int size = shared_size(model);
+  SharedInformation prior = SharedInformation::Zero(size, size);
+  if (model == RotationModel::bias) {
+    const double ratio = sigma_px / window.gyro->prior_sigma_rad_s;
+    prior.diagonal().tail<3>().setConstant(ratio * ratio);
+  }
+  return prior;
+}
+
+SharedInformation frame_information(const Window& window,
+                                    int frame,
+                                    const FrameNormals& normals,
+                                    RotationModel model) {
+  const SplitInformation f = split(window, frame, normals, model);
+  return f.ss - f.so * solve_symmetric(f.oo, f.so.transpose());
+}
+
+std::optional<double> normal_sigma_deg(const SharedInformation& information, double sigma_px) {
+  const auto covariance = inverse_information(information);
+  if (!covariance) return std::nullopt;
+  return degrees(sigma_px * std::sqrt(covariance->topLeftCorner<2, 2>().trace()));
+}
+
+std::optional<double> normal_bound_deg(const Window& window,
+                                       const Plane& plane,
+                                       std::span<const Pose> cameras,
+                                       double sigma_px) {
+  const PlaneObservations observations = plane_observations(window);
+  const PlaneMotion motion = motion_of(plane, cameras);
+  SharedInformation information = SharedInformation::Zero(2, 2);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const FrameNormals normals =
+        frame_normals(observations.frames[i], frame_state(observations, motion, i), Rotating::no);
+    information += frame_information(window, i, normals, RotationModel::known);
+  }
+  return normal_sigma_deg(information, sigma_px);
+}
+
+std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return std::nullopt;
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const auto [values, vectors] = symmetric_eigen(scaled);
+  if (!(values(0) > 1e-12)) return std::nullopt;
+  const Eigen::MatrixXd inverse =
+      vectors * values.cwiseInverse().asDiagonal() * vectors.transpose();
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+}  // namespace gpo

@@ -1,0 +1,33 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/gpo.h"
+
+#include "engine/methods/common/window_checks.h"
+#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_solver.h"
+
+namespace gpo {
+
+PlaneSolution solve_gpo(const Window& window, const MethodOptions& options, const Watch& watch) {
+  const PlaneObservations observations = plane_observations(window);
+  if (options.solver == Solver::ceres)
+    return solve_plane_with_ceres(window, observations, resting(window), {}, watch);
+  const auto closed = closed_form_motion(window);
+  if (closed) {
+    PlaneSolution solution = solve_plane(window, observations, *closed, {}, watch);
+    if (solution.solver.termination != Termination::failure) return solution;
+  }
+  return solve_plane(window, observations, resting(window), {}, watch);
+}
+
+Initialization initialize_gpo(const Window& window,
+                              const MethodOptions& options,
+                              const Watch& watch) {
+  if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  const auto [motion, solver] = solve_gpo(window, options, watch);
+  if (solver.termination != Termination::convergence) return not_converged(solver);
+  return deliver(window, motion, solver);
+}
+
+}  // namespace gpo

@@ -1,0 +1,265 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/nearest_rotation.h"
+#include "engine/methods/plane/plane_solver.h"
+#include "engine/methods/plane/plane_weights.h"
+#include "engine/methods/residuals/ceres_solver.h"
+#include "engine/methods/residuals/direction.h"
+#include "engine/window/window.h"
+
+#include <cstddef>
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <ceres/ceres.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+template <int Rows, int Columns>
+using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+
+/// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
+/// rotation: the bias (3) or bias and time offset (4) that all frames share, and a rotation vector
+/// (3) of its own; either, both or none.
+struct Blocks {
+  Eigen::Quaterniond normal = Eigen::Quaterniond::Identity();
+  std::vector<Vector3d> others;
+  std::vector<Vector3d> tau;
+  Eigen::Vector4d bias_offset = Eigen::Vector4d::Zero();
+  std::vector<Vector3d> phi;
+};
+
+/// R_wc of a frame and how it moves with each of its parameter blocks: R_wc exp(moves dp).
+struct Rotation {
+  using Moves = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
+  Matrix3d R_wc;
+  std::vector<Moves> moves = {};
+};
+
+bool is_shared(const PlaneUnknowns& unknowns) { return unknowns.rotations == RotationModel::bias; }
+bool is_own(const PlaneUnknowns& unknowns) {
+  return unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
+}
+
+/// Turns what was there before.
+void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation) {
+  const Matrix3d R = so3_exp(phi);
+  for (Rotation::Moves& before : rotation.moves) before = R.transpose() * before;
+  rotation.R_wc = rotation.R_wc * R;
+  rotation.moves.emplace_back(so3_right_jacobian(phi) * moves);
+}
+
+Rotation rotation_at(const Window& window,
+                     const PlaneUnknowns& unknowns,
+                     const Matrix3d& R_wc_start,
+                     int frame,
+                     const double* const* parameters) {
+  Rotation rotation{R_wc_start};
+  if (is_shared(unknowns)) {
+    rotation.R_wc = window.R_wc[frame];
+    const GyroSensitivity& gyro = *window.gyro;
+    const int size = unknowns.time_offset ? 4 : 3;
+    Rotation::Moves moves(3, size);
+    moves.leftCols<3>() = gyro.d_bias[frame];
+    if (size == 4) moves.col(3) = gyro.d_offset[frame];
+    Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(*parameters++, size);
+    change.head<3>() -= gyro.bias_rad_s;
+    turn(moves * change, moves, rotation);
+  }
+  if (is_own(unknowns))
+    turn(Eigen::Map<const Vector3d>(*parameters), Matrix3d::Identity(), rotation);
+  return rotation;
+}
+
+/// How a plane is parametrized: the leading one by the quaternion of its normal, a further one by
+/// m.
+enum class PlaneBlock { direction, m };
+
+/// Transfer errors of one frame's tracks on one plane (engine/method.md, eq. 7): one block a frame,
+/// not one a point, is what makes the solve fast.
+class FrameCost : public ceres::CostFunction {
+ public:
+  FrameCost(const Window& window,
+            const FrameObservations& observations,
+            const PlaneUnknowns& unknowns,
+            const Matrix3d& R_wc,
+            int frame,
+            PlaneBlock block)
+      : window_(window),
+        observations_(observations),
+        unknowns_(unknowns),
+        R_wc_(R_wc),
+        frame_(frame),
+        block_(block) {
+    *mutable_parameter_block_sizes() = {block == PlaneBlock::m ? 3 : 4, 3};
+    if (is_shared(unknowns)) mutable_parameter_block_sizes()->push_back(shared_size(unknowns));
+    if (is_own(unknowns)) mutable_parameter_block_sizes()->push_back(3);
+    set_num_residuals(2 * observations.count);
+  }
+
+  static int shared_size(const PlaneUnknowns& unknowns) { return unknowns.time_offset ? 4 : 3; }
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Vector3d> tau(parameters[1]);
+    Vector3d m = Eigen::Map<const Vector3d>(parameters[0]);
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_m = Matrix3d::Identity();
+    if (block_ == PlaneBlock::direction) {
+      const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
+      m = direction(q);
+      d_m = direction_jacobian(q);
+    }
+    const Rotation rotation = rotation_at(window_, unknowns_, R_wc_, frame_, parameters + 2);
+    const Matrix3d R_cw = rotation.R_wc.transpose();
+    const FrameState state{.R_cw = R_cw,
+                           .tau_c = R_cw * tau,
+                           .normal = m,
+                           .fx = window_.K(0, 0),
+                           .fy = window_.K(1, 1)};
+    for (int k = 0; k < observations_.count; ++k) {
+      const Transfer transfer = transfer_of(observations_, state, k);
+      if (!transfer.in_front()) return false;
+      const double weight = observations_.mask[k];
+      Eigen::Map<Eigen::Vector2d> residual(residuals + std::ptrdiff_t{2} * k);
+      residual =
+          weight * (transfer.pixel - Eigen::Vector2d(observations_.u[k], observations_.v[k]));
+      const auto write = [&](int block, const auto& J) {
+        if (jacobians == nullptr || jacobians[block] == nullptr) return;
+        Eigen::Map<RowMajor<2, Eigen::Dynamic>>(jacobians[block] + 2 * J.cols() * k, 2, J.cols()) =
+            weight * J;
+      };
+      write(0, (transfer.d_normal() * d_m).eval());
+      write(1, (transfer.d_translation() * R_cw).eval());
+      for (std::size_t r = 0; r < rotation.moves.size(); ++r)
+        write(2 + static_cast<int>(r), (transfer.d_rotation() * rotation.moves[r]).eval());
+    }
+    return true;
+  }
+
+ private:
+  const Window& window_;
+  const FrameObservations& observations_;
+  const PlaneUnknowns& unknowns_;
+  Matrix3d R_wc_;
+  int frame_;
+  PlaneBlock block_;
+};
+
+/// Gaussian priors on bias and time offset, or on a frame's own rotation, in pixels of the noise.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(const Vector3d& bias_rad_s, const Eigen::Vector4d& weights, int size)
+      : weights_(weights), size_(size) {
+    prior_ << bias_rad_s, 0;
+    *mutable_parameter_block_sizes() = {size};
+    set_num_residuals(size);
+  }
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    for (int k = 0; k < size_; ++k) {
+      residuals[k] = weights_[k] * (parameters[0][k] - prior_[k]);
+      for (int l = 0; jacobians != nullptr && jacobians[0] != nullptr && l < size_; ++l)
+        jacobians[0][size_ * k + l] = k == l ? weights_[k] : 0;
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Vector4d prior_;
+  Eigen::Vector4d weights_;
+  int size_;
+};
+
+Blocks blocks_of(const PlaneMotion& motion) {
+  Blocks blocks;
+  blocks.normal = rotation_from_z_axis(motion.normal);
+  for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
+  blocks.tau = motion.tau;
+  blocks.bias_offset << motion.bias_rad_s, motion.time_offset_s;
+  blocks.phi = motion.gyro_noise_rad;
+  blocks.phi.resize(motion.tau.size(), Vector3d::Zero());
+  return blocks;
+}
+
+PlaneMotion motion_of(const Window& window,
+                      const PlaneUnknowns& unknowns,
+                      const PlaneMotion& start,
+                      const Blocks& blocks) {
+  PlaneMotion motion = start;
+  motion.normal = direction(blocks.normal).normalized();
+  for (std::size_t k = 0; k < blocks.others.size(); ++k) motion.others[k].m = blocks.others[k];
+  motion.tau = blocks.tau;
+  motion.bias_rad_s = blocks.bias_offset.head<3>();
+  motion.time_offset_s = blocks.bias_offset(3);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    if (unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
+    if (unknowns.gyro_noise) motion.gyro_noise_rad[i] = blocks.phi[i];
+    if (is_shared(unknowns)) motion.R_wc[i] = gyro_rotation(window, i, motion);
+  }
+  return motion;
+}
+
+}  // namespace
+
+PlaneSolution solve_plane_with_ceres(const Window& window,
+                                     const PlaneObservations& observations,
+                                     const PlaneMotion& given,
+                                     const PlaneUnknowns& unknowns,
+                                     const Watch& watch,
+                                     double cost_tolerance) {
+  const PlaneMotion start = started(given, unknowns);
+  Blocks blocks = blocks_of(start);
+  ceres::Problem problem;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  double* const normal = blocks.normal.coeffs().data();
+  problem.AddParameterBlock(normal, 4, new DirectionManifold);
+  ordering->AddElementToGroup(normal, 1);
+  if (is_shared(unknowns)) {
+    const int size = FrameCost::shared_size(unknowns);
+    Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
+    weights.head<3>() /= window.gyro->prior_sigma_rad_s;
+    weights(3) /= kTimeOffsetSigma_s;
+    problem.AddResidualBlock(
+        new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
+    ordering->AddElementToGroup(blocks.bias_offset.data(), 1);
+  }
+  for (Vector3d& m : blocks.others) {
+    problem.AddParameterBlock(m.data(), 3);
+    ordering->AddElementToGroup(m.data(), 1);
+  }
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const auto add = [&](double* plane, const FrameObservations& f, PlaneBlock block) {
+      if (f.count == 0) return;
+      std::vector<double*> parameters{plane, blocks.tau[i].data()};
+      if (is_shared(unknowns)) parameters.push_back(blocks.bias_offset.data());
+      if (is_own(unknowns)) parameters.push_back(blocks.phi[i].data());
+      problem.AddResidualBlock(
+          new FrameCost(window, f, unknowns, start.R_wc[i], i, block), nullptr, parameters);
+    };
+    add(normal, observations.frames[i], PlaneBlock::direction);
+    for (std::size_t k = 0; k < blocks.others.size(); ++k)
+      add(blocks.others[k].data(), observations.others[k][i], PlaneBlock::m);
+    ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
+    if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 1);
+    if (unknowns.gyro_noise) {
+      const double weight = unknowns.sigma_px / gyro_noise_sigma_rad(window, i);
+      const Eigen::Vector4d weights = Eigen::Vector4d::Constant(weight);
+      problem.AddResidualBlock(
+          new PriorCost(Vector3d::Zero(), weights, 3), nullptr, blocks.phi[i].data());
+    }
+  }
+  const SolverReport solver = solve_by_schur(
+      problem, std::move(ordering), {.cost = cost_tolerance}, watch, [&blocks]() -> Vector3d {
+        return direction(blocks.normal).normalized();
+      });
+  return {motion_of(window, unknowns, start, blocks), solver};
+}
+
+}  // namespace gpo

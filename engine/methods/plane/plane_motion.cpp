@@ -1,0 +1,98 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/plane/plane_motion.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace gpo {
+
+PlaneMotion resting(const Window& window) {
+  PlaneMotion motion;
+  motion.normal = Eigen::Vector3d::UnitZ();
+  motion.tau.assign(window.frame_count(), Eigen::Vector3d::Zero());
+  motion.R_wc = window.R_wc;
+  if (window.gyro) motion.bias_rad_s = window.gyro->bias_rad_s;
+  return motion;
+}
+
+PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras) {
+  PlaneMotion motion;
+  motion.normal = plane.normal;
+  for (const Pose& camera : cameras) {
+    motion.tau.push_back(-camera.p_wc / plane.distance);
+    motion.R_wc.push_back(camera.R_wc);
+  }
+  return motion;
+}
+
+PlaneMotion facing(const Window& window, PlaneMotion motion) {
+  const Eigen::Matrix3d& K = window.K;
+  int in_front = 0;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.inlier[0][j]) continue;
+    const Eigen::Vector2d& p = window.points_px[0].col(j);
+    const Eigen::Vector3d ray((p.x() - K(0, 2)) / K(0, 0), (p.y() - K(1, 2)) / K(1, 1), 1);
+    in_front += motion.normal.dot(ray) < 0 ? 1 : -1;
+  }
+  if (in_front > 0) return motion;
+  motion.normal = -motion.normal;
+  for (OtherPlane& other : motion.others) other.m = -other.m;
+  for (Eigen::Vector3d& tau : motion.tau) tau = -tau;
+  return motion;
+}
+
+std::vector<Pose> cameras_of(const PlaneMotion& motion) {
+  std::vector<Pose> cameras;
+  for (std::size_t i = 0; i < motion.tau.size(); ++i)
+    cameras.push_back({motion.R_wc[i], Eigen::Vector3d::Zero() - motion.tau[i]});  // no -0
+  return cameras;
+}
+
+Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion) {
+  const GyroSensitivity& gyro = *window.gyro;
+  return gyro.d_bias[frame] * (motion.bias_rad_s - gyro.bias_rad_s) +
+         gyro.d_offset[frame] * motion.time_offset_s;
+}
+
+Eigen::Matrix3d gyro_rotation(const Window& window, int frame, const PlaneMotion& motion) {
+  const Eigen::Matrix3d R =
+      window.R_wc[frame] * so3_exp(gyro_correction_rad(window, frame, motion));
+  return motion.gyro_noise_rad.empty() ? R : R * so3_exp(motion.gyro_noise_rad[frame]);
+}
+
+double gyro_noise_sigma_rad(const Window& window, int frame) {
+  const auto ns = static_cast<double>(window.timestamps_ns[frame] - window.timestamps_ns[0]);
+  return window.gyro->noise_density * std::sqrt(1e-9 * ns);
+}
+
+FrameState frame_state(const PlaneObservations& observations,
+                       const PlaneMotion& motion,
+                       int frame) {
+  const Eigen::Matrix3d R_cw = motion.R_wc[frame].transpose();
+  return {R_cw,
+          R_cw * motion.tau[frame],
+          motion.normal,
+          normal_tangents(motion.normal),
+          observations.fx,
+          observations.fy};
+}
+
+FrameState frame_state(const PlaneObservations& observations,
+                       const PlaneMotion& motion,
+                       int frame,
+                       const Eigen::Vector3d& m) {
+  FrameState state = frame_state(observations, motion, frame);
+  state.normal = m;
+  state.tangents = m.norm() * normal_tangents(m.normalized());
+  return state;
+}
+
+Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2d& u_rad) {
+  const double angle = u_rad.norm();
+  const double sinc = angle < 1e-8 ? 1.0 : std::sin(angle) / angle;
+  return (std::cos(angle) * normal + sinc * (normal_tangents(normal) * u_rad)).normalized();
+}
+
+}  // namespace gpo

@@ -1,0 +1,156 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/pipeline/gravity.h"
+
+#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/rolling_shutter.h"
+#include "engine/methods/plane/shared_unknowns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gpo {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Where things stand in the joint covariance of a result.
+struct JointRows {
+  Index frames;
+  Index bias_rows;
+
+  static Index of_center(Index frame) { return 3 * (frame - 1); }
+  Index of_bias() const { return 3 * (frames - 1); }
+  Index of_plane(int plane) const {
+    return of_bias() + bias_rows + UnknownsLayout::of_plane(plane);
+  }
+};
+
+/// How far accelerations move all rows, and by how much they lower their covariance.
+struct Pulled {
+  VectorXd step;
+  MatrixXd less;
+};
+
+Pulled pulled_rows(const Uncertainty& u, const UncertainPoses& poses, const PosePull& pull) {
+  // A bias that is not among the rows goes with none of them.
+  MatrixXd with_poses = MatrixXd::Zero(u.joint_covariance.rows(), pull.gradient.size());
+  for (std::size_t k = 0; k < poses.joint_rows.size(); ++k)
+    with_poses.col(static_cast<Index>(k)) = u.joint_covariance.col(poses.joint_rows[k]);
+  return {-with_poses * pull.gradient, with_poses * pull.information * with_poses.transpose()};
+}
+
+Plane moved_plane(const Plane& plane, const VectorXd& step) {
+  Plane moved{moved_normal(plane.normal, step.head<2>()), plane.distance};
+  if (step.size() == 3) moved.distance *= std::exp(-step(2));
+  return moved;
+}
+
+Matrix3d lowered(const Matrix3d& covariance, const Vector3d& normal, const MatrixXd& less) {
+  const auto tangents = normal_tangents(normal);
+  return covariance - tangents * less.topLeftCorner<2, 2>() * tangents.transpose();
+}
+
+void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& result) {
+  Uncertainty& u = *result.uncertainty;
+  const Index leading = rows.of_plane(0);
+  u.normal_covariance =
+      lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading));
+  u.normal_sigma_deg = degrees(std::sqrt(std::max(0.0, u.normal_covariance.trace())));
+  for (std::size_t k = 0; k < u.others.size(); ++k) {
+    const Index at = rows.of_plane(static_cast<int>(k) + 1);
+    PlaneUncertainty& other = u.others[k];
+    other.normal_covariance = lowered(
+        other.normal_covariance, result.planes[k + 1].plane.normal, less.block<2, 2>(at, at));
+    const double variance = std::pow(other.log_distance_sigma, 2) - less(at + 2, at + 2);
+    other.log_distance_sigma = std::sqrt(std::max(0.0, variance));
+  }
+}
+
+/// Of centers, of distance ratios 1 + n.p, and of the bias.
+void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& result) {
+  Uncertainty& u = *result.uncertainty;
+  const auto tangents = normal_tangents(result.plane.normal);
+  const Index leading = rows.of_plane(0);
+  for (Index i = 1; i < rows.frames; ++i) {
+    const Index at = JointRows::of_center(i);
+    u.center_covariances[i] -= less.block<3, 3>(at, at);
+    const Vector3d by_center = result.plane.normal;
+    const Eigen::Vector2d by_normal = tangents.transpose() * result.cameras[i].p_wc;
+    const double ratio = by_center.dot(less.block<3, 3>(at, at) * by_center) +
+                         2 * by_center.dot(less.block<3, 2>(at, leading) * by_normal) +
+                         by_normal.dot(less.block<2, 2>(leading, leading) * by_normal);
+    const double variance = std::pow(u.distance_ratio_sigmas[i], 2) - ratio;
+    u.distance_ratio_sigmas[i] = std::sqrt(std::max(0.0, variance));
+  }
+  if (u.bias_covariance && rows.bias_rows == 3)
+    *u.bias_covariance -= less.block<3, 3>(rows.of_bias(), rows.of_bias());
+  u.joint_covariance -= less;
+}
+
+void move(const Window& window, const JointRows& rows, const VectorXd& step, Initialization& r) {
+  PlaneMotion before;
+  if (window.gyro) before.bias_rad_s = r.bias_rad_s.value_or(window.gyro->bias_rad_s);
+  before.time_offset_s = r.time_offset_s.value_or(0);
+  for (Index i = 1; i < rows.frames; ++i) {
+    Pose& camera = r.cameras[i];
+    camera.p_wc += step.segment<3>(JointRows::of_center(i));
+    if (rows.bias_rows == 0 || !window.gyro) continue;
+    const GyroColumns turn = gyro_columns(window, before, static_cast<int>(i), 3);
+    camera.R_wc = camera.R_wc * so3_exp(turn * step.segment<3>(rows.of_bias()));
+  }
+  if (r.bias_rad_s && rows.bias_rows == 3) *r.bias_rad_s += step.segment<3>(rows.of_bias());
+  r.plane = moved_plane(r.plane, step.segment(rows.of_plane(0), 2));
+  if (!r.planes.empty()) r.planes.front().plane = r.plane;
+  for (std::size_t k = 1; k < r.planes.size(); ++k)
+    r.planes[k].plane =
+        moved_plane(r.planes[k].plane, step.segment(rows.of_plane(static_cast<int>(k)), 3));
+}
+
+/// A result after what accelerations say of its poses (engine/method.md, eq. 25); nothing where
+/// that is no solution of the window.
+std::optional<Initialization> pulled(const Window& window,
+                                     const Initialization& result,
+                                     const UncertainPoses& poses,
+                                     const PosePull& pull) {
+  const JointRows rows{std::ssize(result.cameras), result.uncertainty->joint_bias_rows};
+  const Pulled all = pulled_rows(*result.uncertainty, poses, pull);
+  Initialization moved = result;
+  lower_planes(rows, all.less, moved);
+  lower_motion(rows, all.less, moved);
+  move(window, rows, all.step, moved);
+  tell_planes_uncertainty(moved);
+  const Window seen = moved.row_delay_s
+                          ? without_rolling_shutter(
+                                window, motion_of(moved.plane, moved.cameras), *moved.row_delay_s)
+                          : window;
+  moved = delivered(seen, std::move(moved));
+  return moved.ok ? std::optional(std::move(moved)) : std::nullopt;
+}
+
+}  // namespace
+
+InertialAlignment find_gravity(const Window& window,
+                               const UncertainPoses& poses,
+                               const Gyroscope& gyroscope,
+                               const std::optional<Pose>& T_body_camera,
+                               Gravity when,
+                               Initialization& result) {
+  if (when != Gravity::joint || poses.joint_rows.empty())
+    return align_inertial(poses, gyroscope, T_body_camera);
+  auto [inertial, pull] = align_and_pull(poses, gyroscope, T_body_camera);
+  if (!inertial.ok) return inertial;
+  auto moved = pulled(window, result, poses, pull);
+  if (!moved) return inertial;
+  result = std::move(*moved);
+  inertial.joint = true;
+  return inertial;
+}
+
+}  // namespace gpo

@@ -1,0 +1,103 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/pipeline/pipeline.h"
+
+#include "engine/frontend/make_window.h"
+#include "engine/methods/certainty/growth.h"
+#include "engine/pipeline/gravity.h"
+#include "engine/pipeline/method_defaults.h"
+
+#include <utility>
+
+namespace gpo {
+namespace {
+
+/// Gives a result that has none the verdict of the whole window as it grew, if it did, or that
+/// there is no plane.
+void complete_verdict(const Window& window,
+                      std::span<const Verdict> growth,
+                      Initialization& result) {
+  if (!result.verdict && static_cast<int>(growth.size()) == window.frame_count() - 1 &&
+      !growth.empty())
+    result.verdict = growth.back();
+  if (window.inliers == Inliers::planes && window.planes.empty()) {
+    Verdict verdict;
+    verdict.readiness = Readiness::no_plane;
+    verdict.reason = result.reason;
+    verdict.scene = SceneKind::no_plane;
+    result.verdict = std::move(verdict);
+  }
+}
+
+void add_gravity(const Window& window, const Sources& sources, Gravity when, Finished& end) {
+  const Gyroscope* gyroscope = sources.gyroscope;
+  if (!end.initialization.ok || when == Gravity::off || gyroscope == nullptr ||
+      gyroscope->accelerations_m_s2.empty())
+    return;
+  end.poses = uncertain_poses(window, end.initialization);
+  end.inertial =
+      find_gravity(window, end.poses, *gyroscope, sources.T_body_camera, when, end.initialization);
+}
+
+}  // namespace
+
+Window window_of(const Tracks& tracks,
+                 const Camera& camera,
+                 std::span<const std::int64_t> timestamps_ns,
+                 const InitializeOptions& options) {
+  return make_window(tracks,
+                     camera,
+                     timestamps_ns,
+                     ransac_options(options),
+                     inliers_used(options),
+                     options.plane - 1);
+}
+
+Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {
+  window.all_tracks = !uses_ransac(options);
+  window.rotations = rotations.model;
+  window.gyro = rotations.gyro;
+  if (!rotations.R_wc.empty()) window.R_wc = rotations.R_wc;
+  return window;
+}
+
+Initialization run_method(const Window& window,
+                          const Rotations& rotations,
+                          const Sources& sources,
+                          const InitializeOptions& options,
+                          const Watch& watch) {
+  if (rotations.R_wc.empty()) {
+    Initialization result = failed(rotations.reason);
+    result.stopped = rotations.stopped;
+    return result;
+  }
+  const Method& method = options.method.row();
+  return method.initialize_from ? method.initialize_from(window, sources, watch)
+                                : method.initialize(window, options.method_options, watch);
+}
+
+std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop) {
+  std::vector<Verdict> verdicts;
+  for (GrowthStep& step : grow(window, stop)) verdicts.push_back(std::move(step.verdict));
+  return verdicts;
+}
+
+Finished finished(const Window& window,
+                  const Sources& sources,
+                  const InitializeOptions& options,
+                  std::span<const Verdict> growth,
+                  Initialization result) {
+  Finished end{assessed(options.method.row(), window, std::move(result))};
+  add_gravity(window, sources, gravity_used(options), end);
+  complete_verdict(window, growth, end.initialization);
+  if (options.camera_is_guess && end.initialization.verdict) demote(*end.initialization.verdict);
+  return end;
+}
+
+void demote(Verdict& verdict) {
+  if (verdict.readiness != Readiness::ready) return;
+  verdict.readiness = Readiness::weak;
+  verdict.reason = "the camera is a guess: calibrate it";
+}
+
+}  // namespace gpo

@@ -1,0 +1,303 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/external_methods/command_method.h"
+
+#include "engine/files/json_text.h"
+#include "tests/engine/simulated_window.h"
+#include "tests/engine/test_folder.h"
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+using Json = nlohmann::ordered_json;
+
+Window wandering_window() {
+  return test::with_fitted_homographies(
+             test::simulate({.motion = test::Motion::wander, .frames = 6, .points = 60}))
+      .window;
+}
+
+std::vector<double> numbers_of(const auto& matrix) {
+  std::vector<double> rows;
+  for (int i = 0; i < matrix.rows(); ++i)
+    for (int j = 0; j < matrix.cols(); ++j) rows.push_back(matrix(i, j));
+  return rows;
+}
+
+enum class Told { all, plane, points, cameras };
+
+/// A result as a user's own program would answer it.
+std::string answer_of(const Initialization& result, Told told) {
+  Json json = {{"cameras", Json::array()}};
+  for (const Pose& camera : result.cameras)
+    json["cameras"].push_back(
+        {{"R_wc", numbers_of(camera.R_wc)}, {"center", numbers_of(camera.p_wc)}});
+  if (told == Told::all || told == Told::plane)
+    json["plane"] = {{"normal", numbers_of(result.plane.normal)},
+                     {"distance", result.plane.distance}};
+  if (told == Told::all || told == Told::points) {
+    json["points"] = Json::array();
+    for (const MapPoint& point : result.points)
+      json["points"].push_back({{"track", point.track}, {"position", numbers_of(point.position)}});
+  }
+  return json_text(json, -1);
+}
+
+CommandOptions patient() { return {.time_limit = std::chrono::seconds(60)}; }
+
+/// Of a command whose answers are lines of a file.
+Method method_of_file(const test::TestFolder& folder, const std::string& answers) {
+  const auto file = folder.write("answers", answers);
+  return command_method(
+      {"mine",
+       fmt::format(
+           "exec 3< '{}'; while read -r window; do read -r answer <&3; echo \"$answer\"; done",
+           file.string())},
+      patient(),
+      0);
+}
+
+std::string reason_of(const std::string& command, CommandOptions options = patient()) {
+  const Initialization result =
+      command_method({"mine", command}, options, 0).initialize(wandering_window(), {}, {});
+  EXPECT_FALSE(result.ok) << command;
+  EXPECT_EQ(result.reason.find('\n'), std::string::npos) << result.reason;
+  return result.reason;
+}
+
+TEST(CommandMethod, WhatOursFoundComesBackAsItIs) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  const Initialization ours = find_method("gpo").initialize(window, {}, {});
+  ASSERT_TRUE(ours.ok) << ours.reason;
+  const Initialization theirs =
+      method_of_file(folder, answer_of(ours, Told::plane)).initialize(window, {}, {});
+  ASSERT_TRUE(theirs.ok) << theirs.reason;
+  EXPECT_EQ(theirs.plane.normal, ours.plane.normal);
+  EXPECT_EQ(theirs.plane.distance, 1);
+  ASSERT_EQ(theirs.cameras.size(), ours.cameras.size());
+  for (std::size_t i = 0; i < ours.cameras.size(); ++i) {
+    EXPECT_EQ(theirs.cameras[i].R_wc, ours.cameras[i].R_wc);
+    EXPECT_EQ(theirs.cameras[i].p_wc, ours.cameras[i].p_wc);
+  }
+  ASSERT_EQ(theirs.points.size(), ours.points.size());
+  EXPECT_EQ(theirs.points.front().position, ours.points.front().position);
+  EXPECT_EQ(theirs.rms_px, ours.rms_px);
+}
+
+TEST(CommandMethod, ThePlaneIsFittedAndThePointsAreTriangulatedWhereTheyAreNotGiven) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  const Initialization ours = find_method("gpo").initialize(window, {}, {});
+  for (const Told told : {Told::points, Told::cameras}) {
+    const Initialization theirs =
+        method_of_file(folder, answer_of(ours, told)).initialize(window, {}, {});
+    ASSERT_TRUE(theirs.ok) << theirs.reason;
+    EXPECT_LT(angle_deg(theirs.plane.normal, ours.plane.normal), 2);
+    EXPECT_EQ(theirs.plane.distance, 1);
+    EXPECT_NEAR(theirs.cameras.back().p_wc.norm(), ours.cameras.back().p_wc.norm(), 0.02);
+    EXPECT_LT(theirs.rms_px, 1.5);
+  }
+}
+
+TEST(CommandMethod, AnyWorldAndScaleWillDo) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  const Initialization ours = find_method("gpo").initialize(window, {}, {});
+  Initialization moved = ours;
+  const Pose world{so3_exp({0.3, -1, 0.5}), {5, -3, 2}};
+  const double scale = 7;
+  for (Pose& camera : moved.cameras) {
+    camera.p_wc *= scale;
+    camera = world * camera;
+  }
+  for (MapPoint& point : moved.points) point.position = to_world(world, scale * point.position);
+  moved.plane = {-(world.R_wc * ours.plane.normal), 0};
+  moved.plane.distance = -moved.plane.normal.dot(moved.points.front().position);
+  const Initialization theirs =
+      method_of_file(folder, answer_of(moved, Told::all)).initialize(window, {}, {});
+  ASSERT_TRUE(theirs.ok) << theirs.reason;
+  EXPECT_LT(angle_deg(theirs.plane.normal, ours.plane.normal), 1e-6);
+  for (std::size_t i = 0; i < ours.cameras.size(); ++i) {
+    EXPECT_LT((theirs.cameras[i].R_wc - ours.cameras[i].R_wc).norm(), 1e-9);
+    EXPECT_LT((theirs.cameras[i].p_wc - ours.cameras[i].p_wc).norm(), 1e-3);
+  }
+}
+
+TEST(CommandMethod, ACameraThatIsNotGivenIsFoundFromThePoints) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  const Initialization ours = find_method("gpo").initialize(window, {}, {});
+  Json answer = Json::parse(answer_of(ours, Told::all));
+  answer["cameras"][3] = nullptr;
+  const Initialization theirs =
+      method_of_file(folder, json_text(answer, -1)).initialize(window, {}, {});
+  ASSERT_TRUE(theirs.ok) << theirs.reason;
+  EXPECT_LT((theirs.cameras[3].p_wc - ours.cameras[3].p_wc).norm(), 0.02);
+}
+
+TEST(CommandMethod, WhatDoesNotFitTheTracksIsRefusedAsOurs) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  Initialization wrong = find_method("gpo").initialize(window, {}, {});
+  wrong.plane.normal = so3_exp({0.8, 0, 0}) * wrong.plane.normal;
+  const Initialization theirs =
+      method_of_file(folder, answer_of(wrong, Told::plane)).initialize(window, {}, {});
+  EXPECT_FALSE(theirs.ok);
+  EXPECT_THAT(theirs.reason, StartsWith("mine: "));
+}
+
+TEST(CommandMethod, EachWayToFailIsOneClearLine) {
+  EXPECT_EQ(reason_of("read w; echo '{\"failed\": \"too dark\"}'; cat"), "mine: too dark");
+  EXPECT_THAT(reason_of("cat"), HasSubstr("mine: answer 1: "));
+  EXPECT_THAT(reason_of("read w; echo garbage; cat"),
+              HasSubstr("mine: answer 1: no JSON from byte 1 on: 'garbage'"));
+  EXPECT_EQ(reason_of("read w; printf '{\"cam'; kill -9 $$"),
+            "mine: was killed by signal 9 (Killed) in the middle of answer 1");
+  EXPECT_EQ(reason_of("echo broken >&2; exit 3"),
+            "mine: ended with exit code 3 before answer 1: broken");
+  EXPECT_THAT(reason_of("/no/such/program"),
+              AllOf(HasSubstr("ended with exit code 127"), HasSubstr("not found")));
+  EXPECT_EQ(reason_of("head -c 2000000000 /dev/zero | tr '\\0' '['"),
+            "mine: answer 1 is longer than 8 MiB");
+  EXPECT_EQ(reason_of("sleep 1000", {.time_limit = std::chrono::milliseconds(200)}),
+            "mine: no answer 1 within 0.2 s");
+  EXPECT_EQ(reason_of("printf begun; sleep 1000", {.time_limit = std::chrono::milliseconds(500)}),
+            "mine: no answer 1 within 0.5 s, only the beginning of it");
+}
+
+TEST(CommandMethod, OneProcessServesManyWindowsUntilItFails) {
+  const test::TestFolder folder;
+  const Window window = wandering_window();
+  const auto count = folder.path() / "started";
+  const Method mine =
+      command_method({"mine",
+                      fmt::format("echo >> '{}'; read w; echo '{{\"failed\": \"a\"}}'; read w; "
+                                  "echo '{{\"failed\": \"b\"}}'; read w; echo garbage; read w",
+                                  count.string())},
+                     patient(),
+                     0);
+  std::vector<std::string> reasons;
+  for (int i = 0; i < 4; ++i) reasons.push_back(mine.initialize(window, {}, {}).reason);
+  EXPECT_THAT(reasons,
+              ElementsAre("mine: a", "mine: b", HasSubstr("mine: answer 3: no JSON"), "mine: a"));
+  EXPECT_EQ(folder.read("started"), "\n\n");
+}
+
+TEST(CommandMethod, OneThatAnswersOnceIsStartedForEachWindow) {
+  const Window window = wandering_window();
+  const Method mine =
+      command_method({"mine", "read w; echo '{\"failed\": \"once\"}'"}, patient(), 0);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(mine.initialize(window, {}, {}).reason, "mine: once");
+}
+
+TEST(CommandMethod, SeveralThreadsHaveAProcessEach) {
+  const Window window = wandering_window();
+  const Method mine = command_method(
+      {"mine", "while read w; do sleep 0.1; echo \"{\\\"failed\\\": \\\"$$\\\"}\"; done"},
+      patient(),
+      0);
+  std::vector<std::string> reasons(3);
+  {
+    std::vector<std::jthread> threads;
+    for (std::string& reason : reasons)
+      threads.emplace_back([&] { reason = mine.initialize(window, {}, {}).reason; });
+  }
+  EXPECT_NE(reasons[0], reasons[1]);
+  EXPECT_NE(reasons[1], reasons[2]);
+  EXPECT_THAT(reasons, ::testing::Each(StartsWith("mine: ")));
+}
+
+TEST(CommandMethod, AStopIsNoFailure) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Initialization result = command_method({"mine", "sleep 1000"}, patient(), 0)
+                                    .initialize(wandering_window(), {}, Watch(stop.get_token()));
+  EXPECT_TRUE(result.stopped);
+}
+
+TEST(CommandMethod, WhatItComplainsOfIsTold) {
+  std::vector<std::string> told;
+  CommandOptions options = patient();
+  options.told = [&](const std::string& name, const std::string& line) {
+    told.push_back(name + ": " + line);
+  };
+  reason_of(
+      "read w; echo 'slow' >&2; printf 'a\\033b\\n' >&2; sleep 0.2; echo '{\"failed\": \"x\"}'",
+      options);
+  EXPECT_THAT(told, ElementsAre("mine: slow", "mine: a\\x1Bb"));
+  told.clear();
+  reason_of("read w; seq 1000 >&2; sleep 0.2; echo '{\"failed\": \"x\"}'", options);
+  EXPECT_EQ(told.size(), 21U);
+  EXPECT_EQ(told.back(), "mine: ...");
+}
+
+TEST(CommandMethod, AnotherContentOfItsFilesIsAnotherMethod) {
+  const test::TestFolder folder;
+  const auto identity = [&](const std::string& content) {
+    const auto file = folder.write("mine.py", content);
+    return command_method({"mine", "python3 " + file.string()}, {}, 0).identity;
+  };
+  const std::string first = identity("one");
+  EXPECT_THAT(first, StartsWith("python3 /"));
+  EXPECT_NE(identity("two"), first);
+  EXPECT_EQ(identity("one"), first);
+}
+
+TEST(MethodCommand, IsANameAndACommand) {
+  const MethodCommand mine = parse_method_command("my_2-nd=FOO=1 python3 mine.py");
+  EXPECT_EQ(mine.name, "my_2-nd");
+  EXPECT_EQ(mine.command, "FOO=1 python3 mine.py");
+  for (const char* bad : {"", "mine", "=cat", "mine=", "mine= ", "a+b=cat", "a,b=cat", "all=cat"})
+    EXPECT_THAT(test::error_of([&] { parse_method_command(bad); }), HasSubstr("--method-command"))
+        << bad;
+}
+
+TEST(WindowJson, TellsWhatTheWindowHolds) {
+  Window window = wandering_window();
+  window.points_px[2].col(7).setConstant(std::numeric_limits<double>::quiet_NaN());
+  Gyroscope gyroscope;
+  gyroscope.time_offset_ns = 1000;
+  for (int i = -20; i < 400; ++i) {
+    gyroscope.timestamps_ns.push_back(window.timestamps_ns[0] + 1000 + i * std::int64_t{5'000'000});
+    gyroscope.rates_rad_s.emplace_back(i, 0, 0);
+  }
+  const Sources sources{.gyroscope = &gyroscope,
+                        .pictures = std::vector<std::filesystem::path>(6, "a.png")};
+  const Json json = Json::parse(json_text(window_json(window, sources), -1));
+  EXPECT_EQ(json["tracks"].size(), 6U);
+  EXPECT_EQ(json["tracks"][2].size(), 60U);
+  EXPECT_TRUE(json["tracks"][2][7].is_null());
+  EXPECT_EQ(json["tracks"][2][8][1], window.points_px[2](1, 8)) << "all digits";
+  EXPECT_EQ(json["inliers"][1][5], static_cast<bool>(window.inlier[1][5]));
+  EXPECT_EQ(json["K"][0][2], window.K(0, 2));
+  EXPECT_EQ(json["rotations"][5][0][1], window.R_wc[5](0, 1));
+  EXPECT_EQ(json["homographies"][5][0][1], window.H_i1[5](0, 1));
+  EXPECT_EQ(json["pictures"].size(), 6U);
+  EXPECT_FALSE(json.contains("video"));
+  EXPECT_FALSE(json.contains("camera"));
+  const Json& times = json["gyroscope"]["timestamps_ns"];
+  EXPECT_LE(times.front(), window.timestamps_ns.front() + 1000);
+  EXPECT_GT(times.front(), window.timestamps_ns.front() - 6'000'000);
+  EXPECT_GE(times.back(), window.timestamps_ns.back() + 1000);
+  EXPECT_LT(times.back(), window.timestamps_ns.back() + 6'000'000);
+  EXPECT_EQ(times.size(), json["gyroscope"]["rates_rad_s"].size());
+}
+
+}  // namespace
+}  // namespace gpo

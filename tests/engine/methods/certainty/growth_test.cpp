@@ -1,0 +1,95 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/growth.h"
+
+#include "engine/methods/gpo.h"
+#include "engine/window/window.h"
+#include "tests/engine/simulated_window.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+/// All but motion along the normal, where a steady turn cannot be told from the normal's.
+constexpr Motion kTellingMotions[] = {Motion::sideways,
+                                      Motion::orbit,
+                                      Motion::forward,
+                                      Motion::oblique,
+                                      Motion::up_down,
+                                      Motion::wander,
+                                      Motion::arc};
+
+Simulation window_of(Motion motion, double travel, std::uint64_t seed) {
+  return with_fitted_homographies(simulate({.motion = motion,
+                                            .travel = travel,
+                                            .off_plane = 0.15,
+                                            .gyro_bias_rad_s = 0.002,
+                                            .seed = seed}));
+}
+
+Window beginning(const Window& window, int frames) {
+  Window first = window;
+  first.points_px.resize(frames);
+  first.timestamps_ns.resize(frames);
+  first.inlier.resize(frames);
+  first.H_i1.resize(frames);
+  first.R_wc.resize(frames);
+  return first;
+}
+
+TEST(Growth, IsGpoAtEveryLength) {
+  for (const Motion motion : kTellingMotions) {
+    const Simulation truth = window_of(motion, 0.3, 5);
+    const std::vector<GrowthStep> steps = grow(truth.window);
+    ASSERT_EQ(steps.size(), 29);
+    for (const GrowthStep& step : steps) {
+      if (step.frames % 6 != 0) continue;
+      const PlaneSolution alone = solve_gpo(beginning(truth.window, step.frames), {}, {});
+      const double cosine = std::abs(step.normal.dot(alone.motion.normal));
+      EXPECT_GT(cosine, std::cos(radians(0.002))) << step.frames;
+    }
+  }
+}
+
+TEST(Growth, CostsWhatTheNewFrameCosts) {
+  for (const Motion motion : kTellingMotions) {
+    int linearized = 0;
+    for (const GrowthStep& step : grow(window_of(motion, 0.3, 6).window))
+      linearized += step.linearized;
+    EXPECT_LT(linearized, 29 * 6);  // from scratch it would be 435 at the least
+  }
+}
+
+TEST(Verdict, TellsGoodLowAndNoParallaxApart) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const Motion motion : kTellingMotions) {
+      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
+                Readiness::ready);
+      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window).back().verdict.readiness,
+                Readiness::weak);
+    }
+    const Verdict none = grow(window_of(Motion::rotation_only, 0, seed).window).back().verdict;
+    EXPECT_EQ(none.readiness, Readiness::degenerate);
+    EXPECT_THAT(none.reason, testing::HasSubstr("rotations alone explain"));
+  }
+}
+
+TEST(Verdict, GetsBetterAsTheWindowGrows) {
+  const std::vector<GrowthStep> steps = grow(window_of(Motion::sideways, 0.3, 3).window);
+  for (std::size_t k = 5; k < steps.size(); ++k) {
+    EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
+    EXPECT_LE(static_cast<int>(steps[k].verdict.readiness),
+              static_cast<int>(steps[k - 1].verdict.readiness));
+  }
+}
+
+TEST(Growth, OfAFrameWithTooFewInliersIsEmpty) {
+  Simulation truth = window_of(Motion::orbit, 0.3, 1);
+  truth.window.inlier[7].assign(150, false);
+  EXPECT_TRUE(grow(truth.window).empty());
+}
+
+}  // namespace
+}  // namespace gpo::test

@@ -1,0 +1,235 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/methods.h"
+
+#include "engine/base/error.h"
+#include "engine/window/window.h"
+#include "tests/engine/simulated_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using test::Motion;
+using test::simulate;
+using test::Simulation;
+using test::with_fitted_homographies;
+using ::testing::HasSubstr;
+
+/// What every row of the table promises.
+class EveryMethod : public ::testing::TestWithParam<Method> {
+ protected:
+  static Initialization run(const Window& window) { return GetParam().initialize(window, {}, {}); }
+
+  /// Where a camera approaches a plane along its normal, the two readings of its homographies
+  /// coincide; a method that moves the rotations, too, finds the normal to the root of the noise
+  /// only.
+  static bool moves_rotations() {
+    return std::set<std::string>{"ba", "pnp_ba", "pba"}.contains(GetParam().key);
+  }
+};
+
+struct Errors {
+  double normal_deg = 0;
+  double rotation_deg = 0;  ///< the worst of all cameras
+  double center = 0;        ///< the same [plane distance]
+};
+
+Errors errors_of(const Initialization& result, const Simulation& truth) {
+  Errors errors{angle_deg(result.plane.normal, truth.plane.normal)};
+  for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
+    const Eigen::Matrix3d dR = result.cameras[i].R_wc.transpose() * truth.cameras[i].R_wc;
+    errors.rotation_deg = std::max(errors.rotation_deg, degrees(so3_log(dR).norm()));
+    const double off = (result.cameras[i].p_wc - truth.cameras[i].p_wc).norm();
+    errors.center = std::max(errors.center, off);
+  }
+  return errors;
+}
+
+constexpr Motion kMotions[] = {
+    Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique, Motion::wander};
+
+void expect_exact(const Initialization& result, const Simulation& truth) {
+  ASSERT_TRUE(result.ok) << result.reason;
+  const Errors errors = errors_of(result, truth);
+  EXPECT_LT(errors.normal_deg, 1e-4);
+  EXPECT_LT(errors.rotation_deg, 1e-4);
+  EXPECT_LT(errors.center, 1e-5);
+  EXPECT_LT(result.rms_px, 1e-3);
+}
+
+TEST_P(EveryMethod, IsExactWithoutNoise) {
+  for (const Motion motion : kMotions) {
+    for (const double off_plane : {0.0, 0.3}) {
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE(testing::Message()
+                     << "motion " << static_cast<int>(motion) << " seed " << seed);
+        const Simulation truth =
+            simulate({.motion = motion, .noise_px = 0, .off_plane = off_plane, .seed = seed});
+        expect_exact(run(truth.window), truth);
+      }
+    }
+  }
+}
+
+TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
+  for (const Motion motion : kMotions) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
+      const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
+      const Initialization result = run(truth.window);
+      ASSERT_TRUE(result.ok) << result.reason;
+      const Errors errors = errors_of(result, truth);
+      const bool flat = motion == Motion::approach && moves_rotations();
+      EXPECT_LT(errors.normal_deg, flat ? 4 : 1.5);
+      EXPECT_LT(errors.rotation_deg, flat ? 1.5 : 1);
+      EXPECT_LT(errors.center, 0.02);
+      EXPECT_LT(result.rms_px, 1);
+    }
+  }
+}
+
+TEST_P(EveryMethod, DeliversTheGaugeOfTheMethodPage) {
+  const Simulation truth = simulate({.motion = Motion::orbit});
+  const Initialization result = run(truth.window);
+  ASSERT_TRUE(result.ok) << result.reason;
+  EXPECT_EQ(result.plane.distance, 1);
+  EXPECT_NEAR(result.plane.normal.norm(), 1, 1e-12);
+  EXPECT_LT(result.plane.normal.z(), 0);
+  EXPECT_EQ(result.cameras.size(), 30U);
+  EXPECT_EQ(result.cameras[0].p_wc.norm(), 0);
+  EXPECT_TRUE(result.cameras[0].R_wc.isIdentity(1e-12));
+  EXPECT_EQ(result.points.size(), 150U);
+  for (const MapPoint& point : result.points) {
+    EXPECT_NEAR(truth.plane.normal.dot(point.position) + 1, 0, 0.1);
+  }
+}
+
+TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Simulation truth = simulate({.motion = Motion::rotation_only, .seed = seed});
+    const Initialization result = run(truth.window);
+    EXPECT_FALSE(result.ok);
+    EXPECT_THAT(result.reason, HasSubstr("no parallax"));
+    EXPECT_TRUE(result.cameras.empty());
+    EXPECT_TRUE(result.points.empty());
+  }
+}
+
+TEST_P(EveryMethod, RefusesTooFewTracksWithAReason) {
+  const Initialization result = run(simulate({.points = 7}).window);
+  EXPECT_FALSE(result.ok);
+  EXPECT_EQ(
+      result.reason,
+      "too few tracks: 7 are seen in frame 0, where the window starts, at least 8 are needed");
+}
+
+TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {
+  const Simulation truth = simulate({.motion = Motion::wander});
+  const Initialization a = run(truth.window);
+  const Initialization b = run(truth.window);
+  EXPECT_EQ(a.plane.normal, b.plane.normal);
+  EXPECT_EQ(a.rms_px, b.rms_px);
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    EXPECT_EQ(a.cameras[i].R_wc, b.cameras[i].R_wc);
+    EXPECT_EQ(a.cameras[i].p_wc, b.cameras[i].p_wc);
+  }
+}
+
+TEST_P(EveryMethod, DoesNotDependOnTheOrderOfTracks) {
+  const Simulation truth = simulate({.motion = Motion::orbit, .off_plane = 0.2});
+  Window reversed = truth.window;
+  for (auto& points : reversed.points_px) points = points.rowwise().reverse().eval();
+  for (auto& inlier : reversed.inlier) std::reverse(inlier.begin(), inlier.end());
+  const Initialization a = run(truth.window);
+  const Initialization b = run(reversed);
+  ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
+  EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 0.02);
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    EXPECT_LT((a.cameras[i].p_wc - b.cameras[i].p_wc).norm(), 1e-3);
+  }
+}
+
+TEST_P(EveryMethod, UsesTracksOnlyWhereTheyAreSeen) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
+    for (int i = 10; i < 30; ++i) {
+      for (int j = 0; j < 60; ++j) {
+        truth.window.points_px[i].col(j).setConstant(std::nan(""));
+        truth.window.inlier[i][j] = false;
+      }
+    }
+    expect_exact(run(truth.window), truth);
+  }
+}
+
+TEST_P(EveryMethod, TakesAWindowOfTwoFrames) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Simulation truth = simulate({.frames = 2, .noise_px = 0, .seed = seed});
+    expect_exact(run(truth.window), truth);
+  }
+}
+
+TEST_P(EveryMethod, SaysWhatItDoesAndWhatItAssumes) {
+  EXPECT_THAT(GetParam().help, HasSubstr("Assumes"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Table,
+                         EveryMethod,
+                         ::testing::ValuesIn(methods().begin(), methods().end()),
+                         [](const auto& p) { return p.param.key; });
+
+TEST(Methods, HaveKeysTitlesAndColorsOfTheirOwn) {
+  std::set<std::string> keys, titles;
+  std::set<std::uint32_t> colors;
+  for (const Method& method : methods()) {
+    keys.insert(method.key);
+    titles.insert(method.title);
+    colors.insert(method.rgb);
+    EXPECT_EQ(&find_method(method.key), &method);
+  }
+  EXPECT_EQ(keys.size(), methods().size());
+  EXPECT_EQ(titles.size(), methods().size());
+  EXPECT_EQ(colors.size(), methods().size());
+}
+
+TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
+  try {
+    find_method("orb");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'orb', expected one of gpo, "));
+  }
+}
+
+TEST(MethodTable, FindsOursAndTheUsersOwn) {
+  MethodTable table;
+  table.add(Method{.key = "mine", .title = "mine"});
+  const MethodTable copy = table;
+  EXPECT_EQ(table.all().size(), methods().size() + 1);
+  EXPECT_EQ(&copy.find("mine").row(), &table.find("mine").row()) << "copies share their rows";
+  EXPECT_EQ(table.find("gpo"), MethodChoice("gpo"));
+  EXPECT_EQ(&table.find("gpo").row(), &find_method("gpo"));
+  EXPECT_NE(table.find("mine"), MethodChoice("mine")) << "which names none of ours";
+  EXPECT_THROW(MethodChoice("mine").row(), SettingError);
+  EXPECT_THROW(MethodTable().find("mine"), SettingError);
+}
+
+TEST(MethodTable, RefusesAKeyThatIsTaken) {
+  MethodTable table;
+  table.add(Method{.key = "mine"});
+  EXPECT_THROW(table.add(Method{.key = "mine"}), InputError);
+  EXPECT_THROW(table.add(Method{.key = "gpo"}), InputError);
+  table.add(table.find("mine"));
+  EXPECT_EQ(table.own().size(), 1U);
+}
+
+}  // namespace
+}  // namespace gpo

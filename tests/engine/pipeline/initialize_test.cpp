@@ -1,0 +1,192 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/initialize.h"
+
+#include "engine/base/error.h"
+#include "engine/geometry/pose.h"
+#include "engine/inspection/inspector.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/pipeline/simulated_frames.h"
+#include "tests/engine/test_folder.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// What an inspection's front end followed, as a front end of one's own would hand it over.
+std::vector<Frame> frames_of(const Inspection& inspection) {
+  const Tracks& tracks = *inspection.tracks;
+  std::vector<Frame> frames;
+  for (int i = 0; i < tracks.frame_count(); ++i) {
+    Frame frame{.timestamp_ns = inspection.recording->timestamps_ns[tracks.start + i],
+                .ids = {},
+                .raw_px = {}};
+    std::vector<int> seen;
+    for (int j = 0; j < tracks.track_count(); ++j)
+      if (tracks.seen(i, j)) seen.push_back(j);
+    for (const int j : seen) frame.ids.push_back(tracks.ids[j]);
+    frame.raw_px = tracks.raw_px[i](Eigen::all, seen);
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+struct Asked {
+  const char* method;
+  RotationSource rotations;
+  std::optional<bool> ransac = std::nullopt;
+  int plane = 1;
+};
+
+TEST(Initialize, GivesTheSameBitsAsAnInspection) {
+  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+  Inspector inspector(recording);
+  using enum RotationSource;
+  for (const Asked& asked : {Asked{"gpo_joint", automatic},
+                             Asked{"gpo_joint", averaging},
+                             Asked{"gpo_joint", automatic, std::nullopt, 2},
+                             Asked{"gpo", raw},
+                             Asked{"gpo", five_point},  // refused
+                             Asked{"gpo", truth},
+                             Asked{"closed_form", gyro, false},
+                             Asked{"pba", automatic},
+                             Asked{"ba", automatic}}) {
+    SCOPED_TRACE(std::string(asked.method) + " " + to_string(asked.rotations));
+    Settings settings;
+    settings.frames = 12;
+    settings.options.method = asked.method;
+    settings.options.rotations = asked.rotations;
+    settings.options.ransac = asked.ransac;
+    settings.options.plane = asked.plane;
+    const auto inspection = inspector.inspect(settings);
+    std::vector<Frame> frames = frames_of(*inspection);
+    if (asked.rotations == truth)
+      for (std::size_t i = 0; i < frames.size(); ++i)
+        frames[i].R_wc = inspection->truth->cameras[i]->R_wc;
+    const WindowResult result =
+        initialize(recording->camera, frames, &*recording->gyroscope, settings.options);
+    test::expect_same(*inspection->initialization, result.initialization);
+    EXPECT_EQ(inspection->rotations_used, result.rotations);
+    EXPECT_EQ(inspection->rotations_note, result.rotations_note);
+    EXPECT_EQ(inspection->tracks->ids, result.ids);
+  }
+}
+
+TEST(Initialize, FindsASimulatedPlaneFromTracksAlone) {
+  const auto simulation = test::simulate({.motion = test::Motion::orbit, .frames = 15, .seed = 3});
+  const WindowResult result =
+      initialize(test::camera_of(simulation.window), test::frames_of(simulation.window));
+  ASSERT_TRUE(result.is_ready()) << result.initialization.reason;
+  EXPECT_EQ(result.rotations, RotationSource::averaging);
+  EXPECT_THAT(result.rotations_note, HasSubstr("one plane"));
+  EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.5);
+}
+
+TEST(Initialize, TakesTheFramesRotationsWhereTheyHaveAny) {
+  const auto simulation = test::simulate({.motion = test::Motion::arc, .frames = 10});
+  std::vector<Frame> frames = test::frames_of(simulation.window);
+  const Eigen::Matrix3d R_other_world = so3_exp({0.3, -0.4, 1.1});
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    frames[i].R_wc = R_other_world * simulation.window.R_wc[i];
+  const WindowResult result =
+      initialize(test::camera_of(simulation.window), frames, nullptr, {.method = "gpo"});
+  EXPECT_EQ(result.rotations, RotationSource::truth);
+  EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.2);
+}
+
+TEST(Initialize, RunsAMethodOfTheCallersOwn) {
+  const auto simulation = test::simulate({.frames = 15});
+  auto own = std::make_shared<Method>(find_method("pnp"));
+  own->key = "mine";
+  const auto initialized = [&](const MethodChoice& method) {
+    return initialize(test::camera_of(simulation.window),
+                      test::frames_of(simulation.window),
+                      nullptr,
+                      {.method = method});
+  };
+  const WindowResult mine = initialized(MethodChoice(own));
+  ASSERT_TRUE(mine.initialization.ok) << mine.initialization.reason;
+  EXPECT_EQ(mine.initialization.plane.normal, initialized("pnp").initialization.plane.normal);
+  EXPECT_THROW(initialized("mine"), SettingError);
+}
+
+TEST(Initialize, WithAGuessedCameraNothingIsMoreThanWeak) {
+  const auto simulation = test::simulate({.frames = 15});
+  const WindowResult result = initialize(test::camera_of(simulation.window),
+                                         test::frames_of(simulation.window),
+                                         nullptr,
+                                         {.camera_is_guess = true});
+  EXPECT_TRUE(result.initialization.ok);
+  EXPECT_FALSE(result.is_ready());
+  EXPECT_THAT(result.initialization.verdict->reason, HasSubstr("guess"));
+}
+
+TEST(Initialize, WhatDoesNotInitializeIsAValueThatSaysWhy) {
+  const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 10});
+  const WindowResult result =
+      initialize(test::camera_of(simulation.window), test::frames_of(simulation.window));
+  EXPECT_FALSE(result.initialization.ok);
+  EXPECT_THAT(result.initialization.reason, HasSubstr("no parallax"));
+  EXPECT_EQ(result.initialization.cameras.size(), 0U);
+}
+
+TEST(Initialize, BadInputIsRefusedByOneLineThatNamesIt) {
+  const auto simulation = test::simulate({.frames = 4});
+  const Camera camera = test::camera_of(simulation.window);
+  const std::vector<Frame> good = test::frames_of(simulation.window);
+  const auto message = [&](auto&& change) {
+    Camera c = camera;
+    std::vector<Frame> frames = good;
+    InitializeOptions options;
+    Gyroscope gyroscope;
+    change(c, frames, options, gyroscope);
+    const bool gyro = !gyroscope.timestamps_ns.empty();
+    return test::error_of([&] { initialize(c, frames, gyro ? &gyroscope : nullptr, options); });
+  };
+  using Frames = std::vector<Frame>;
+  const auto of_frames = [&](auto&& change) {
+    return message([&](auto&, Frames& f, auto&, auto&) { change(f); });
+  };
+  const auto of_options = [&](auto&& change) {
+    return message([&](auto&, auto&, InitializeOptions& o, auto&) { change(o); });
+  };
+  EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
+            "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
+  EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frames, expected at least 2");
+  EXPECT_THAT(of_frames([](Frames& f) { f[2].timestamp_ns = f[1].timestamp_ns; }),
+              HasSubstr("frame 2: time stamp"));
+  EXPECT_EQ(of_frames([](Frames& f) { f[1].ids.pop_back(); }),
+            "frame 1: 149 ids and 150 pixels, expected as many");
+  EXPECT_EQ(of_frames([](Frames& f) { f[1].ids[4] = 7; }), "frame 1: track 7 is seen twice");
+  EXPECT_EQ(
+      of_frames([](Frames& f) { f[3].raw_px(0, 0) = std::numeric_limits<double>::quiet_NaN(); }),
+      "frame 3: a pixel is no number");
+  EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Identity(); }),
+            "frame 1: expected rotations of all frames or of none");
+  EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Zero(); }),
+            "frame 0: R_wc is no rotation");
+  EXPECT_THAT(of_options([](auto& o) { o.method = "magic"; }), HasSubstr("method: unknown method"));
+  EXPECT_EQ(of_options([](auto& o) { o.plane = 0; }), "plane: 0, expected at least 1");
+  EXPECT_EQ(of_options([](auto& o) { o.rotations = RotationSource::gyro; }),
+            "rotations: gyro: no gyroscope given");
+  EXPECT_EQ(of_options([](auto& o) { o.rotations = RotationSource::truth; }),
+            "rotations: truth: no rotations given");
+  EXPECT_EQ(message([](auto&, auto&, auto&, Gyroscope& g) {
+              g.timestamps_ns = {5, 5};
+              g.rates_rad_s.resize(2, Eigen::Vector3d::Zero());
+            }),
+            "gyroscope: time stamp 5 does not come after 5");
+  EXPECT_THAT(message([](auto&, auto&, auto&, Gyroscope& g) {
+                g.timestamps_ns = {-9'000'000'000, -8'990'000'000};
+                g.rates_rad_s.resize(2, Eigen::Vector3d::Zero());
+              }),
+              HasSubstr("gyroscope:2: the gyroscope ends at"));
+}
+
+}  // namespace
+}  // namespace gpo
