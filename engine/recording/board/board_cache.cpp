@@ -89,7 +89,7 @@ std::string key_of(const Camera& camera) {
                      fmt::join(camera.coefficients, " "));
 }
 
-std::string tags_text(const Board& board) {
+std::string tags_key(const Board& board) {
   if (!board.tags) return "";
   return fmt::format(
       "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
@@ -101,7 +101,7 @@ std::string key_of(const Board& board) {
                      board.rows,
                      board.square_m,
                      board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : tags_text(board));
+                     board.markers ? board.markers->dictionary : tags_key(board));
 }
 
 }  // namespace
