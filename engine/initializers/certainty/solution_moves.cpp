@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initializers/certainty/solution_moves.h"
 
+#include "engine/initializers/plane/plane_weights.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
