@@ -176,7 +176,7 @@ cv::Mat snapshot_pane(const std::string& view,
   state.messages.text.clear();
   const Pane& pane = pane_named(view);
   if (pane.kind != PaneKind::window)
-    state.document.compared = {key_of(configuration_of(state.document.settings))};
+    state.document.compared = {configuration_of(state.document.settings)};
   if (pane.needs.study) state.results.study = study_normals(*inspection);
   apply(state, GoToFrame{frame});
   const cv::Size window = size.value_or(cv::Size(kWidth, kHeight));

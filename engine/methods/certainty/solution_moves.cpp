@@ -4,8 +4,6 @@
 
 #include "engine/methods/plane/plane_weights.h"
 
-#include "engine/initializers/plane/plane_weights.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>

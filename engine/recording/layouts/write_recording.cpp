@@ -191,7 +191,7 @@ struct BagFormat {
 };
 
 /// As `RecordingFormat` counts them after the first.
-constexpr std::array<BagFormat, 2> kBags = {
+constexpr std::array<BagFormat, 2> kBagFormats = {
     {{".bag", ros1_writer, 0},
      {".mcap",
       mcap_writer,
@@ -319,7 +319,7 @@ void write_recording(const Recording& recording,
                      const fs::path& output,
                      const std::function<void(int done, int of)>& progress) {
   if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
-  const auto& bag = kBags[static_cast<std::size_t>(format) - 1];
+  const auto& bag = kBagFormats[static_cast<std::size_t>(format) - 1];
   write_bag(recording, truth, bag, output, progress);
 }
 

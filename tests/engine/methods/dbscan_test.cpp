@@ -19,19 +19,19 @@ using test::Simulation;
 using test::with_fitted_homographies;
 using ::testing::HasSubstr;
 
-double median_error_deg(Motion motion) {
+double median_dbscan_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_dbscan, motion, 30);
 }
 
 TEST(Dbscan, NormalIsGoodToATenthOfADegree) {
-  EXPECT_LT(median_error_deg(Motion::sideways), 0.1);
-  EXPECT_LT(median_error_deg(Motion::orbit), 0.1);
-  EXPECT_LT(median_error_deg(Motion::wander), 0.12);
+  EXPECT_LT(median_dbscan_error_deg(Motion::sideways), 0.1);
+  EXPECT_LT(median_dbscan_error_deg(Motion::orbit), 0.1);
+  EXPECT_LT(median_dbscan_error_deg(Motion::wander), 0.12);
 }
 
 TEST(Dbscan, TakesTheMiddleOfTwinsThatNoiseParts) {
   // Single decompositions along the normal are off by the square root of the noise, 2 deg.
-  EXPECT_LT(median_error_deg(Motion::approach), 0.04);
+  EXPECT_LT(median_dbscan_error_deg(Motion::approach), 0.04);
 }
 
 TEST(Dbscan, GivenRotationsTellTheFalseTwin) {

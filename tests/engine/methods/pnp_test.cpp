@@ -22,19 +22,19 @@ using test::Simulation;
 using test::with_fitted_homographies;
 using ::testing::HasSubstr;
 
-double median_error_deg(Motion motion) {
+double median_pnp_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_pnp, motion, 15);
 }
 
 TEST(Pnp, NormalIsGoodToAQuarterOfADegree) {
-  EXPECT_LT(median_error_deg(Motion::sideways), 0.25);
-  EXPECT_LT(median_error_deg(Motion::orbit), 0.25);
-  EXPECT_LT(median_error_deg(Motion::wander), 0.3);
+  EXPECT_LT(median_pnp_error_deg(Motion::sideways), 0.25);
+  EXPECT_LT(median_pnp_error_deg(Motion::orbit), 0.25);
+  EXPECT_LT(median_pnp_error_deg(Motion::wander), 0.3);
 }
 
 TEST(Pnp, TakesTheMiddleOfTwinsThatNoiseParts) {
   // The readings themselves are 2 to 3 deg off.
-  EXPECT_LT(median_error_deg(Motion::approach), 0.1);
+  EXPECT_LT(median_pnp_error_deg(Motion::approach), 0.1);
 }
 
 TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/synthesis/small_recipe.h"
 
-#include "engine/synthesis/synthesized.h"
+#include "engine/synthesis/synthesize.h"
 
 #include <cmath>
 #include <fstream>

@@ -28,7 +28,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Above and below the disc, at scale 1 [px].
-constexpr double kTop = 44, kBottom = 66;
+constexpr double kAboveDisc = 44, kBelowDisc = 66;
 
 /// What the parts of the drawing share.
 struct Stage {
@@ -282,7 +282,8 @@ int NormalsContent::frames() const {
 
 ScreenRect disc_rect(const ScreenRect& rect) {
   const double s = overlay_scale();
-  return {rect.min + Vector2d(0, kTop * s), rect.size - Vector2d(0, (kTop + kBottom) * s)};
+  return {rect.min + Vector2d(0, kAboveDisc * s),
+          rect.size - Vector2d(0, (kAboveDisc + kBelowDisc) * s)};
 }
 
 void draw_normals_view(ImDrawList& list,

@@ -23,7 +23,7 @@ using test::perturbed_truth;
 using test::simulate;
 using test::Simulation;
 
-constexpr double kStep = 1e-6;
+constexpr double kPerturbation = 1e-6;
 
 std::vector<Observation> observations_of(const Simulation& truth, bool on_plane) {
   std::vector<Observation> observations;
@@ -76,11 +76,11 @@ std::vector<Observation> seen_of(int point, std::span<const Observation> observa
 
 /// What one Newton step along a single unknown would still gain [px^2]: g^2 / 2h, by differences.
 double gain_left(const std::function<double(double)>& cost_at) {
-  const double before = cost_at(-kStep);
+  const double before = cost_at(-kPerturbation);
   const double here = cost_at(0);
-  const double after = cost_at(kStep);
-  const double g = (after - before) / (2 * kStep);
-  const double h = (after - 2 * here + before) / (kStep * kStep);
+  const double after = cost_at(kPerturbation);
+  const double g = (after - before) / (2 * kPerturbation);
+  const double h = (after - 2 * here + before) / (kPerturbation * kPerturbation);
   return g * g / (2 * h);
 }
 

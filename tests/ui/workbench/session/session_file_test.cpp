@@ -60,12 +60,12 @@ class SessionFile : public testing::Test {
 TEST_F(SessionFile, FindsTheUsersOwnMethods) {
   state_.methods.add(Method{.key = "mine", .title = "mine", .command = "mine=cat"});
   state_.document.settings.options.method = state_.methods.find("mine");
-  state_.document.compared = {"mine+no-ransac", "gpo"};
+  state_.document.compared = parse_configurations("mine+no-ransac,gpo", state_.methods);
   const std::string text = session_text(state_);
   EXPECT_NE(text.find("mine=cat"), std::string::npos);
   const auto read = read_session(write(text), state_.methods).state;
-  EXPECT_EQ(read->settings, state_.document.settings);
-  EXPECT_EQ(read->compared, state_.document.compared);
+  EXPECT_EQ(read->document.settings, state_.document.settings);
+  EXPECT_EQ(read->document.compared, state_.document.compared);
   EXPECT_THAT(refusal(text), HasSubstr("unknown value 'mine'"));
 }
 
