@@ -14,7 +14,7 @@ import opencv_initializer  # noqa: E402
 
 
 def schema(name):
-    return jsonschema.Draft202012Validator(json.loads((ENGINE / "commands" / name).read_text()))
+    return jsonschema.Draft202012Validator(json.loads((ENGINE / "external_methods" / name).read_text()))
 
 
 def check(name, value):

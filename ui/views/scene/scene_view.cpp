@@ -264,9 +264,20 @@ void build(const Stage& stage, bool above) {
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
-/// What moves is made of the same shapes.
+/// Returns the toggles on which shapes depend; the others have their defaults.
+ViewToggles toggles_of_shapes(const ViewToggles& show) {
+  return {.cube = show.cube,
+          .truth = show.truth,
+          .uncertainty = show.uncertainty,
+          .point_size_px = show.point_size_px};
+}
+
+/// Whether both draw the same shapes, moving or not.
 bool same_shapes(ViewOptions a, ViewOptions b) {
-  a.moving = b.moving = false;
+  for (ViewOptions* options : {&a, &b}) {
+    options->moving = false;
+    options->show = toggles_of_shapes(options->show);
+  }
   return a == b;
 }
 
