@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/main_with_errors.h"
-
 #include "app/commands/commands.h"
 #include "app/commands/setting_options.h"
+#include "app/main_with_errors.h"
 #include "app/methods/method_commands.h"
 #include "app/pages.h"
 #include "app/pictures/snapshots.h"

@@ -102,7 +102,7 @@ void draw_alone(const Pane& pane, const PanelInput& input, cv::Size size, Views&
     state.view.panes.drawer = &pane;
     drawer(shown, place, views, ignored);
   } else {
-    pane.draw(input, place, views, ignored);
+    draw_function(pane)(input, place, views, ignored);
   }
 }
 

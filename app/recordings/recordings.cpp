@@ -16,8 +16,8 @@
 #include "engine/recording/content.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/synthesis/synthesize.h"
-#include "ui/workbench/session/session_file.h"
 #include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <array>

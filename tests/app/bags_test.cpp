@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -59,7 +60,9 @@ void put_beside(const fs::path& folder) {
 fs::path gray_pictures(const fs::path& folder) {
   fs::create_directories(folder);
   for (const auto& file : fs::directory_iterator(source_recording() / "mav0/cam0/data")) {
-    const cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
+    // As the program converts: libpng's own conversion rounds differently.
+    if (gray.channels() == 3) cv::cvtColor(gray, gray, cv::COLOR_BGR2GRAY);
     cv::imwrite((folder / file.path().stem()).string() + ".pgm", gray);
   }
   return folder;

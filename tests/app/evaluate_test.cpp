@@ -253,7 +253,8 @@ TEST(Evaluate, FiguresForPrintAreAsWideAsAsked) {
       folder.string()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("width=\"240.94"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), HasSubstr("/MediaBox [ 0 0 240.94"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"),
+              HasSubstr("/MediaBox [ 0 0 240.94"));
 }
 
 TEST(Evaluate, EveryShardOfOneStartComputesSomething) {

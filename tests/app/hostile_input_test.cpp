@@ -3,15 +3,19 @@
 // Broken files on the command line: one line that says what is wrong, exit code 2, nothing
 // written, and less than 1 GiB of memory. What parsers make of every other byte is up to
 // tests/fuzz.
+#include "app/terminal/quiet_libraries.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/pictures/made_video.h"
 
 #include <algorithm>
 #include <functional>
+#include <iostream>
 #include <map>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -365,6 +369,16 @@ TEST(FullDisk, EvaluateNamesTheFile) {
 TEST(FullDisk, OfStandardOutputIsToldToo) {
   expect_one_line(spawned("info " + desk().string() + " >/dev/full"),
                   "standard output: cannot be written: No space left on device");
+}
+
+TEST(QuietLibraries, LeavesStandardErrorToEveryoneButImageDecoders) {
+  quiet_libraries();
+  const std::string letter = "P2\n2 1\n255\nx";  // among the gray values
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(
+      cv::imdecode(std::vector<char>(letter.begin(), letter.end()), cv::IMREAD_GRAYSCALE).empty());
+  std::cerr << "another library " << 1 << '\n';
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "another library 1\n");
 }
 
 }  // namespace

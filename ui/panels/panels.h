@@ -12,6 +12,7 @@
 #include "ui/views/overlay/track_colors.h"
 #include "ui/views/picture/picture_texture.h"
 #include "ui/views/scene/scene_view.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/folder_lister.h"
@@ -156,6 +157,11 @@ void empty_panel(const PanelInput& input, const Rectangle& place, Commands& comm
 /// Names of the side panes, and of the drawers, to choose one by a click.
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
 void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
+/// Draws a pane into the part of the window that it fills, which is a panel already. One file each.
+using DrawPane = void(const PanelInput&, const Rectangle&, Views&, Commands&);
+/// The function that draws a pane; null for the whole window.
+DrawPane* draw_function(const Pane& pane);
+
 /// The side pane, or the drawer, that is open; nothing where it is shut.
 DrawPane side_pane, drawer;
 

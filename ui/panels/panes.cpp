@@ -5,11 +5,39 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 namespace gpo {
+
+DrawPane picture_alone, compare_alone;
+DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
+DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
+    log_drawer;
+
 namespace {
+
+struct PaneDrawing {
+  std::string_view key;  ///< of the pane
+  DrawPane* draw;
+};
+
+constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", picture_alone},
+                                                       {"scene", scene_pane},
+                                                       {"normals", normals_pane},
+                                                       {"solver", solver_pane},
+                                                       {"candidates", candidates_pane},
+                                                       {"compare", compare_alone},
+                                                       {"curves", curves_drawer},
+                                                       {"table", table_drawer},
+                                                       {"residuals", residuals_drawer},
+                                                       {"timing", timing_drawer},
+                                                       {"track", track_drawer},
+                                                       {"tracks", tracks_drawer},
+                                                       {"log", log_drawer}});
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
@@ -47,6 +75,11 @@ void maximize(const PanelInput& input, WindowPart part, Commands& commands) {
 
 }  // namespace
 
+DrawPane* draw_function(const Pane& pane) {
+  const auto found = std::ranges::find(kDrawings, pane.key, &PaneDrawing::key);
+  return found == kDrawings.end() ? nullptr : found->draw;
+}
+
 void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
   const PanelScope panel("side tabs", place, {0, 0});
   for (const Pane& pane : side_panes()) {
@@ -74,14 +107,14 @@ void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Co
   const Pane& open = *input.state.view.panes.side;
   if (open.covers) ImGui::SetNextWindowBgAlpha(0);
   const PanelScope panel("side", place, {0, 0});
-  open.draw(input, place, views, commands);
+  draw_function(open)(input, place, views, commands);
 }
 
 void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
   const Pane* open = input.state.view.panes.drawer;
   if (open == nullptr) return;
   const PanelScope panel("drawer", place, {0, 0});
-  open->draw(input, place, views, commands);
+  draw_function (*open)(input, place, views, commands);
 }
 
 }  // namespace gpo

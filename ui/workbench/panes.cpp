@@ -7,11 +7,6 @@
 
 namespace gpo {
 
-DrawPane picture_alone, compare_alone;
-DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
-DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
-    log_drawer;
-
 namespace {
 
 // Those of a kind stand together.
@@ -20,27 +15,25 @@ constexpr auto kPanes = [] {
   using enum PaneKind;
   constexpr PaneNeeds kCompared = {.compared = true};
   return std::to_array<Pane>({
-    {picture, "image", "Image", "The frame with its overlays", picture_alone, {}, false, "picture"},
-    {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", scene_pane, {}, true},
+    {picture, "image", "Image", "The frame with its overlays", {}, false, "picture"},
+    {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", {}, true},
     {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, answers",
-     normals_pane, {.compared = true, .study = true}},
-    {side, "solver", "Solver", "Cost, gradient and step over the iterations", solver_pane, kCompared},
+     {.compared = true, .study = true}},
+    {side, "solver", "Solver", "Cost, gradient and step over the iterations", kCompared},
     {side, "candidates", "Candidates",
-     "Every reading of the frame's homography, and why it was rejected", candidates_pane,
+     "Every reading of the frame's homography, and why it was rejected",
      {.study = true}},
     {columns, "compare", "Compare", "The compared methods side by side on the same frame",
-     compare_alone, kCompared},
-    {drawer, "curves", "Curves", "Errors over the length of the window", curves_drawer,
+     kCompared},
+    {drawer, "curves", "Curves", "Errors over the length of the window",
      {.compared = true, .lengths = true}},
-    {drawer, "table", "Table", "The compared results in numbers, and their differences",
-     table_drawer, kCompared},
-    {drawer, "residuals", "Residuals", "Histogram, and root mean square frame by frame",
-     residuals_drawer},
-    {drawer, "timing", "Timing", "Where the time went, stage by stage", timing_drawer, kCompared},
-    {drawer, "track", "Track", "The whole life of the selected track", track_drawer},
-    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and to pick", tracks_drawer},
-    {drawer, "log", "Log", "Every message", log_drawer},
-    {window, "window", "Window", "All of the workbench", nullptr}});
+    {drawer, "table", "Table", "The compared results in numbers, and their differences", kCompared},
+    {drawer, "residuals", "Residuals", "Histogram, and root mean square frame by frame"},
+    {drawer, "timing", "Timing", "Where the time went, stage by stage", kCompared},
+    {drawer, "track", "Track", "The whole life of the selected track"},
+    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and to pick"},
+    {drawer, "log", "Log", "Every message"},
+    {window, "window", "Window", "All of the workbench"}});
 }();
 // clang-format on
 

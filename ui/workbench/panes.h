@@ -2,21 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/commands.h"
-
 #include <span>
 #include <string>
 #include <vector>
 
 namespace gpo {
-
-struct PanelInput;
-struct Rectangle;
-struct Views;
-
-/// Draws a pane into the part of the window that it fills, which is a panel already. One file each,
-/// in ui/panels.
-using DrawPane = void(const PanelInput&, const Rectangle&, Views&, Commands&);
 
 /// What a pane shows beside the current result, and so asks to be computed.
 struct PaneNeeds {
@@ -29,13 +19,12 @@ struct PaneNeeds {
 enum class PaneKind { picture, side, columns, drawer, window };
 
 /// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
-/// read its row.
+/// read its row; the function that draws it is in the table of ui/panels/panes.cpp.
 struct Pane {
   PaneKind kind;
   const char* key;      ///< in scripts, in sessions and on the command line
   const char* title;    ///< for people
   const char* tooltip;  ///< one sentence
-  DrawPane* draw;       ///< null: all of the window
   PaneNeeds needs = {};
   bool covers = false;     ///< draws over all of its background
   const char* alias = "";  ///< another name for it that commands accept

@@ -37,12 +37,36 @@ void count_frames(const Layout& layout, const fs::path& found, Glance& result) {
 }  // namespace
 
 std::span<const Layout> layouts() {
-  static constexpr auto kLayouts = std::to_array<Layout>(
-      {{"EuRoC", "cam0/data.csv (EuRoC)", "", find_euroc, has_euroc_pictures, read_euroc},
-       {"TUM RGB-D", "rgb.txt (TUM RGB-D)", "rgb.txt", find_tum, always, read_tum},
-       {"pictures", "a video or numbered pictures", "", find_pictures, always, read_pictures},
-       {"ROS bag", "a bag of ROS (bag, db3, mcap)", "", find_bag, always, read_bag, true},
-       {"tracks", "tracks.csv", "tracks.csv", any_folder, never, read_pictures}});
+  static constexpr auto kLayouts =
+      std::to_array<Layout>({{.title = "EuRoC",
+                              .expected = "cam0/data.csv (EuRoC)",
+                              .find = find_euroc,
+                              .has_pictures = has_euroc_pictures,
+                              .read = read_euroc},
+                             {.title = "TUM RGB-D",
+                              .expected = "rgb.txt (TUM RGB-D)",
+                              .file = "rgb.txt",
+                              .find = find_tum,
+                              .has_pictures = always,
+                              .read = read_tum},
+                             {.title = "pictures",
+                              .expected = "a video or numbered pictures",
+                              .find = find_pictures,
+                              .has_pictures = always,
+                              .read = read_pictures},
+                             {.title = "ROS bag",
+                              .expected = "a bag of ROS (bag, db3, mcap)",
+                              .find = find_bag,
+                              .has_pictures = always,
+                              .read = read_bag,
+                              .has_topics = true},
+                             {.title = "tracks",
+                              .expected = "tracks.csv",
+                              .file = "tracks.csv",
+                              .find = any_folder,
+                              .has_pictures = never,
+                              .read = read_pictures,
+                              .tracks_alone = true}});
   return kLayouts;
 }
 
@@ -53,8 +77,7 @@ Glance glance(const fs::path& path) {
     try {
       const auto found = layout.find(path);
       // Any folder would do for tracks alone.
-      const bool tracks_alone = &layout == &layouts().back();
-      if (!found || (tracks_alone && !fs::exists(path / layout.file, none))) continue;
+      if (!found || (layout.tracks_alone && !fs::exists(path / layout.file, none))) continue;
       result.layout = layout.title;
       count_frames(layout, *found, result);
       return result;

@@ -26,20 +26,20 @@ struct OpenOptions {
 
 /// One way in which recordings are stored.
 struct Layout {
-  const char* title;     ///< for people: "EuRoC"
-  const char* expected;  ///< by what it is recognized, in a list: "cam0/data.csv (EuRoC)"
-  const char* file;      ///< the name of a file in it that stands for the folder; empty: none does
+  const char* title = "";     ///< for people: "EuRoC"
+  const char* expected = "";  ///< by what it is recognized, in a list: "cam0/data.csv (EuRoC)"
+  const char* file = "";  ///< the name of a file in it that stands for the folder; empty: none does
   /// What `read` wants, where the path (a folder, or one file) has this layout.
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
   /// Whether it has pictures, so that tracks beside them are not wanted unless asked for.
   bool (*has_pictures)(const std::filesystem::path& found);
   /// Throws InputError. With tracks pictures may be missing.
   Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
-  bool has_topics = false;  ///< to choose from
+  bool has_topics = false;    ///< to choose from
+  bool tracks_alone = false;  ///< a folder that has tracks and no other layout
 };
 
-/// All of them, in the order in which they are tried. The last one is tracks alone, for what has
-/// tracks and no other layout.
+/// All of them, in the order in which they are tried.
 std::span<const Layout> layouts();
 
 /// What a folder or a file is, as far as its list of frames tells: no picture is decoded, no truth

@@ -48,8 +48,7 @@ std::optional<Found> find_layout(const fs::path& path, const OpenOptions& option
     if (!place) continue;
     Found found{&layout, *place, folder, {}};
     found.tracks = tracks_of(found, options);
-    const bool tracks_alone = &layout == &layouts().back();
-    if (!tracks_alone || found.tracks) return found;
+    if (!layout.tracks_alone || found.tracks) return found;
   }
   return std::nullopt;
 }
@@ -266,7 +265,9 @@ std::optional<double> moved_px(const Recording& recording, int first, int second
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
   const Found found = find_recording(path, options);
   Recording recording = read(found, options);
-  recording.layout = (recording.pictures ? *found.layout : layouts().back()).title;
+  recording.layout = recording.pictures
+                         ? found.layout->title
+                         : std::ranges::find(layouts(), true, &Layout::tracks_alone)->title;
   recording.path = path;
   recording.cache_folder = options.cache_folder;
   recording.name = name_of(is_recording_file(path) || is_folder(path) ? path : found.folder);

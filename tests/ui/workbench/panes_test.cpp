@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/panes.h"
 
+#include "ui/panels/panels.h"
 #include "ui/workbench/actions/actions.h"
 
 #include <set>
@@ -30,7 +31,7 @@ TEST(WorkbenchPanes, AreOpenedByAnActionEachAndToldApart) {
   for (const auto& panes : {side_panes(), drawers()})
     for (const Pane& pane : panes) {
       EXPECT_TRUE(keys.insert(pane.key).second) << pane.key;
-      EXPECT_NE(pane.draw, nullptr) << pane.key;
+      EXPECT_NE(draw_function(pane), nullptr) << pane.key;
       const Action& action = action_named(std::string("view ") + pane.key);
       EXPECT_EQ(action.title, pane.title);
       EXPECT_EQ(action.tooltip, pane.tooltip);
