@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those whose names are not taken yet, which then are.
+/// Returns the methods whose names are not taken yet, and takes these names.
 std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std::string>& taken) {
   std::erase_if(spelled, [&](const std::string& one) {
     return !taken.insert(one.substr(0, one.find('='))).second;

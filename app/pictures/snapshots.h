@@ -15,7 +15,7 @@
 
 namespace gpo {
 
-/// What methods are compared on: one window, or all its beginnings.
+/// A comparison of methods on one window, or on all its beginnings.
 struct ComparisonRequest {
   std::optional<std::string> methods;  ///< as `evaluate` reads them; default: the methods' table
   std::optional<std::string> lengths;  ///< of the windows; default: 5 to the window's, by 5
@@ -23,7 +23,7 @@ struct ComparisonRequest {
   MethodTable table = {};              ///< of methods
 };
 
-/// What is compared, in its order. Throws InputError.
+/// Returns the compared configurations in their order. Throws InputError.
 std::vector<Configuration> configurations_of(const ComparisonRequest& request);
 
 /// One picture of one recording.

@@ -93,8 +93,8 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::ranges::mismatch(folder, path).in1 == folder.end();
 }
 
-/// Where recordings of recipes are kept: in the build tree, or in the user's cache where the
-/// program was installed.
+/// Returns the folder of recordings made from recipes: in the build tree, or in the user's cache
+/// if the program is installed.
 fs::path made_recordings_folder() {
   fs::path built = GPO_RECORDINGS_DIR;
   if (is_below(program_folder(), built.parent_path())) return built;
@@ -142,7 +142,7 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 /// To be raised whenever another camera is found in the same pictures.
 constexpr int kAlgorithm = 2;
 
-/// Where the camera of these pictures is kept.
+/// Returns the file that caches the camera of these pictures.
 fs::path kept_file(const Recording& recording) {
   const std::string pictures =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();
@@ -150,7 +150,7 @@ fs::path kept_file(const Recording& recording) {
          fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(pictures));
 }
 
-/// What was kept may have been cut, or be another program's.
+/// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
 std::optional<Camera> kept_camera(const fs::path& file) {
   try {
     if (!fs::exists(file)) return std::nullopt;

@@ -147,7 +147,7 @@ std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
     }
     return one;
   };
-  /// What the gyroscope says, before and after; `of(rates, k)` is a sample's value.
+  /// Rates of the gyroscope before and after calibration; `of(rates, k)` is the value of a sample.
   const auto both = [&](const auto& of) {
     return std::vector{
         curve("gyroscope, as recorded", kBefore, [&](auto k) { return of(rates.before_rad_s, k); }),

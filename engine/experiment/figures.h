@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// What a figure compares.
+/// The comparison that a figure shows.
 struct FigurePlan {
   std::string name;  ///< of its files
   std::string title;
