@@ -5,7 +5,7 @@
 #include "app/main_with_errors.h"
 #include "app/methods/method_commands.h"
 #include "app/pages.h"
-#include "app/pictures/snapshots.h"
+#include "app/images/snapshots.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/quiet_libraries.h"
 #include "engine/base/error.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/pictures/video_encoder.h"
+#include "engine/recording/images/video_encoder.h"
 #include "ui/workbench/state.h"
 
 #include <functional>

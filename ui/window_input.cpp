@@ -115,7 +115,7 @@ Listener WindowInput::listener(const WorkbenchState& state) {
   return popup_is_open() ? Listener::popup : Listener::shortcuts;
 }
 
-Commands WindowInput::hand_on(const WorkbenchState& state) {
+Commands WindowInput::dispatch(const WorkbenchState& state) {
   Commands commands;
   queue_.begin_frame();
   const bool waits = has_field(state) && !ImGui::GetIO().WantTextInput;
@@ -123,12 +123,12 @@ Commands WindowInput::hand_on(const WorkbenchState& state) {
   while (queue_.has_next(listener(state))) {
     const InputEvent event = queue_.take();
     hand_to_imgui(window_, event);
-    heed(event, state, commands);
+    handle_event(event, state, commands);
   }
   return commands;
 }
 
-void WindowInput::heed(const InputEvent& event, const WorkbenchState& state, Commands& commands) {
+void WindowInput::handle_event(const InputEvent& event, const WorkbenchState& state, Commands& commands) {
   if (event.kind == Kind::drop) push(commands, OpenPath{event.path});
   if (event.kind == Kind::key) heed_key(event, state, commands);
   if (event.kind == Kind::character) heed_character(event, state, commands);

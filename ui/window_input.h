@@ -22,13 +22,13 @@ class WindowInput {
 
   /// Before each frame: hands on to Dear ImGui what belongs to it. Returns what of it are commands.
   /// The rest waits for the next frame.
-  Commands hand_on(const WorkbenchState& state);
+  Commands dispatch(const WorkbenchState& state);
   /// Whether something waits for the next frame.
   bool waiting() const { return !queue_.empty(); }
 
  private:
   Listener listener(const WorkbenchState& state);
-  void heed(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void handle_event(const InputEvent& event, const WorkbenchState& state, Commands& commands);
   void heed_key(const InputEvent& event, const WorkbenchState& state, Commands& commands);
   void heed_character(const InputEvent& event, const WorkbenchState& state, Commands& commands);
 

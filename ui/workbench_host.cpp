@@ -15,7 +15,7 @@ namespace gpo {
 namespace {
 
 /// "desk-0029.png", or with a number where that is taken.
-std::filesystem::path free_picture_name(const WorkbenchState& state) {
+std::filesystem::path free_image_name(const WorkbenchState& state) {
   const std::string stem =
       state.document.recording
           ? fmt::format("{}-{:04}", state.document.recording->name, state.view.frame)
@@ -73,7 +73,7 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   return draw_workbench(shown, size, gui_, views_, delta_seconds);
 }
 
-cv::Mat WorkbenchHost::picture(const std::string& view, std::optional<cv::Size> wanted) {
+cv::Mat WorkbenchHost::image(const std::string& view, std::optional<cv::Size> wanted) {
   return draw_view(view, wanted, input(), size, gui_, views_);
 }
 
@@ -97,10 +97,10 @@ void WorkbenchHost::write_movie() {
 
 void WorkbenchHost::save(const Screenshot& screenshot) {
   const std::filesystem::path file =
-      screenshot.file.empty() ? free_picture_name(state) : screenshot.file;
+      screenshot.file.empty() ? free_image_name(state) : screenshot.file;
   try {
     check_writable(file);
-    write_picture(file, picture(screenshot.view, screenshot.size));
+    write_image(file, image(screenshot.view, screenshot.size));
     say(state, "saved " + file.string());
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);

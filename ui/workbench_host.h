@@ -47,7 +47,7 @@ class WorkbenchHost {
   bool redrawn() const { return !views_.window.redrawn().empty(); }
   /// The window, or one view of it alone, at any size: CV_8UC3, BGR, with all of its pictures.
   /// Throws InputError for an unknown view.
-  cv::Mat picture(const std::string& view, std::optional<cv::Size> wanted = {});
+  cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:
   PanelInput input() const;
@@ -59,7 +59,7 @@ class WorkbenchHost {
   std::optional<Movie> movie_;  ///< is being written
   JobStatus movie_status_;      ///< how far it is
   Views views_;
-  PictureFetcher fetcher_;
+  ImageFetcher fetcher_;
   FolderLister lister_;
   Survey survey_;
   Scan scan_;

@@ -9,7 +9,7 @@
 #include "ui/context/theme.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <GL/glew.h>
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ void draw_views(const PanelInput& input,
   if (layout.views.empty()) return;
   if (!input.state.document.recording) return empty_panel(input, layout.views, commands);
   if (input.state.view.panes.compare) return compare_panel(input, layout.views, views, commands);
-  if (!layout.picture.empty()) image_panel(input, layout.picture, views, commands);
+  if (!layout.image.empty()) image_panel(input, layout.image, views, commands);
   if (layout.side.empty()) return;
   side_tabs(input, layout.side_tabs, commands);
   side_pane(input, layout.side, views, commands);
@@ -48,7 +48,7 @@ void draw_views(const PanelInput& input,
 void use_theme(const PanelInput& input, Gui& gui, Views& views) {
   if (gui.theme() == input.state.view.theme) return;
   gui.set_theme(input.state.view.theme);
-  views.window = WindowPicture();
+  views.window = WindowImage();
 }
 
 /// Nothing is lit up any more when the mouse leaves the views.
@@ -118,7 +118,7 @@ cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
   const Camera& camera = input.state.document.recording->camera;
-  if (pane.kind == PaneKind::picture) return {camera.width, camera.height};
+  if (pane.kind == PaneKind::image) return {camera.width, camera.height};
   const bool below = pane.kind == PaneKind::drawer;
   const WindowLayout layout = window_layout(
       static_cast<float>(window.width), static_cast<float>(window.height), input.scale, {}, below);
@@ -171,7 +171,7 @@ cv::Mat snapshot_pane(const std::string& view,
   constexpr int kWidth = 1280, kHeight = 720;
   WorkbenchState state;
   state.document.settings = inspection->settings;
-  adopt(state, inspection->recording);
+  apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
   state.messages.text.clear();
   const Pane& pane = pane_named(view);

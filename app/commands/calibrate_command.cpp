@@ -151,7 +151,7 @@ void refuse_board_options(const CalibrateArguments& arguments) {
 int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
   refuse_board_options(arguments);
   const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
-  if (!opened->pictures)
+  if (!opened->images)
     throw InputError(recording.string() + ": found no pictures, expected a video or pictures");
   const SelfCalibration calibration = self_calibrate(*opened);
   if (!calibration.lens.ok) {
@@ -176,10 +176,10 @@ int calibrate_command(const CalibrateArguments& arguments) {
   const CalibrationOptions options = options_of(arguments);
   const Board board = board_of(arguments, recording);
   question_square(board.square_m);
-  const auto pictures = open_pictures(recording, kCacheBytes, arguments.topics);
+  const auto images = open_images(recording, kCacheBytes, arguments.topics);
   ProgressBar bar("looking for the board");
   const BoardSearch search = find_calibration_views(
-      *pictures, board, kMostFrames, [&](int done, int of) { bar.show(done, of); });
+      *images, board, kMostFrames, [&](int done, int of) { bar.show(done, of); });
   const CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) {
     fmt::print("calibration failed: {}\n", calibration.reason);

@@ -21,7 +21,7 @@ namespace gpo {
 namespace {
 
 void write_figure(const std::filesystem::path& file,
-                  const std::vector<PictureRotations>& windows,
+                  const std::vector<ImageRotations>& windows,
                   const Recording& recording,
                   const GyroscopeFit& fit) {
   const Figure figure{
@@ -33,7 +33,7 @@ void write_figure(const std::filesystem::path& file,
                   1e3 * fit.time_offset_sigma_s,
                   fit.rotation_sigma_deg.maxCoeff(),
                   fit.rms_deg)};
-  write_picture(file, draw_figure(figure, default_figure_size(figure)));
+  write_image(file, draw_figure(figure, default_figure_size(figure)));
 }
 
 }  // namespace

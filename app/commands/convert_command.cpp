@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Stored, or computed from a board in view.
 std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_token& stop) {
-  if (recording.truth || !recording.board || !recording.pictures) return recording.truth;
+  if (recording.truth || !recording.board || !recording.images) return recording.truth;
   ProgressBar bar("finding the board");
   return board_truth(
       recording, 0, recording.frame_count(), stop, [&](int done, int of) { bar.show(done, of); });

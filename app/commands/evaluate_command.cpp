@@ -30,7 +30,7 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = Pace::Clock;
+using Clock = ReportTimer::Clock;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 
 /// No more recordings than jobs are in work at once; the others keep no pictures.
@@ -62,7 +62,7 @@ class ProgressLine {
     const auto now = Clock::now();
     const bool last = progress.done == progress.of;
     const bool first = std::exchange(first_, false);
-    if (!terminal_ && !first && !last && !pace_.due(now)) return;
+    if (!terminal_ && !first && !last && !report_timer_.due(now)) return;
     fmt::print(stderr,
                "{}evaluating {}/{} windows{}{}",
                terminal_ ? "\r" : "",
@@ -82,7 +82,7 @@ class ProgressLine {
 
   const bool terminal_ = progress_is_watched();
   const Clock::time_point begin_ = Clock::now();
-  Pace pace_{begin_};
+  ReportTimer report_timer_{begin_};
   bool first_ = true;
 };
 
@@ -105,7 +105,7 @@ void write_figure(const fs::path& folder,
   const FigureSheet sheet = width_mm ? printed_sheet(figure, *width_mm)
                                      : screen_sheet(figure, default_figure_size(figure));
   const double px_per_unit = width_mm ? sheet.unit_mm / 25.4 * kPrint_dpi : 1;
-  write_picture(folder / (figure.name + ".png"), figure_picture(figure, sheet, px_per_unit));
+  write_image(folder / (figure.name + ".png"), figure_image(figure, sheet, px_per_unit));
   write_file(folder / (figure.name + ".svg"), figure_svg(figure, sheet));
   write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }

@@ -41,7 +41,7 @@ std::string why_gyroscope_does_not_fit(const std::shared_ptr<const Recording>& r
   constexpr int kWindows = 12;
   constexpr int kLeastFrames = 20;
   if (!recording->gyroscope || recording->frame_count() < kLeastFrames) return "";
-  if (!recording->pictures && recording->tracks.empty()) return "";
+  if (!recording->images && recording->tracks.empty()) return "";
   const auto windows = rotations_over_recording(recording, kWindows);
   return why_it_does_not_fit(
       fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);

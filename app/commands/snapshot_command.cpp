@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/commands/setting_options.h"
-#include "app/pictures/snapshots.h"
+#include "app/images/snapshots.h"
 #include "app/terminal/output.h"
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
-#include "ui/views/picture_compare.h"
+#include "ui/views/image_compare.h"
 #include "ui/workbench/session/script.h"
 
 #include <array>
@@ -49,12 +49,12 @@ DrawnView draw(const SnapshotArguments& arguments,
 }
 
 cv::Mat read_baseline(const fs::path& file) {
-  cv::Mat picture = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (picture.empty()) {
+  cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR);
+  if (image.empty()) {
     throw InputError(
         fmt::format("--baseline: {} is not a picture that can be read", file.string()));
   }
-  return picture;
+  return image;
 }
 
 /// Where the picture and the baseline are drawn as they differ.
@@ -62,28 +62,28 @@ fs::path difference_file(const SnapshotArguments& arguments) {
   return fs::path(arguments.output).replace_extension(".diff.png");
 }
 
-int tell_other_size(const cv::Mat& picture,
+int tell_other_size(const cv::Mat& image,
                     const cv::Mat& baseline,
                     const SnapshotArguments& arguments) {
   fmt::print("differs from {}: the baseline is {}x{}, the picture {}x{}; see {}\n",
              arguments.baseline->string(),
              baseline.cols,
              baseline.rows,
-             picture.cols,
-             picture.rows,
+             image.cols,
+             image.rows,
              arguments.output.string());
   return kFailed;
 }
 
-int compare(const cv::Mat& picture, const cv::Mat& baseline, const SnapshotArguments& arguments) {
-  if (picture.size() != baseline.size()) return tell_other_size(picture, baseline, arguments);
-  const PictureComparison comparison = compare_pictures(picture, baseline, arguments.tolerance);
+int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArguments& arguments) {
+  if (image.size() != baseline.size()) return tell_other_size(image, baseline, arguments);
+  const ImageComparison comparison = compare_images(image, baseline, arguments.tolerance);
   fmt::print("pixels that differ by more than");
-  for (std::size_t k = 0; k < PictureComparison::kSweep.size(); ++k) {
-    fmt::print(" {}: {}{}", PictureComparison::kSweep[k], comparison.beyond[k], k < 3 ? "," : "\n");
+  for (std::size_t k = 0; k < ImageComparison::kSweep.size(); ++k) {
+    fmt::print(" {}: {}{}", ImageComparison::kSweep[k], comparison.beyond[k], k < 3 ? "," : "\n");
   }
   if (comparison.equal) return kDone;
-  write_picture(difference_file(arguments), comparison.difference);
+  write_image(difference_file(arguments), comparison.difference);
   fmt::print("differs from {}: {}; see {} and {}\n",
              arguments.baseline->string(),
              comparison.reason,
@@ -113,7 +113,7 @@ void check_required(const SnapshotArguments& arguments) {
 
 int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own) {
   const auto size =
-      arguments.size ? std::optional(picture_size(*arguments.size, "--size")) : std::nullopt;
+      arguments.size ? std::optional(image_size(*arguments.size, "--size")) : std::nullopt;
   if (arguments.script)
     return script_command(
         *arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)), own);
@@ -126,12 +126,12 @@ int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own) {
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   tell_unused_by_view(arguments);
   const DrawnView drawn = draw(arguments, size, own.table);
-  const cv::Mat& picture = drawn.picture;
+  const cv::Mat& image = drawn.image;
   make_folder(folder_of(fs::absolute(arguments.output)));
-  write_picture(arguments.output, picture);
+  write_image(arguments.output, image);
   if (!drawn.ok) return kFailed;
-  fmt::print("{}: {}x{}\n", arguments.output.string(), picture.cols, picture.rows);
-  return arguments.baseline ? compare(picture, baseline, arguments) : kDone;
+  fmt::print("{}: {}x{}\n", arguments.output.string(), image.cols, image.rows);
+  return arguments.baseline ? compare(image, baseline, arguments) : kDone;
 }
 
 }  // namespace gpo

@@ -82,7 +82,7 @@ struct Session {
     while (!answer && !window.should_close()) {
       const cv::Size size = window.size();
       window.bind();
-      input.hand_on(host.state);
+      input.dispatch(host.state);
       if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
       window.swap();
       if (!answer) window.wait(kBetweenQuestions_s);
@@ -138,7 +138,7 @@ struct Session {
 
   /// What was done in the window, before the frame that shows it; whether there was anything.
   bool heed_input() {
-    const Commands commands = input.hand_on(host.state);
+    const Commands commands = input.dispatch(host.state);
     for (const Command& command : commands) apply(host.state, command);
     return !commands.empty();
   }
@@ -192,7 +192,7 @@ int view_command(const ViewArguments& arguments, OwnMethods& own) {
   session.host.state.files.has_last_session = std::filesystem::exists(last_session_file());
   session.host.state.document.settings = settings;
   session.host.state.requests.open = session_file ? session_file : recording;
-  const KeptWindow kept = read_kept_window(session.host.state);
+  const SavedWindow kept = read_saved_window(session.host.state);
   const float scale = session.gui.scale();
   session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)
                                        : cv::Size(cvRound(1280 * scale), cvRound(720 * scale)));
@@ -200,7 +200,7 @@ int view_command(const ViewArguments& arguments, OwnMethods& own) {
   session.run();
   save_last_session(session.host.state);
   const cv::Size size = session.window.place().size();
-  keep_window({size.width, size.height}, session.host.state);
+  save_window({size.width, size.height}, session.host.state);
   return kDone;
 }
 

@@ -127,7 +127,7 @@ void OwnMethods::add_session(const fs::path& file) {
   if (!is_session(file)) return;
   std::set<std::string> taken;
   for (const auto& method : table.own()) taken.insert(method->key);
-  SpelledMethods fresh = methods_in_session(file);
+  MethodSpecs fresh = methods_in_session(file);
   fresh.commands = take_new(std::move(fresh.commands), taken);
   fresh.results = take_new(std::move(fresh.results), taken);
   if (!allow_commands_) check_can_be_shown(fresh.commands);
@@ -144,7 +144,7 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
       table.add(method_of_shard(name, identity, static_cast<int>(table.own().size())));
 }
 
-void OwnMethods::add(const SpelledMethods& spelled, const CommandOptions& options) {
+void OwnMethods::add(const MethodSpecs& spelled, const CommandOptions& options) {
   MethodTable more = table;
   const auto number = [&] { return static_cast<int>(more.own().size()); };
   for (const std::string& text : spelled.commands) {

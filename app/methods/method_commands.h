@@ -4,7 +4,7 @@
 
 #include "app/methods/method_log.h"
 #include "engine/external_methods/command_method.h"
-#include "engine/external_methods/spelled_methods.h"
+#include "engine/external_methods/method_specs.h"
 
 #include <atomic>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace gpo {
 
 /// The user's own methods, as the command line tells them.
 struct MethodArguments {
-  SpelledMethods spelled;
+  MethodSpecs spelled;
   double timeout_s = 30;        ///< of a command, a window
   bool allow_commands = false;  ///< those of sessions are started, too
 };
@@ -44,7 +44,7 @@ class OwnMethods {
   std::shared_ptr<std::atomic<bool>> allowed;
 
  private:
-  void add(const SpelledMethods& spelled, const CommandOptions& options);
+  void add(const MethodSpecs& spelled, const CommandOptions& options);
   CommandOptions options_;
   bool allow_commands_;
 };

@@ -51,17 +51,17 @@ inline pybind11::array centers_of(std::span<const Pose> poses, std::shared_ptr<c
 }
 
 /// A picture of 8 bits: H x W x channels, or H x W of one channel.
-inline pybind11::array picture_array(const cv::Mat& picture) {
-  const auto owner = std::make_shared<const cv::Mat>(picture);
-  const auto row = static_cast<pybind11::ssize_t>(picture.step[0]);
-  const auto channels = static_cast<pybind11::ssize_t>(picture.channels());
-  std::vector<pybind11::ssize_t> shape{picture.rows, picture.cols};
+inline pybind11::array image_array(const cv::Mat& image) {
+  const auto owner = std::make_shared<const cv::Mat>(image);
+  const auto row = static_cast<pybind11::ssize_t>(image.step[0]);
+  const auto channels = static_cast<pybind11::ssize_t>(image.channels());
+  std::vector<pybind11::ssize_t> shape{image.rows, image.cols};
   std::vector<pybind11::ssize_t> strides{row, channels};
   if (channels > 1) {
     shape.push_back(channels);
     strides.push_back(1);
   }
-  return seen_by_numpy(picture.data, std::move(shape), std::move(strides), owner);
+  return seen_by_numpy(image.data, std::move(shape), std::move(strides), owner);
 }
 
 }  // namespace gpo

@@ -17,14 +17,14 @@ namespace {
 
 namespace py = pybind11;
 
-py::array frame_picture(const OpenRecording& open, int frame) {
+py::array frame_image(const OpenRecording& open, int frame) {
   const SharedRecording& recording = open.shared;
-  if (!recording->pictures) throw InputError(recording->name + " has no pictures");
+  if (!recording->images) throw InputError(recording->name + " has no pictures");
   const int count = recording->frame_count();
   if (frame < 0 || frame >= count)
     throw py::index_error(
         fmt::format("frame {} of {}, which has {}", frame, recording->name, count));
-  return picture_array(interruptible([&](const auto&) { return recording->pictures->bgr(frame); }));
+  return image_array(interruptible([&](const auto&) { return recording->images->bgr(frame); }));
 }
 
 py::object gyroscope_arrays(const OpenRecording& open) {
@@ -105,7 +105,7 @@ void bind_recording(py::module_& module) {
           "camera_source",
           [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
           "file, self-calibrated or guess")
-      .def("frame", &frame_picture, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
+      .def("frame", &frame_image, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
       .def_property_readonly("gyroscope",
                              &gyroscope_arrays,
                              "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "

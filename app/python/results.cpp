@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/pictures/snapshots.h"
+#include "app/images/snapshots.h"
 #include "app/python/arrays.h"
 #include "app/python/bindings.h"
 #include "app/python/interruptible.h"
@@ -157,8 +157,8 @@ py::array snapshot(const RecordingOrPath& recording,
   ViewRequest request{view, frame, {}, {methods, std::nullopt, settings_of(given)}};
   if (size) request.size = cv::Size(size->first, size->second);
   const SharedRecording open = opened(recording);
-  return picture_array(interruptible(
-      [&](const std::stop_token& stop) { return draw_view(open, request, stop).picture; }));
+  return image_array(interruptible(
+      [&](const std::stop_token& stop) { return draw_view(open, request, stop).image; }));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ constexpr const char* kItsFolder = "a recording, such as the folder that it lies
 constexpr std::array<KnownFile, 7> kKnownFiles = {
     {{is_session, "a session", "a recording; `view --session` opens it"},
      {is_results, "results of `evaluate`", "a recording; the window opens it"},
-     {is_picture_name, "one picture", "a recording, such as a folder of numbered pictures"},
+     {is_image_name, "one picture", "a recording, such as a folder of numbered pictures"},
      {is_board, "the description of a printed board", kItsFolder},
      {is_plane, "the true plane of a recording", kItsFolder},
      {is_mounting, "how a truth was measured", kItsFolder},
@@ -144,10 +144,10 @@ constexpr int kAlgorithm = 2;
 
 /// Returns the file that caches the camera of these pictures.
 fs::path kept_file(const Recording& recording) {
-  const std::string pictures =
+  const std::string images =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(pictures));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(images));
 }
 
 /// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
@@ -173,7 +173,7 @@ SelfCalibration calibrate(const Recording& recording,
                           const std::stop_token& stop) {
   // Without its axes a gyroscope tells nothing of the camera.
   const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
-  return calibrate_from_plane(*recording.pictures,
+  return calibrate_from_plane(*recording.images,
                               start_of(recording),
                               with_gyroscope ? &*recording.gyroscope : nullptr,
                               recording.timestamps_ns,
@@ -241,7 +241,7 @@ namespace {
 /// where there is none and `calibrates`, finds one now and keeps it there. Where it cannot be
 /// found, a note says why and the guess stays.
 void use_found_camera(Recording& recording, bool calibrates) {
-  if (!recording.pictures) return;
+  if (!recording.images) return;
   const fs::path file = kept_file(recording);
   if (const auto camera = kept_camera(file)) {
     set_camera(recording, *camera, CameraSource::self_calibrated, "kept in " + file.string());

@@ -23,7 +23,7 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::show(int done, int of) {
   if (!progress_is_watched()) {
-    if (pace_.due(Pace::Clock::now())) fmt::print(stderr, "{}: {}/{} frames\n", title_, done, of);
+    if (report_timer_.due(ReportTimer::Clock::now())) fmt::print(stderr, "{}: {}/{} frames\n", title_, done, of);
     return;
   }
   const int filled = kBarLength * done / of;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/pace.h"
+#include "engine/base/report_timer.h"
 
 #include <string>
 
@@ -25,7 +25,7 @@ class ProgressBar {
 
  private:
   std::string title_;
-  Pace pace_{Pace::Clock::now()};
+  ReportTimer report_timer_{ReportTimer::Clock::now()};
   bool begun_ = false;
 };
 

@@ -136,7 +136,7 @@ void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficien
 }
 
 /// The farthest corner of the picture from its middle [focal lengths].
-double picture_radius(const Camera& camera) {
+double image_radius(const Camera& camera) {
   const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
   const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
   return std::hypot(x / camera.fx, y / camera.fy);
@@ -150,7 +150,7 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
   if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;
   const Camera& camera = estimate.solution->camera;
   const auto known = coefficients_of(camera.distortion);
-  const double radius = picture_radius(camera);
+  const double radius = image_radius(camera);
   for (std::size_t k = camera.coefficients.size(); k-- > 0;) {
     const double sigma = estimate.sigmas[4 + k];
     const double shift = sigma * std::pow(radius, known[k].power);

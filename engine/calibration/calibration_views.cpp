@@ -169,16 +169,16 @@ std::vector<Candidate> sharp_candidates(const BoardSearch& search, const Board& 
 
 }  // namespace
 
-BoardSearch find_calibration_views(const FrameCache& pictures,
+BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
                                    const std::function<void(int done, int of)>& progress,
                                    const std::stop_token& stop) {
-  const std::vector<int> frames = regular_sample(pictures.count(), most_frames);
+  const std::vector<int> frames = regular_sample(images.count(), most_frames);
   BoardSearch search;
-  search.size = pictures.bgr(frames.front()).size();
+  search.size = images.bgr(frames.front()).size();
   std::mutex mutex;
-  const auto look = [&](int frame, const cv::Mat& gray) {
+  const auto patch = [&](int frame, const cv::Mat& gray) {
     if (gray.size() != search.size) {
       throw InputError(fmt::format("picture {}: found {}x{} pixels, expected {}x{} as in the first",
                                    frame,
@@ -196,7 +196,7 @@ BoardSearch find_calibration_views(const FrameCache& pictures,
     if (found) search.views.push_back(std::move(view));
     if (progress) progress(search.examined, static_cast<int>(frames.size()));
   };
-  for_each_picture(pictures, frames, stop, look);
+  for_each_image(images, frames, stop, patch);
   std::ranges::sort(search.views, {}, &CalibrationView::frame);
   return search;
 }

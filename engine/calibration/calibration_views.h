@@ -30,7 +30,7 @@ struct BoardSearch {
 /// Looks for the board in a regular sample of at most `most_frames` pictures, on all processors.
 /// Views with fewer than 8 corners are left out. Throws InputError where a picture cannot be
 /// decoded, or has another size than the first.
-BoardSearch find_calibration_views(const FrameCache& pictures,
+BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
                                    const std::function<void(int done, int of)>& progress = {},

@@ -23,7 +23,7 @@ constexpr double kKneeInMedians = 2;  // of Huber's loss, in medians
 
 /// Wahba's problem by singular values (Markley 1988), reweighted.
 GyroAlignment align(const Pairs& pairs) {
-  const std::size_t n = pairs.pictures.size();
+  const std::size_t n = pairs.images.size();
   GyroAlignment result;
   if (n < kLeastIntervals) return result;
   std::vector<double> weights(n, 1);
@@ -32,20 +32,20 @@ GyroAlignment align(const Pairs& pairs) {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
       mean_g += weights[k] * pairs.gyroscope[k];
-      mean_p += weights[k] * pairs.pictures[k];
+      mean_p += weights[k] * pairs.images[k];
       sum += weights[k];
     }
     mean_g /= sum;
     mean_p /= sum;
     Matrix3d B = Matrix3d::Zero();
     for (std::size_t k = 0; k < n; ++k)
-      B += weights[k] * (pairs.gyroscope[k] - mean_g) * (pairs.pictures[k] - mean_p).transpose();
+      B += weights[k] * (pairs.gyroscope[k] - mean_g) * (pairs.images[k] - mean_p).transpose();
     result.R = nearest_rotation(B);
     result.bias = mean_g - result.R * mean_p;
     result.errors_rad_s.resize(n);
     for (std::size_t k = 0; k < n; ++k)
       result.errors_rad_s[k] =
-          (pairs.gyroscope[k] - result.R * pairs.pictures[k] - result.bias).norm();
+          (pairs.gyroscope[k] - result.R * pairs.images[k] - result.bias).norm();
     const double knee = std::max(1e-6, kKneeInMedians * median(result.errors_rad_s));
     result.cost = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -63,9 +63,9 @@ std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(1e9 * seconds));
 }
 
-std::vector<Interval> intervals_of(const std::vector<PictureRotations>& windows) {
+std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows) {
   std::vector<Interval> all;
-  for (const PictureRotations& window : windows) {
+  for (const ImageRotations& window : windows) {
     for (std::size_t i = 1; i < window.R_wc.size(); ++i) {
       const std::int64_t from_ns = window.timestamps_ns[i - 1];
       const std::int64_t to_ns = window.timestamps_ns[i];
@@ -85,16 +85,16 @@ Pairs pairs_at(const RateIntegral& integral,
     const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
     if (!rate) continue;
     pairs.gyroscope.push_back(*rate);
-    pairs.pictures.push_back(one.rate_rad_s);
+    pairs.images.push_back(one.rate_rad_s);
   }
   return pairs;
 }
 
 double correlation_of(const Pairs& pairs) {
   std::vector<double> a, b;
-  for (std::size_t k = 0; k < pairs.pictures.size(); ++k) {
+  for (std::size_t k = 0; k < pairs.images.size(); ++k) {
     a.push_back(pairs.gyroscope[k].norm());
-    b.push_back(pairs.pictures[k].norm());
+    b.push_back(pairs.images[k].norm());
   }
   const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
   const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
@@ -110,7 +110,7 @@ std::optional<GyroscopeStart> best_start(const RateIntegral& integral,
   for (int k = -steps; k <= steps; ++k) {
     const double offset_s = around_s + k * kOffsetStep_s;
     const Pairs pairs = pairs_at(integral, intervals, offset_s);
-    if (2 * pairs.pictures.size() < intervals.size()) continue;
+    if (2 * pairs.images.size() < intervals.size()) continue;
     const GyroAlignment alignment = align(pairs);
     if (!best || alignment.cost < best->alignment.cost) best = GyroscopeStart{offset_s, alignment};
   }

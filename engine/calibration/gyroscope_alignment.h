@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/window/gyroscope.h"
-#include "engine/window/picture_rotations.h"
+#include "engine/window/image_rotations.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -57,12 +57,12 @@ struct Interval {
   Eigen::Vector3d rate_rad_s;  ///< camera axes
 };
 
-std::vector<Interval> intervals_of(const std::vector<PictureRotations>& windows);
+std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
 
 /// Rates of gyroscope and pictures over the same spans.
 struct Pairs {
   std::vector<Eigen::Vector3d> gyroscope;
-  std::vector<Eigen::Vector3d> pictures;
+  std::vector<Eigen::Vector3d> images;
 };
 
 /// Without the intervals that the samples do not cover.

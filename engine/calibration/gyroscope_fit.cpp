@@ -51,7 +51,7 @@ State moved(const State& state, const Parameters& step) {
 
 /// One window and the samples around it.
 struct Observed {
-  const PictureRotations* window;
+  const ImageRotations* window;
   Gyroscope samples;
   double from_middle_s;  ///< of the recording to the window's first frame
 };
@@ -87,7 +87,7 @@ Gyroscope samples_around(const Gyroscope& gyroscope, std::int64_t from_ns, std::
   return part;
 }
 
-std::vector<Observed> observed_windows(const std::vector<PictureRotations>& windows,
+std::vector<Observed> observed_windows(const std::vector<ImageRotations>& windows,
                                        const Gyroscope& gyroscope,
                                        const State& state) {
   constexpr double kMargin_s = 0.2;
@@ -95,7 +95,7 @@ std::vector<Observed> observed_windows(const std::vector<PictureRotations>& wind
       windows.front().timestamps_ns.front() +
       (windows.back().timestamps_ns.back() - windows.front().timestamps_ns.front()) / 2;
   std::vector<Observed> all;
-  for (const PictureRotations& window : windows) {
+  for (const ImageRotations& window : windows) {
     const std::int64_t first_ns = window.timestamps_ns.front() + to_ns(state.offset_s - kMargin_s);
     const std::int64_t last_ns = window.timestamps_ns.back() + to_ns(state.offset_s + kMargin_s);
     const double from_middle_s =
@@ -287,7 +287,7 @@ std::string why_useless(const GyroscopeFit& fit) {
 
 }  // namespace
 
-GyroscopeFit fit_gyroscope(const std::vector<PictureRotations>& windows,
+GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
                            const Gyroscope& gyroscope) {
   const std::vector<Interval> intervals = intervals_of(windows);
   if (intervals.size() < kLeastIntervals)
@@ -326,7 +326,7 @@ GyroscopeFit fit_gyroscope(const std::vector<PictureRotations>& windows,
     fit.drift = refined->state.drift;
     fit.drift_sigma = sigmas(7);
   }
-  std::vector<PictureRotations> used;
+  std::vector<ImageRotations> used;
   used.reserve(observed.size());
   for (const Observed& one : observed) used.push_back(*one.window);
   fit.correlation = correlation_of(pairs_at(integral, intervals_of(used), fit.time_offset_s));
@@ -344,7 +344,7 @@ GyroscopeFit fit_gyroscope(const std::vector<PictureRotations>& windows,
   return fit;
 }
 
-RatesOverTime rates_over_time(const std::vector<PictureRotations>& windows,
+RatesOverTime rates_over_time(const std::vector<ImageRotations>& windows,
                               const Gyroscope& gyroscope,
                               const GyroscopeFit& fit) {
   const RateIntegral integral(gyroscope);
@@ -362,7 +362,7 @@ RatesOverTime rates_over_time(const std::vector<PictureRotations>& windows,
   for (const Interval& one : intervals) {
     const std::int64_t middle_ns = one.from_ns + (one.to_ns - one.from_ns) / 2;
     rates.time_s.push_back(1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns));
-    rates.pictures_rad_s.push_back(one.rate_rad_s);
+    rates.images_rad_s.push_back(one.rate_rad_s);
     rates.before_rad_s.push_back(camera_rate(one,
                                              1e-9 * static_cast<double>(gyroscope.time_offset_ns),
                                              gyroscope.R_gyro_camera,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/window/gyroscope.h"
-#include "engine/window/picture_rotations.h"
+#include "engine/window/image_rotations.h"
 
 #include <optional>
 #include <string>
@@ -40,18 +40,18 @@ struct GyroscopeFit {
 /// turns the gyroscope's rates into the pictures' (Wahba's problem; any of the 24 ways in which
 /// axes may be named, too), then all together by robust least squares over the windows' rotations.
 /// No rotation is tried that mirrors; axes that would fit far better mirrored are told.
-GyroscopeFit fit_gyroscope(const std::vector<PictureRotations>& windows,
+GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
                            const Gyroscope& gyroscope);
 
 /// Angular rates over time, camera axes, at the middles between a window's frames.
 struct RatesOverTime {
   std::vector<double> time_s;  ///< from the first one on, camera clock
-  std::vector<Eigen::Vector3d> pictures_rad_s;
+  std::vector<Eigen::Vector3d> images_rad_s;
   std::vector<Eigen::Vector3d> before_rad_s;  ///< the gyroscope's, as the recording has it
   std::vector<Eigen::Vector3d> after_rad_s;   ///< fitted
 };
 
-RatesOverTime rates_over_time(const std::vector<PictureRotations>& windows,
+RatesOverTime rates_over_time(const std::vector<ImageRotations>& windows,
                               const Gyroscope& gyroscope,
                               const GyroscopeFit& fit);
 

@@ -81,11 +81,11 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
               "{} used{}",
               fit.windows,
               fit.outliers > 0 ? fmt::format(", {} left out that disagree", fit.outliers) : ""));
-  const Vector3d turn = so3_log(fit.R_gyro_camera);
+  const Vector3d rotation = so3_log(fit.R_gyro_camera);
   const double apart_deg = rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera);
   text += row("rotation",
               fmt::format("{} deg, {:.2f} deg from the recording's{}",
-                          vector_text(degrees(1) * turn, 2),
+                          vector_text(degrees(1) * rotation, 2),
                           apart_deg,
                           axes(fit.R_gyro_camera)));
   text +=
@@ -131,7 +131,7 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
 }
 
 std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
-  constexpr std::uint32_t kPictures = 0x222222, kBefore = 0xD55E00, kAfter = 0x0072B2;
+  constexpr std::uint32_t kImages = 0x222222, kBefore = 0xD55E00, kAfter = 0x0072B2;
   const auto curve = [&](const char* name, std::uint32_t rgb, const auto& value) {
     Curve one;
     one.name = name;
@@ -161,15 +161,15 @@ std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
                       .y_label = "rate [rad/s]",
                       .curves = both(of)});
     auto& curves = charts.back().curves;
-    curves.insert(curves.begin(), curve("pictures", kPictures, [&](std::size_t k) {
-                    return of(rates.pictures_rad_s, k);
+    curves.insert(curves.begin(), curve("pictures", kImages, [&](std::size_t k) {
+                    return of(rates.images_rad_s, k);
                   }));
   }
   charts.push_back({.title = "what is left",
                     .x_label = "time [s]",
                     .y_label = "|difference| [rad/s]",
                     .curves = both([&](const auto& all, std::size_t k) {
-                      return (all[k] - rates.pictures_rad_s[k]).norm();
+                      return (all[k] - rates.images_rad_s[k]).norm();
                     })});
   return charts;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/self_calibration.h"
 
-#include "engine/calibration/sights/gyro_turns.h"
+#include "engine/calibration/plane_views/gyro_rotations.h"
 
 #include <algorithm>
 #include <map>
@@ -29,7 +29,7 @@ std::vector<PlaneChain> longest(std::vector<PlaneChain> chains, int most) {
 
 }  // namespace
 
-SelfCalibration calibrate_from_plane(const FrameCache& pictures,
+SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const Gyroscope* gyroscope,
                                      std::span<const std::int64_t> frame_times_ns,
@@ -42,27 +42,27 @@ SelfCalibration calibrate_from_plane(const FrameCache& pictures,
     };
   };
   SelfCalibration result;
-  ChainPictures chained{[&](int frame) { return pictures.gray(frame); },
-                        pictures.count(),
-                        1 + (pictures.count() - 1) / options.most_frames,
+  ChainImages chained{[&](int frame) { return images.gray(frame); },
+                        images.count(),
+                        1 + (images.count() - 1) / options.most_frames,
                         told("following a plane"),
                         stop};
   result.frames = (chained.frames + chained.step - 1) / chained.step;
   const Camera bent = with_likely_bend(chained, guess, options.chain);
   const auto chains = longest(plane_chains(chained, bent, options.chain), options.most_planes);
   result.chains = static_cast<int>(chains.size());
-  std::vector<SightedPlane> planes;
+  std::vector<ObservedPlane> planes;
   LinkOptions link = options.link;
-  link.most_pictures /= std::max(1, std::min(2, result.chains));
+  link.most_images /= std::max(1, std::min(2, result.chains));
   for (int k = 0; k < result.chains && !stop.stop_requested(); ++k) {
     told("finding its points again")(k, result.chains);
-    planes.push_back(linked_sights(chained, chains[k], bent, link));
+    planes.push_back(linked_views(chained, chains[k], bent, link));
   }
-  GyroTurns turns;
-  if (gyroscope != nullptr) turns = gyro_turns(*gyroscope, frame_times_ns, planes);
-  result.gyroscope = !turns.turns.empty();
+  GyroRotations rotations;
+  if (gyroscope != nullptr) rotations = gyro_rotations(*gyroscope, frame_times_ns, planes);
+  result.gyroscope = !rotations.rotations.empty();
   result.lens =
-      lens_from_planes(std::move(planes), turns, bent, options.lens, told("the lens"), stop);
+      lens_from_planes(std::move(planes), rotations, bent, options.lens, told("the lens"), stop);
   return result;
 }
 

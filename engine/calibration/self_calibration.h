@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_lens.h"
-#include "engine/calibration/sights/linked_sights.h"
-#include "engine/calibration/sights/plane_chain.h"
+#include "engine/calibration/plane_views/linked_views.h"
+#include "engine/calibration/plane_views/plane_chain.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/window/gyroscope.h"
 
@@ -40,7 +40,7 @@ using CalibrationProgress = std::function<void(const char* what, int done, int o
 /// the plane"). `guess` has the pictures' size and roughly their field of view. The gyroscope, if
 /// any, needs its axes in the camera's; `frame_times_ns` is one a picture then. Throws InputError
 /// where a picture cannot be decoded.
-SelfCalibration calibrate_from_plane(const FrameCache& pictures,
+SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const Gyroscope* gyroscope = nullptr,
                                      std::span<const std::int64_t> frame_times_ns = {},

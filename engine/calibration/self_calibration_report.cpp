@@ -22,7 +22,7 @@ std::string seen(const SelfCalibration& calibration) {
   return fmt::format(
       "{} points in {} pictures{}, normals up to {:.0f} deg apart, moved by {:.2f} distances",
       lens.points,
-      lens.sights,
+      lens.views,
       calibration.gyroscope ? " and the gyroscope" : "",
       lens.tilt_deg,
       lens.moved);

@@ -33,13 +33,13 @@ class Source {
       capture_.open(name);
     }
   }
-  bool next(cv::Mat& picture, std::int64_t& time_ns) {
+  bool next(cv::Mat& image, std::int64_t& time_ns) {
     ++count_;
     time_ns = count_ * 33'333'333LL;
-    if (capture_.isOpened()) return capture_.read(picture);
+    if (capture_.isOpened()) return capture_.read(image);
     if (count_ > files_.size()) return false;
-    picture = cv::imread(files_[count_ - 1]);
-    return !picture.empty();
+    image = cv::imread(files_[count_ - 1]);
+    return !image.empty();
   }
 
  private:
@@ -110,7 +110,7 @@ void draw_cube(const gpo::Plane& plane,
                const cv::Matx33d& K,
                const cv::Mat& r,
                const cv::Mat& t,
-               cv::Mat& picture) {
+               cv::Mat& image) {
   const Eigen::Vector3d z = plane.normal;
   const Eigen::Vector3d x = (Eigen::Vector3d::UnitX() - z * z.x()).normalized();
   const Eigen::Vector3d y = z.cross(x);
@@ -136,7 +136,7 @@ void draw_cube(const gpo::Plane& plane,
                                                        {1, 5},
                                                        {2, 6},
                                                        {3, 7}}};
-  for (const auto& [a, b] : kEdges) cv::line(picture, at[a], at[b], {0, 220, 255}, 2, cv::LINE_AA);
+  for (const auto& [a, b] : kEdges) cv::line(image, at[a], at[b], {0, 220, 255}, 2, cv::LINE_AA);
 }
 
 }  // namespace
@@ -147,12 +147,12 @@ int main(int argc, char** argv) try {
   if (arguments.size() == 7 && arguments[5] == "--picture") output = arguments[6];
   if (arguments.size() != 5 && output.empty()) return 2;
   Source source(arguments[0]);
-  cv::Mat picture;
+  cv::Mat image;
   std::int64_t time_ns = 0;
-  if (!source.next(picture, time_ns)) return 2;
+  if (!source.next(image, time_ns)) return 2;
 
-  const gpo::Camera camera{.width = picture.cols,
-                           .height = picture.rows,
+  const gpo::Camera camera{.width = image.cols,
+                           .height = image.rows,
                            .fx = std::stod(arguments[1]),
                            .fy = std::stod(arguments[2]),
                            .cx = std::stod(arguments[3]),
@@ -164,7 +164,7 @@ int main(int argc, char** argv) try {
   bool drawn = false, said = false;
   do {
     cv::Mat gray;
-    cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
     follower.corners.empty() ? follower.begin(gray) : follower.follow(gray);
     gpo::LiveStatus status = initializer.add_frame(follower.frame(time_ns));
     if (status.started_anew) {  // with new corners
@@ -176,14 +176,14 @@ int main(int argc, char** argv) try {
     if (!output.empty()) status = initializer.wait();
     cv::Mat r, t;
     drawn = status.answer && pose_now(*status.answer, follower, K, r, t);
-    if (drawn) draw_cube(status.answer->initialization.plane, K, r, t, picture);
+    if (drawn) draw_cube(status.answer->initialization.plane, K, r, t, image);
     if (status.ready && !said) std::cout << "ready with " << status.ready_frames << " frames\n";
     said = status.ready;
-    if (!output.empty()) cv::imwrite(output, picture);
+    if (!output.empty()) cv::imwrite(output, image);
     if (!output.empty()) continue;
-    cv::imshow("gpo", picture);
+    cv::imshow("gpo", image);
     if (cv::waitKey(1) == 27) break;
-  } while (source.next(picture, time_ns));
+  } while (source.next(image, time_ns));
   return drawn ? 0 : 1;
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';

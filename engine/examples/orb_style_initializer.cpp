@@ -111,8 +111,8 @@ std::vector<int> matches_of(const Features& from, const Features& to) {
   cv::BFMatcher(cv::NORM_HAMMING, true).match(from.descriptors, to.descriptors, found);
   std::vector<int> matches(from.keys.size(), -1);
   for (const cv::DMatch& m : found) {
-    const double way_px = cv::norm(from.keys[m.queryIdx].pt - to.keys[m.trainIdx].pt);
-    if (m.distance < 40 && way_px < 100) matches[m.queryIdx] = m.trainIdx;
+    const double distance_px = cv::norm(from.keys[m.queryIdx].pt - to.keys[m.trainIdx].pt);
+    if (m.distance < 40 && distance_px < 100) matches[m.queryIdx] = m.trainIdx;
   }
   return matches;
 }

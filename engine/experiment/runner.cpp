@@ -140,7 +140,7 @@ class Run {
   /// The longest window first: the Inspector keeps its tracks for the others.
   void compute(const ExperimentTask& task, const Pass& pass) {
     const auto& recording = recordings_[task.recording];
-    if (pass.timed) forget_pictures(*recording);
+    if (pass.timed) forget_images(*recording);
     Inspector inspector(recording);
     for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
       const int frames = *length;
@@ -158,14 +158,14 @@ class Run {
     }
   }
 
-  static void forget_pictures(const Recording& recording) {
-    if (recording.pictures) recording.pictures->forget();
+  static void forget_images(const Recording& recording) {
+    if (recording.images) recording.images->forget();
   }
 
   /// Many recordings are open; the pictures of those that are done are not needed any more.
   void end(const ExperimentTask& task) {
     const std::scoped_lock lock(mutex_);
-    if (--left_[task.recording] == 0) forget_pictures(*recordings_[task.recording]);
+    if (--left_[task.recording] == 0) forget_images(*recordings_[task.recording]);
   }
 
   void tell(int frames) {

@@ -7,7 +7,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/geometry/triangulation.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ Initialization initialization_of(const Window& window, const Answer& given) {
     }
     result.cameras.push_back(*camera);
   }
-  if (over_plane) return delivered(window, std::move(result));
+  if (over_plane) return checked_result(window, std::move(result));
   result.points = points;
   result.rms_px = rms_of(window, result);
   return trusted(window, std::move(result));

@@ -212,7 +212,7 @@ Ordered columns_json(const Eigen::Matrix2Xd& columns) {
 
 Ordered plane_json(const WindowPlane& plane) {
   return {{"tracks", plane.tracks},
-          {"picture_share", plane.picture_share},
+          {"picture_share", plane.image_share},
           {"homographies", list_json(plane.H_i1, matrix_json)}};
 }
 
@@ -245,15 +245,15 @@ Ordered camera_json(const Camera& camera) {
           {"coefficients", camera.coefficients}};
 }
 
-void add_pictures(const Sources& sources, const Window& window, Ordered& json) {
+void add_images(const Sources& sources, const Window& window, Ordered& json) {
   const auto name = [](const std::filesystem::path& file) {
     std::error_code none;
     return std::filesystem::absolute(file, none).string();
   };
-  if (std::ssize(sources.pictures) == window.frame_count())
-    json["pictures"] = list_json(sources.pictures, name);
-  else if (sources.pictures.size() == 1)
-    json["video"] = name(sources.pictures.front());
+  if (std::ssize(sources.images) == window.frame_count())
+    json["pictures"] = list_json(sources.images, name);
+  else if (sources.images.size() == 1)
+    json["video"] = name(sources.images.front());
 }
 
 }  // namespace
@@ -289,7 +289,7 @@ Ordered window_json(const Window& window, const Sources& sources) {
                   {"rotations_are", to_string(window.rotations)}};
   if (sources.gyroscope != nullptr) json["gyroscope"] = gyroscope_json(*sources.gyroscope, window);
   if (sources.camera != nullptr) json["camera"] = camera_json(*sources.camera);
-  add_pictures(sources, window, json);
+  add_images(sources, window, json);
   return json;
 }
 

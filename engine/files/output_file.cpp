@@ -88,7 +88,7 @@ void make_folder(const fs::path& folder) {
   throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
-UnfinishedFile::UnfinishedFile(const fs::path& file) : file_(followed(file)) {
+AtomicFile::AtomicFile(const fs::path& file) : file_(followed(file)) {
   check_writable(file);
   // A name of its own, because shards on several machines may write the same file at once.
   path_ = file_.parent_path() / fmt::format("{}.{:08x}.partial{}",
@@ -97,12 +97,12 @@ UnfinishedFile::UnfinishedFile(const fs::path& file) : file_(followed(file)) {
                                             file_.extension().string());
 }
 
-UnfinishedFile::~UnfinishedFile() {
+AtomicFile::~AtomicFile() {
   std::error_code none;
   if (!path_.empty()) fs::remove(path_, none);
 }
 
-void UnfinishedFile::finish() {
+void AtomicFile::finish() {
   std::error_code error;
   fs::rename(path_, file_, error);
   if (error) refuse(file_, error);
@@ -111,14 +111,14 @@ void UnfinishedFile::finish() {
 
 void write_file(const fs::path& file, const std::string& content) {
   if (is_stream(file)) return write_whole(file, file, content);
-  UnfinishedFile unfinished(file);
+  AtomicFile unfinished(file);
   write_whole(unfinished.path(), file, content);
   unfinished.finish();
 }
 
-void write_picture(const fs::path& file, const cv::Mat& picture) {
+void write_image(const fs::path& file, const cv::Mat& image) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes);
+  cv::imencode(".png", image, bytes);
   write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
@@ -139,7 +139,7 @@ void check_output_folder(const fs::path& folder, const std::string& ours) {
                   ours.empty() ? "" : fmt::format(", or one with {}", ours)));
 }
 
-UnfinishedFolder::UnfinishedFolder(const fs::path& folder)
+AtomicFolder::AtomicFolder(const fs::path& folder)
     : folder_(fs::absolute(folder / "").parent_path()), path_(folder_.string() + ".unfinished") {
   check_output_folder(folder);
   std::error_code error;
@@ -152,12 +152,12 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& folder)
   }
 }
 
-UnfinishedFolder::~UnfinishedFolder() {
+AtomicFolder::~AtomicFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }
 
-void UnfinishedFolder::finish() {
+void AtomicFolder::finish() {
   std::error_code error;
   fs::remove(folder_, error);
   if (!error) fs::rename(path_, folder_, error);

@@ -23,13 +23,13 @@ void make_folder(const std::filesystem::path& folder);
 /// A file that appears whole or not at all: written under another name beside it, by whatever
 /// writes to `path`, then renamed by `finish`. What is not finished is removed. Of a link, what it
 /// leads to is written.
-class UnfinishedFile {
+class AtomicFile {
  public:
   /// Throws InputError where it cannot be written.
-  explicit UnfinishedFile(const std::filesystem::path& file);
-  ~UnfinishedFile();
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  explicit AtomicFile(const std::filesystem::path& file);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Ends as the file does, for libraries that tell formats by endings.
   const std::filesystem::path& path() const { return path_; }
@@ -45,7 +45,7 @@ class UnfinishedFile {
 void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// The same for a picture, as PNG.
-void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
+void write_image(const std::filesystem::path& file, const cv::Mat& image);
 
 /// The one rule of all output folders: refuses what is no folder, and a folder that is not empty,
 /// but for one that holds `ours`, the file by which a command knows a folder of its own. Throws
@@ -54,14 +54,14 @@ void check_output_folder(const std::filesystem::path& folder, const std::string&
 
 /// A folder that appears whole or not at all: filled under another name beside it, then renamed by
 /// `finish`. What is not finished is removed.
-class UnfinishedFolder {
+class AtomicFolder {
  public:
   /// Throws InputError where there is something already that is no empty folder, or where nothing
   /// can be written.
-  explicit UnfinishedFolder(const std::filesystem::path& folder);
-  ~UnfinishedFolder();
-  UnfinishedFolder(const UnfinishedFolder&) = delete;
-  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+  explicit AtomicFolder(const std::filesystem::path& folder);
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
   /// Throws InputError.

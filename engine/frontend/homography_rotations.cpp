@@ -223,7 +223,7 @@ Rotations rotations_given_plane(const Window& window,
 }
 
 /// Of those at which candidates gather at a plausible cost, each once.
-std::vector<Consensus> readings_of(const std::vector<Consensus>& found) {
+std::vector<Consensus> decompositions_of(const std::vector<Consensus>& found) {
   std::vector<Consensus> readings;
   for (const Consensus& one : found) {
     const bool seen = std::ranges::any_of(readings, [&](const Consensus& other) {
@@ -252,7 +252,7 @@ struct Told {
 std::optional<Told> told_by_another_plane(const Window& window,
                                           std::span<const Pair> pairs,
                                           const std::vector<Consensus>& found) {
-  const std::vector<Consensus> readings = readings_of(found);
+  const std::vector<Consensus> readings = decompositions_of(found);
   if (readings.size() < 2) return std::nullopt;
   for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
     if (k == window.leader) continue;
@@ -262,7 +262,7 @@ std::optional<Told> told_by_another_plane(const Window& window,
     const auto [other_pairs, reason] = decompose_reference_pairs(other);
     if (!reason.empty()) continue;
     std::vector<double> apart_deg(readings.size(), std::numeric_limits<double>::infinity());
-    for (const Consensus& theirs : readings_of(consensuses(other_pairs))) {
+    for (const Consensus& theirs : decompositions_of(consensuses(other_pairs))) {
       const std::vector<Matrix3d> R_wc = rotations_by(other_pairs, theirs.normal);
       for (std::size_t r = 0; r < readings.size(); ++r)
         apart_deg[r] = std::min(apart_deg[r], disagreement_deg(pairs, readings[r].normal, R_wc));

@@ -99,7 +99,7 @@ WindowPlane plane_of(const Window& window,
 }
 
 /// Of the picture's area, what the convex hull of some tracks covers in the reference frame.
-double picture_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
+double image_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
   if (tracks.size() < 3 || camera.width == 0) return 0;
   std::vector<cv::Point2f> points, hull;
   for (const int j : tracks)
@@ -117,7 +117,7 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
-    window.planes.back().picture_share = picture_share(window, found.planes[k], camera);
+    window.planes.back().image_share = image_share(window, found.planes[k], camera);
     window.planes.back().stability = found.stability[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));

@@ -17,7 +17,7 @@ UncertainPoses first_poses(const UncertainPoses& poses, int count) {
   return first;
 }
 
-std::optional<int> poses_that_tell_scale(const UncertainPoses& poses,
+std::optional<int> poses_that_constrain_scale(const UncertainPoses& poses,
                                          const Gyroscope& gyroscope,
                                          const std::optional<Pose>& T_body_camera,
                                          const InertialOptions& options) {

@@ -14,7 +14,7 @@ UncertainPoses first_poses(const UncertainPoses& poses, int count);
 /// How many of the poses, from the first one on, it takes to know the scale: the shortest such
 /// beginning, found by halving, since more poses tell more. The poses are those of the whole
 /// window, so a live window may take longer. Nothing where all of them do not tell it.
-std::optional<int> poses_that_tell_scale(const UncertainPoses& poses,
+std::optional<int> poses_that_constrain_scale(const UncertainPoses& poses,
                                          const Gyroscope& gyroscope,
                                          const std::optional<Pose>& T_body_camera,
                                          const InertialOptions& options = {});

@@ -40,7 +40,7 @@ struct Inspection {
   /// the recording has no accelerometer.
   std::optional<InertialAlignment> inertial;
   /// Frame of the window up to which it takes to know the scale; nothing where it is not known.
-  std::optional<int> scale_known_at;
+  std::optional<int> metric_scale_from;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
   std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations

@@ -68,12 +68,12 @@ Sources sources_of(const Recording& recording, const Window& window) {
   sources.camera = &recording.camera;
   sources.gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
   sources.T_body_camera = recording.T_body_camera;
-  const auto& files = recording.picture_files;
+  const auto& files = recording.image_files;
   if (std::ssize(files) == recording.frame_count()) {
-    sources.pictures.assign(files.begin() + window.start,
+    sources.images.assign(files.begin() + window.start,
                             files.begin() + window.start + window.frame_count());
   } else if (files.size() == 1) {
-    sources.pictures = files;
+    sources.images = files;
   }
   return sources;
 }
@@ -86,18 +86,18 @@ InitializeOptions options_for(const Recording& recording, const Settings& settin
 }
 
 /// Frame of the window up to which it takes to know the scale; nullopt if it is not known.
-std::optional<int> scale_known_at(const Window& window,
+std::optional<int> metric_scale_from(const Window& window,
                                   const Sources& sources,
                                   const Finished& end) {
   if (!end.inertial || !end.inertial->ok || !end.inertial->scale_known) return std::nullopt;
-  const auto count = poses_that_tell_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
+  const auto count = poses_that_constrain_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
   if (!count) return std::nullopt;
   const auto at = std::ranges::find(window.timestamps_ns, end.poses.times_ns[*count - 1]);
   return static_cast<int>(at - window.timestamps_ns.begin());
 }
 
 Timing timing_of(const Stages& stages, const Settings& settings, double initialize_ms) {
-  const Kept<Span, Tracked>& followed =
+  const Cached<Span, Tracked>& followed =
       stages.longest_tracks[static_cast<std::size_t>(settings.tracking)];
   Timing t;
   t.track = followed.value.milliseconds[settings.frames - 1];
@@ -114,7 +114,7 @@ bool Stages::update_tracks(const Settings& settings,
                            const std::stop_token& stop,
                            const Progress& progress) {
   const Span span(settings.start, settings.frames);
-  Kept<Span, Tracked>& kept = longest_tracks[static_cast<std::size_t>(settings.tracking)];
+  Cached<Span, Tracked>& kept = longest_tracks[static_cast<std::size_t>(settings.tracking)];
   const Span longest = covering(kept.key, span);
   const int frames = std::get<1>(longest);
   const bool done = kept.update(longest, [&]() {
@@ -191,7 +191,7 @@ void Stages::initialize(const Settings& settings,
     if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
   }
   Finished end = finished(window, sources, options, inspection.growth, std::move(found));
-  inspection.scale_known_at = scale_known_at(window, sources, end);
+  inspection.metric_scale_from = metric_scale_from(window, sources, end);
   inspection.inertial = std::move(end.inertial);
   if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
   inspection.rotations_used = rotations.value.source;

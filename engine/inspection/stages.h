@@ -4,7 +4,7 @@
 
 #include "engine/frontend/rotations.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/window/kept.h"
+#include "engine/inspection/window/cached.h"
 #include "engine/inspection/window/progress.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_tracks.h"
@@ -25,14 +25,14 @@ using Span = std::tuple<int, int>;  // start, frames
 /// (`acting_until`), so that a setting's row decides which stages it makes anew.
 struct Stages {
   std::shared_ptr<const Recording> recording;
-  std::array<Kept<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
-  Kept<Span, std::shared_ptr<const WindowTruth>> longest_truth;
-  Kept<Settings, std::shared_ptr<const Tracks>> tracks;
-  Kept<Span, std::shared_ptr<const WindowTruth>> truth;
-  Kept<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
-  Kept<Settings, std::shared_ptr<const Window>> outliers;
-  Kept<Settings, ChosenRotations> rotations;
-  Kept<Settings, std::vector<Verdict>> growth;
+  std::array<Cached<Span, Tracked>, 2> longest_tracks;  // of the windows from one start, by tracking
+  Cached<Span, std::shared_ptr<const WindowTruth>> longest_truth;
+  Cached<Settings, std::shared_ptr<const Tracks>> tracks;
+  Cached<Span, std::shared_ptr<const WindowTruth>> truth;
+  Cached<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference picture
+  Cached<Settings, std::shared_ptr<const Window>> outliers;
+  Cached<Settings, ChosenRotations> rotations;
+  Cached<Settings, std::vector<Verdict>> growth;
 
   bool update_tracks(const Settings& settings,
                      const std::stop_token& stop,

@@ -124,7 +124,7 @@ std::optional<Plane> plane_of_inliers(const Window& window, std::span<const MapP
 }
 
 /// World = reference camera, plane distance 1.
-Initialization deliver(const Window& window, const RobustBundle& adjusted) {
+Initialization make_result(const Window& window, const RobustBundle& adjusted) {
   std::vector<MapPoint> points = map_points(window, adjusted);
   const std::optional<Plane> plane = plane_of_inliers(window, points);
   if (!plane) return failed("the adjusted inlier points span no plane", adjusted.solver);
@@ -153,7 +153,7 @@ Initialization refine_bundle(const Window& window,
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
   if (solver.termination != Termination::convergence) return not_converged(solver);
-  Initialization result = deliver(window, adjusted);
+  Initialization result = make_result(window, adjusted);
   if (result.cameras.empty()) return result;
   return trusted(window, std::move(result));
 }

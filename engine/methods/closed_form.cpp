@@ -4,7 +4,7 @@
 
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/closed_form_motion.h"
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_translations.h"
 
 namespace gpo {
@@ -15,7 +15,7 @@ Initialization initialize_closed_form(const Window& window, const Watch& /*watch
   if (!motion) return failed("a frame has no homography");
   for (int i = 1; i < window.frame_count(); ++i)
     motion->tau[i] = translation_given_normal(window, i, motion->normal);
-  return deliver(window, *motion, {});
+  return make_result(window, *motion, {});
 }
 
 }  // namespace gpo

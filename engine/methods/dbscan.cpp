@@ -5,7 +5,7 @@
 #include "engine/methods/candidates/density_clusters.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_translations.h"
 
 #include <algorithm>
@@ -234,7 +234,7 @@ Initialization initialize_dbscan(const Window& window, const Watch& watch) {
     result.cameras.push_back({window.R_wc[i], -translation_given_normal(window, i, normal)});
   }
   result.candidates = std::move(candidates.all);
-  return delivered(window, std::move(result));
+  return checked_result(window, std::move(result));
 }
 
 }  // namespace gpo

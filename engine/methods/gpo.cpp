@@ -4,7 +4,7 @@
 
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/closed_form_motion.h"
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
 
 namespace gpo {
@@ -27,7 +27,7 @@ Initialization initialize_gpo(const Window& window,
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const auto [motion, solver] = solve_gpo(window, options, watch);
   if (solver.termination != Termination::convergence) return not_converged(solver);
-  return deliver(window, motion, solver);
+  return make_result(window, motion, solver);
 }
 
 }  // namespace gpo

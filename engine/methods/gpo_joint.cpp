@@ -6,9 +6,9 @@
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/gpo.h"
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/other_planes.h"
-#include "engine/methods/plane/other_reading.h"
+#include "engine/methods/plane/other_decomposition.h"
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
@@ -185,7 +185,7 @@ Fit fitted(const Task& task, const PlaneMotion& start, Turns turns) {
 /// Rotations of their own take up what a gyroscope tells of a plane's two readings; then the
 /// pictures must.
 Fit better_reading(const Task& task, Fit free) {
-  auto other = other_reading(task.window, free.solution.motion);
+  auto other = other_decomposition(task.window, free.solution.motion);
   if (!other) return free;
   if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
   Fit twin = fitted(task, *other, {RotationModel::free});
@@ -275,7 +275,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
   }
   const bool several = task.options.planes == Planes::all && task.window.planes.size() > 1;
   if (several && task.window.rotations == RotationModel::free) {
-    if (const auto other = other_reading(task.window, starts.front())) starts.push_back(*other);
+    if (const auto other = other_decomposition(task.window, starts.front())) starts.push_back(*other);
   }
   PlaneMotion best = starts.front();
   double least = std::numeric_limits<double>::infinity();
@@ -293,7 +293,7 @@ void add_uncertainty(const Fit& fit, Initialization& result) {
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
   result.uncertainty =
       uncertainty_of(fit.window, fit.observations, motion, fit.turns.model, Centers::jointly);
-  tell_planes_uncertainty(result);
+  set_planes_uncertainty(result);
 }
 
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {
@@ -325,7 +325,7 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
-  Initialization result = deliver(fit.window, fit.solution.motion, solver);
+  Initialization result = make_result(fit.window, fit.solution.motion, solver);
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
     return refused(wrong, std::move(result));
   if (!result.ok) return result;

@@ -25,7 +25,7 @@ std::vector<Observation> inlier_observations(const Window& window) {
   return observations;
 }
 
-Initialization deliver(const Window& window, const AdjustedPlaneBundle& adjusted) {
+Initialization make_result(const Window& window, const AdjustedPlaneBundle& adjusted) {
   Initialization result;
   result.plane = {adjusted.bundle.normal, 1};
   result.cameras = adjusted.bundle.cameras;
@@ -51,7 +51,7 @@ Initialization refine_on_plane(const Window& window,
       adjust_plane_bundle(window.K, bundle, inlier_observations(window), normal, watch);
   const SolverReport& solver = adjusted.solver;
   if (solver.termination != Termination::convergence) return not_converged(solver);
-  return trusted(window, deliver(window, adjusted));
+  return trusted(window, make_result(window, adjusted));
 }
 
 Initialization initialize_pba(const Window& window, const Watch& watch) {

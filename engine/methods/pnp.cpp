@@ -234,7 +234,7 @@ std::optional<std::string> add_frames(const Window& window,
 }
 
 /// In the gauge of the plane through the points; why there is none, if so.
-Initialization deliver(const Window& window, const Reconstruction& scene) {
+Initialization make_result(const Window& window, const Reconstruction& scene) {
   Initialization result;
   Eigen::Matrix3Xd positions(3, window.track_count());
   for (int j = 0; j < window.track_count(); ++j) {
@@ -263,7 +263,7 @@ Initialization initialize_pnp(const Window& window, const Watch& watch) {
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin;
   if (watch.stop_requested()) return stopped_early();
-  Initialization result = reason ? failed(*reason) : deliver(window, pair.scene);
+  Initialization result = reason ? failed(*reason) : make_result(window, pair.scene);
   result.solver.milliseconds = elapsed.count();  // PnP and triangulation are optimizations, too
   result.candidates = std::move(pair.candidates);
   return result;

@@ -37,25 +37,25 @@ void set_camera(Recording& recording,
   recording.notes.insert(recording.notes.begin(), std::string(what) + " (" + detail + ")");
 }
 
-std::optional<ToldView> view_of_focal(double focal_diagonals, const std::string& told) {
+std::optional<MetadataFieldOfView> view_of_focal(double focal_diagonals, const std::string& told) {
   const double view_deg = degrees(2 * std::atan2(0.5, focal_diagonals));
   if (!is_within(view_deg, kLeastView_deg, kMostView_deg)) return std::nullopt;
-  return ToldView{focal_diagonals, false, told};
+  return MetadataFieldOfView{focal_diagonals, false, told};
 }
 
-std::optional<ToldView> view_of_equivalent(double focal_mm, const std::string& told) {
+std::optional<MetadataFieldOfView> view_of_equivalent(double focal_mm, const std::string& told) {
   const double diagonal_mm = std::hypot(36, 24);
   if (!is_within(focal_mm, kLeastFocal_mm, kMostFocal_mm)) return std::nullopt;
   return view_of_focal(focal_mm / diagonal_mm, told);
 }
 
-std::optional<ToldView> view_of_angle(double diagonal_deg, bool fisheye, const std::string& told) {
+std::optional<MetadataFieldOfView> view_of_angle(double diagonal_deg, bool fisheye, const std::string& told) {
   if (!is_within(diagonal_deg, kLeastView_deg, kMostView_deg)) return std::nullopt;
   const double half_rad = radians(diagonal_deg) / 2;
-  return ToldView{0.5 / (fisheye ? half_rad : std::tan(half_rad)), fisheye, told};
+  return MetadataFieldOfView{0.5 / (fisheye ? half_rad : std::tan(half_rad)), fisheye, told};
 }
 
-void guess_camera(Recording& recording, const std::optional<ToldView>& view) {
+void guess_camera(Recording& recording, const std::optional<MetadataFieldOfView>& view) {
   const int width = recording.camera.width, height = recording.camera.height;
   Camera camera =
       view ? camera_of_focal(width, height, view->focal_diagonals) : camera_of_view(width, height);

@@ -85,9 +85,9 @@ std::string digest_of(const std::vector<TrackObservation>& tracks) {
   return sha256(text);
 }
 
-std::string digest_of(const std::vector<fs::path>& pictures) {
+std::string digest_of(const std::vector<fs::path>& images) {
   std::string text;
-  for (const fs::path& file : pictures) {
+  for (const fs::path& file : images) {
     std::error_code error;
     const auto size = fs::file_size(file, error);
     if (error) {
@@ -116,7 +116,7 @@ RecordingContent content_of(const Recording& recording) {
   add_camera(content, recording.camera);
   content["time stamps"] = sha256(fmt::format("{}", fmt::join(recording.timestamps_ns, " ")));
   if (recording.T_body_camera) content["camera in the body"] = text_of(*recording.T_body_camera);
-  if (recording.pictures) content["pictures"] = digest_of(recording.picture_files);
+  if (recording.images) content["pictures"] = digest_of(recording.image_files);
   if (recording.gyroscope) content["gyroscope"] = digest_of(*recording.gyroscope);
   if (recording.truth) content["truth"] = digest_of(*recording.truth);
   if (recording.plane) content["plane"] = text_of(*recording.plane);

@@ -18,7 +18,7 @@ namespace {
 
 using Ending = std::string_view;
 
-constexpr std::array<Ending, 10> kPictures = {
+constexpr std::array<Ending, 10> kImages = {
     "png", "jpg", "jpeg", "bmp", "pgm", "ppm", "tif", "tiff", "webp", "pnm"};
 constexpr std::array<Ending, 4> kVideos = {"mp4", "avi", "mov", "mkv"};
 constexpr std::array<Ending, 3> kBags = {"bag", "db3", "mcap"};
@@ -30,7 +30,7 @@ bool ends_in(const std::filesystem::path& file, std::span<const Ending> endings)
 
 }  // namespace
 
-bool is_picture_name(const std::filesystem::path& file) { return ends_in(file, kPictures); }
+bool is_image_name(const std::filesystem::path& file) { return ends_in(file, kImages); }
 bool is_video_name(const std::filesystem::path& file) { return ends_in(file, kVideos); }
 bool is_bag_name(const std::filesystem::path& file) { return ends_in(file, kBags); }
 

@@ -9,7 +9,7 @@ namespace gpo {
 
 // What files are by the endings of their names; the case of letters does not matter.
 
-bool is_picture_name(const std::filesystem::path& file);
+bool is_image_name(const std::filesystem::path& file);
 bool is_video_name(const std::filesystem::path& file);
 bool is_bag_name(const std::filesystem::path& file);
 /// "mp4, avi, ...": of the files that are recordings by themselves.

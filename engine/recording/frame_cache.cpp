@@ -13,9 +13,9 @@
 namespace gpo {
 namespace {
 
-std::size_t size_in_bytes(const cv::Mat& picture) { return picture.total() * picture.elemSize(); }
+std::size_t size_in_bytes(const cv::Mat& image) { return image.total() * image.elemSize(); }
 
-struct Picture {
+struct Image {
   int frame;
   cv::Mat bgr;
 };
@@ -29,15 +29,15 @@ const cv::Mat* FrameCache::kept(int index) const {
   const auto found = by_index_.find(index);
   if (found == by_index_.end()) return nullptr;
   recent_.splice(recent_.begin(), recent_, found->second);
-  return &recent_.front().picture;
+  return &recent_.front().image;
 }
 
-void FrameCache::keep(int index, const cv::Mat& picture) const {
-  recent_.push_front({index, picture});
+void FrameCache::keep(int index, const cv::Mat& image) const {
+  recent_.push_front({index, image});
   by_index_[index] = recent_.begin();
-  bytes_ += size_in_bytes(picture);
+  bytes_ += size_in_bytes(image);
   while (bytes_ > byte_limit_ && recent_.size() > 1) {
-    bytes_ -= size_in_bytes(recent_.back().picture);
+    bytes_ -= size_in_bytes(recent_.back().image);
     by_index_.erase(recent_.back().index);
     recent_.pop_back();
   }
@@ -45,32 +45,32 @@ void FrameCache::keep(int index, const cv::Mat& picture) const {
 
 cv::Mat FrameCache::find(int index) const {
   const std::scoped_lock lock(mutex_);
-  const cv::Mat* picture = kept(index);
-  return picture == nullptr ? cv::Mat() : *picture;
+  const cv::Mat* image = kept(index);
+  return image == nullptr ? cv::Mat() : *image;
 }
 
 cv::Mat FrameCache::bgr(int index) const {
   std::unique_lock lock(mutex_);
   while (true) {
-    if (const cv::Mat* picture = kept(index)) return *picture;
+    if (const cv::Mat* image = kept(index)) return *image;
     // Where another thread fails to decode it this one tries, too, and so has the error itself.
     if (decoding_.insert(index).second) break;
     decoded_.wait(lock);
   }
   lock.unlock();
-  cv::Mat picture;
+  cv::Mat image;
   std::exception_ptr error;
   try {
-    picture = decode_(index);
+    image = decode_(index);
   } catch (...) {
     error = std::current_exception();
   }
   lock.lock();
   decoding_.erase(index);
-  if (!error) keep(index, picture);
+  if (!error) keep(index, image);
   decoded_.notify_all();
   if (error) std::rethrow_exception(error);
-  return picture;
+  return image;
 }
 
 cv::Mat FrameCache::gray(int index) const {
@@ -91,13 +91,13 @@ void FrameCache::forget() const {
   bytes_ = 0;
 }
 
-PicturesAhead::PicturesAhead(const FrameCache& pictures, int first, int end)
-    : pictures_(pictures),
+ImagesAhead::ImagesAhead(const FrameCache& images, int first, int end)
+    : images_(images),
       next_(first),
       end_(end),
       decoder_([this, first, end](const std::stop_token& stop) { decode(stop, first, end); }) {}
 
-void PicturesAhead::decode(const std::stop_token& stop, int first, int end) {
+void ImagesAhead::decode(const std::stop_token& stop, int first, int end) {
   for (int index = first; index < end; ++index) {
     {
       std::unique_lock lock(mutex_);
@@ -106,7 +106,7 @@ void PicturesAhead::decode(const std::stop_token& stop, int first, int end) {
     }
     Entry entry;
     try {
-      entry.gray = pictures_.gray(index);
+      entry.gray = images_.gray(index);
     } catch (...) {
       entry.error = std::current_exception();
     }
@@ -119,11 +119,11 @@ void PicturesAhead::decode(const std::stop_token& stop, int first, int end) {
   }
 }
 
-cv::Mat PicturesAhead::gray(int index) {
+cv::Mat ImagesAhead::gray(int index) {
   std::unique_lock lock(mutex_);
   if (index != next_ || next_ >= end_) {
     lock.unlock();
-    return pictures_.gray(index);
+    return images_.gray(index);
   }
   changed_.wait(lock, [this]() { return !ready_.empty(); });
   Entry entry = std::move(ready_.front());
@@ -134,28 +134,28 @@ cv::Mat PicturesAhead::gray(int index) {
   return std::move(entry.gray);
 }
 
-void for_each_picture(const FrameCache& pictures,
+void for_each_image(const FrameCache& images,
                       const std::vector<int>& frames,
                       const std::stop_token& stop,
                       const std::function<void(int frame, const cv::Mat& gray)>& look) {
   std::mutex decoding;
   std::size_t next = 0;
-  const auto take = [&]() -> std::optional<Picture> {
+  const auto take = [&]() -> std::optional<Image> {
     const std::scoped_lock lock(decoding);
     if (next == frames.size() || stop.stop_requested()) return std::nullopt;
     const std::size_t i = next;
     next = frames.size();  // where decoding throws the others have nothing left to do
-    Picture picture{frames[i], pictures.bgr(frames[i])};
+    Image image{frames[i], images.bgr(frames[i])};
     next = i + 1;
-    return picture;
+    return image;
   };
   const int count = static_cast<int>(frames.size());
   const int threads = std::min(count, static_cast<int>(std::thread::hardware_concurrency()));
   in_parallel(threads, threads, [&](int) {
-    while (const auto picture = take()) {
+    while (const auto image = take()) {
       cv::Mat gray;
-      cv::cvtColor(picture->bgr, gray, cv::COLOR_BGR2GRAY);
-      look(picture->frame, gray);
+      cv::cvtColor(image->bgr, gray, cv::COLOR_BGR2GRAY);
+      look(image->frame, gray);
     }
   });
 }

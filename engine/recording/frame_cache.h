@@ -46,11 +46,11 @@ class FrameCache {
  private:
   struct Entry {
     int index;
-    cv::Mat picture;
+    cv::Mat image;
   };
   // Under the lock.
   const cv::Mat* kept(int index) const;  ///< null: it is not there
-  void keep(int index, const cv::Mat& picture) const;
+  void keep(int index, const cv::Mat& image) const;
 
   int count_;
   Decode decode_;
@@ -66,12 +66,12 @@ class FrameCache {
 /// Gray pictures for one who asks for them one after the other: the next few are decoded on a
 /// thread of their own while the last one is worked on. One thread asks. Destroying it waits for no
 /// more than the picture that is just being decoded.
-class PicturesAhead {
+class ImagesAhead {
  public:
   static constexpr int kAhead = 3;  ///< pictures decoded before they are asked for, at most
 
-  /// `pictures` from `first` up to and without `end`; they are to live longer than this.
-  PicturesAhead(const FrameCache& pictures, int first, int end);
+  /// `images` from `first` up to and without `end`; they are to live longer than this.
+  ImagesAhead(const FrameCache& images, int first, int end);
 
   /// Picture `index`, CV_8UC1. Throws what decoding it throws. What is not the next one is decoded
   /// as if nothing were ahead.
@@ -84,7 +84,7 @@ class PicturesAhead {
   };
   void decode(const std::stop_token& stop, int first, int end);
 
-  const FrameCache& pictures_;
+  const FrameCache& images_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::queue<Entry> ready_;
@@ -96,7 +96,7 @@ class PicturesAhead {
 /// Calls `look(frame, gray)` for each of the frames, on all processors at once. They are decoded in
 /// the order given, because a video goes backward only from its beginning again. Once stopped it
 /// returns when the pictures at work are done. Throws what decoding and `look` throw.
-void for_each_picture(const FrameCache& pictures,
+void for_each_image(const FrameCache& images,
                       const std::vector<int>& frames,
                       const std::stop_token& stop,
                       const std::function<void(int frame, const cv::Mat& gray)>& look);

@@ -63,9 +63,9 @@ struct Recording {
   CameraSource camera_source = CameraSource::file;
   std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
   std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
-  std::shared_ptr<const FrameCache> pictures;  ///< null where there are none
-  /// Where `pictures` come from: a video, or one file a frame; empty where they are not from files.
-  std::vector<std::filesystem::path> picture_files;
+  std::shared_ptr<const FrameCache> images;  ///< null where there are none
+  /// Where `images` come from: a video, or one file a frame; empty where they are not from files.
+  std::vector<std::filesystem::path> image_files;
   std::optional<Gyroscope> gyroscope;
   /// Rolling shutter: from the first row to the last, where the camera's log tells it; negative:
   /// the last row first.

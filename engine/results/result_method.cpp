@@ -120,12 +120,12 @@ MaybeIndex of_time_in_name(const ResultPoses& result, std::int64_t time_ns, std:
 std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
                                       const Window& window,
                                       const Sources& sources) {
-  const bool named = std::ssize(sources.pictures) == window.frame_count();
+  const bool named = std::ssize(sources.images) == window.frame_count();
   const std::int64_t most_ns = median_period_ns(window.timestamps_ns) / 2;
   std::vector<MaybeIndex> found;
   for (int i = 0; i < window.frame_count(); ++i) {
     MaybeIndex one;
-    if (named) one = of_name(result, sources.pictures[i].generic_string());
+    if (named) one = of_name(result, sources.images[i].generic_string());
     if (!one) one = of_time_in_name(result, window.timestamps_ns[i], most_ns);
     found.push_back(one);
   }

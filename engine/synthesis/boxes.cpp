@@ -41,11 +41,11 @@ void draw_book(BoxFaces& faces, Random& random) {
   cv::Mat& top = faces.top;
   const double tall = ratio_of(top);
   top.setTo(cover);
-  cv::Mat picture = part(top, 0.1, 0.34 * tall, 0.8, 0.5 * tall);
+  cv::Mat image = part(top, 0.1, 0.34 * tall, 0.8, 0.5 * tall);
   if (random.uniform() < 0.5) {
-    paint_mosaic(picture, 40, palette, random);
+    paint_mosaic(image, 40, palette, random);
   } else {
-    paint_shapes(picture, 40, palette, random);
+    paint_shapes(image, 40, palette, random);
   }
   draw_text(top, title, {0.1, 0.2 * tall}, {0.1, palette.back(), Face::serif, 0.8});
   draw_text(

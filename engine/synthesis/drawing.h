@@ -99,12 +99,12 @@ cv::Mat paint_face(const PaintedFace& face,
                    std::uint64_t seed,
                    int threads);
 
-/// A sheet on a face; `picture` is CV_8UC4 and seen with +y of the sheet at the picture's top.
+/// A sheet on a face; `image` is CV_8UC4 and seen with +y of the sheet at the picture's top.
 struct Sheet {
   Eigen::Vector2d center;
   Eigen::Vector2d size;
   Eigen::Matrix2d turn;  ///< from the face into the sheet's axes
-  cv::Mat picture;
+  cv::Mat image;
 };
 void lay_sheet(cv::Mat& texture, const PaintedFace& face, const Sheet& sheet, int threads);
 

@@ -89,8 +89,8 @@ void draw_postcard(cv::Mat& canvas, Random& random) {
   canvas.setTo(rgb(0xf6f3ea));
   const double h = ratio_of(canvas);
   const Palette& palette = pick_palette(random);
-  cv::Mat picture = part(canvas, 0.04, 0.04, 0.92, h - 0.08);
-  paint_mosaic(picture, 70, palette, random);
+  cv::Mat image = part(canvas, 0.04, 0.04, 0.92, h - 0.08);
+  paint_mosaic(image, 70, palette, random);
   bar(canvas, {0.3, 0.4 * h, 0.4, 0.13}, palette.back());
   draw_text(canvas,
             pick_title(random),
@@ -100,11 +100,11 @@ void draw_postcard(cv::Mat& canvas, Random& random) {
 
 void draw_photo(cv::Mat& canvas, Random& random) {
   canvas.setTo(rgb(0xf4f4f2));
-  cv::Mat picture = part(canvas, 0.035, 0.035, 0.93, ratio_of(canvas) - 0.07);
+  cv::Mat image = part(canvas, 0.035, 0.035, 0.93, ratio_of(canvas) - 0.07);
   if (random.uniform() < 0.5) {
-    paint_flowers(picture, random);
+    paint_flowers(image, random);
   } else {
-    paint_landscape(picture, random);
+    paint_landscape(image, random);
   }
 }
 

@@ -200,18 +200,18 @@ RubbleRecipe read_heap(StrictMap map) {
 }
 
 /// `period` is the time from frame to frame [s]: a picture is read before the next one begins.
-PictureRecipe read_picture(StrictMap map, double period) {
-  PictureRecipe picture;
-  picture.format = map.choice("format", {"jpg", "png"});
-  picture.quality = static_cast<int>(map.integer("quality", {1, 100}, picture.quality));
-  picture.samples = static_cast<int>(map.integer("samples", {1, 16}, picture.samples));
-  picture.noise = map.number("noise", {0, 100, "gray levels"}, 0);
-  picture.blur = map.number("blur", {0, 20, "px"}, 0);
-  picture.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
-  picture.exposure = map.number("exposure", {0, 1, "s"}, 0);
-  picture.rolling_shutter = map.number("rolling_shutter", {0, period, "s"}, 0);
+ImageRecipe read_image(StrictMap map, double period) {
+  ImageRecipe image;
+  image.format = map.choice("format", {"jpg", "png"});
+  image.quality = static_cast<int>(map.integer("quality", {1, 100}, image.quality));
+  image.samples = static_cast<int>(map.integer("samples", {1, 16}, image.samples));
+  image.noise = map.number("noise", {0, 100, "gray levels"}, 0);
+  image.blur = map.number("blur", {0, 20, "px"}, 0);
+  image.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
+  image.exposure = map.number("exposure", {0, 1, "s"}, 0);
+  image.rolling_shutter = map.number("rolling_shutter", {0, period, "s"}, 0);
   map.finish();
-  return picture;
+  return image;
 }
 
 GyroscopeRecipe read_gyroscope(StrictMap map) {
@@ -231,7 +231,7 @@ void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
   const double rays =
-      double(recipe.camera.width) * recipe.camera.height * std::pow(recipe.picture.samples, 2);
+      double(recipe.camera.width) * recipe.camera.height * std::pow(recipe.image.samples, 2);
   if (rays > kMostRays) {
     top.fail("picture",
              fmt::format("{:.0f} rays (width x height x samples^2)", rays),
@@ -292,7 +292,7 @@ Recipe read_recipe(const std::filesystem::path& file) {
   if (!floor && (recipe.rubble.empty() || top.has("desk"))) {
     recipe.desk = read_desk(top.map("desk"));
   }
-  recipe.picture = read_picture(top.map("picture"), 1 / recipe.frame_rate);
+  recipe.image = read_image(top.map("picture"), 1 / recipe.frame_rate);
   recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
   top.finish();
   check_extent(top, recipe);
@@ -310,7 +310,7 @@ double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns) {
 
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row) {
   const double place = static_cast<double>(row) / (recipe.camera.height - 1) - 0.5;
-  return trajectory_seconds(recipe, timestamp_ns) + place * recipe.picture.rolling_shutter;
+  return trajectory_seconds(recipe, timestamp_ns) + place * recipe.image.rolling_shutter;
 }
 
 Eigen::Matrix3d turn_into(double angle) {

@@ -75,7 +75,7 @@ struct RubbleRecipe {
   std::uint64_t seed = 1;
 };
 
-struct PictureRecipe {
+struct ImageRecipe {
   std::string format = "jpg";  ///< jpg | png
   int quality = 90;            ///< of jpg, 1 .. 100
   int samples = 4;             ///< rays a pixel, along each axis
@@ -104,7 +104,7 @@ struct Recipe {
   Trajectory trajectory;
   DeskRecipe desk;
   std::vector<RubbleRecipe> rubble;
-  PictureRecipe picture;
+  ImageRecipe image;
   GyroscopeRecipe gyroscope;
 };
 

@@ -276,12 +276,12 @@ cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses,
 }
 
 cv::Mat expose(const cv::Mat& light,
-               const PictureRecipe& picture,
+               const ImageRecipe& image,
                double gain,
                std::uint64_t seed,
                int threads) {
   cv::Mat soft = light;
-  if (picture.blur > 0) cv::GaussianBlur(light, soft, {}, picture.blur);
+  if (image.blur > 0) cv::GaussianBlur(light, soft, {}, image.blur);
   cv::Mat result(light.size(), CV_8UC3);
   const double half_diagonal2 = (std::pow(light.cols, 2) + std::pow(light.rows, 2)) / 4;
   in_parallel(light.rows, threads, [&](int row) {
@@ -291,7 +291,7 @@ cv::Mat expose(const cv::Mat& light,
           std::pow(col + 0.5 - light.cols / 2.0, 2) + std::pow(row + 0.5 - light.rows / 2.0, 2);
       const double brightness = gain * (1 - 0.22 * r2 / half_diagonal2);
       for (int k = 0; k < 3; ++k) {
-        const double noise = picture.noise > 0 ? picture.noise * random.normal() : 0;
+        const double noise = image.noise > 0 ? image.noise * random.normal() : 0;
         result.at<cv::Vec3b>(row, col)[k] = cv::saturate_cast<uchar>(
             static_cast<double>(soft.at<cv::Vec3f>(row, col)[k]) * brightness + noise);
       }

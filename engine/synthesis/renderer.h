@@ -51,7 +51,7 @@ cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses,
 
 /// Lens blur, vignette, gain and noise: CV_8UC3. Equal for equal seeds, whatever the threads.
 cv::Mat expose(const cv::Mat& light,
-               const PictureRecipe& picture,
+               const ImageRecipe& image,
                double gain,
                std::uint64_t seed,
                int threads);

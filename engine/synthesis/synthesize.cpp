@@ -47,9 +47,9 @@ std::string camera_yaml(const Recipe& recipe) {
       transformation_yaml(recipe.T_body_camera),
       recipe.frame_rate,
       lens_yaml(recipe.camera));
-  if (recipe.picture.rolling_shutter > 0) {
+  if (recipe.image.rolling_shutter > 0) {
     text += fmt::format("rolling_shutter: {}  # [s] from first to last row; stamp: middle row\n",
-                        recipe.picture.rolling_shutter);
+                        recipe.image.rolling_shutter);
   }
   return text;
 }
@@ -100,11 +100,11 @@ std::string truth_csv(const Recipe& recipe) {
 
 /// The camera's poses over an exposure about a time [s]; one where there is no motion blur.
 std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
-  const PictureRecipe& picture = recipe.picture;
-  const int count = picture.exposure > 0 ? picture.samples * picture.samples : 1;
+  const ImageRecipe& image = recipe.image;
+  const int count = image.exposure > 0 ? image.samples * image.samples : 1;
   std::vector<Pose> poses;
   for (int k = 0; k < count; ++k) {
-    const double offset = picture.exposure * ((k + 0.5) / count - 0.5);
+    const double offset = image.exposure * ((k + 0.5) / count - 0.5);
     poses.push_back(camera_motion(recipe.trajectory, seconds + offset).pose);
   }
   return poses;
@@ -119,21 +119,21 @@ cv::Mat render_frame(const Recipe& recipe,
   const auto row_poses = [&](int row) {
     return exposure_poses(recipe, row_seconds(recipe, timestamp_ns, row));
   };
-  if (recipe.picture.rolling_shutter > 0) return render(scene, rays, row_poses, threads);
+  if (recipe.image.rolling_shutter > 0) return render(scene, rays, row_poses, threads);
   return render(scene, rays, row_poses(0), threads);
 }
 
-void write_frame(const fs::path& file, const cv::Mat& picture, int quality) {
+void write_frame(const fs::path& file, const cv::Mat& image, int quality) {
   std::vector<int> parameters;
   if (file.extension() == ".jpg") {
     parameters = {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
   }
   std::vector<unsigned char> bytes;
-  cv::imencode(file.extension().string(), picture, bytes, parameters);
+  cv::imencode(file.extension().string(), image, bytes, parameters);
   write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
-void write_pictures(const Recipe& recipe,
+void write_images(const Recipe& recipe,
                     const fs::path& folder,
                     const SynthesisProgress& progress,
                     int threads) {
@@ -142,19 +142,19 @@ void write_pictures(const Recipe& recipe,
   };
   const Scene scene = make_scene(recipe, threads, step);
   step();
-  const RayMap rays = make_ray_map(recipe.camera, recipe.picture.samples, threads);
-  std::string list = kPictureListHead;
+  const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
+  std::string list = kImageListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const double seconds = trajectory_seconds(recipe, timestamp);
     const cv::Mat light = render_frame(recipe, scene, rays, timestamp, threads);
     const double gain =
-        1 + recipe.picture.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
+        1 + recipe.image.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
-    const std::string name = fmt::format("{}.{}", timestamp, recipe.picture.format);
+    const std::string name = fmt::format("{}.{}", timestamp, recipe.image.format);
     write_frame(folder / "data" / name,
-                expose(light, recipe.picture, gain, noise_seed, threads),
-                recipe.picture.quality);
+                expose(light, recipe.image, gain, noise_seed, threads),
+                recipe.image.quality);
     list += fmt::format("{},{}\n", timestamp, name);
     if (progress) progress(frame + 1, recipe.frame_count);
   }
@@ -183,7 +183,7 @@ void write_recording(const Recipe& recipe,
     const BoardRecipe& board = *recipe.desk.board;
     write_file(folder / "board.yaml", board_yaml({board.columns, board.rows, board.square}));
   }
-  write_pictures(recipe, mav / "cam0", progress, threads);
+  write_images(recipe, mav / "cam0", progress, threads);
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::error_code& why) {
@@ -336,7 +336,7 @@ void synthesize(const Recipe& recipe,
                 const fs::path& output,
                 const SynthesisProgress& progress,
                 int threads) {
-  UnfinishedFolder unfinished(output);
+  AtomicFolder unfinished(output);
   write_recording(recipe, unfinished.path(), progress, threads);
   unfinished.finish();
 }

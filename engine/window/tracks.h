@@ -21,12 +21,12 @@ struct TrackObservation {
 
 /// Why the built-in front end gave a track up.
 enum class LossReason {
-  left_picture,
+  left_image,
   no_flow,           ///< KLT gives up, there or on the way back
   forward_backward,  ///< the way there and back ends too far from where it began [px]
   look_not_found,    ///< too little of its look in the reference frame is in the picture
-  look_far,          ///< its look is found too far from where it was expected [px]
-  look_unlike        ///< what is found is not like its look: correlation too low [-]
+  far_from_prediction,          ///< its look is found too far from where it was expected [px]
+  low_correlation        ///< what is found is not like its look: correlation too low [-]
 };
 
 /// How a track ended: what was measured and the limit that it broke, NaN where it is no number.

@@ -59,7 +59,7 @@ struct WindowPlane {
   std::vector<int> tracks;                ///< ascending; no track is in two planes
   std::vector<Eigen::Matrix3d> H_i1;      ///< one a frame, of these tracks [px]; NaN: too few
   std::vector<std::vector<bool>> inlier;  ///< one a frame and track: seen, and agrees with H_i1
-  double picture_share = 0;  ///< of the reference picture, what its tracks' convex hull covers [-]
+  double image_share = 0;  ///< of the reference picture, what its tracks' convex hull covers [-]
   double stability = 1;      ///< share of its tracks that stay where the gate is halved [-]
 };
 

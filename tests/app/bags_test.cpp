@@ -57,7 +57,7 @@ void put_beside(const fs::path& folder) {
 }
 
 /// The recording's pictures without any compression, in gray.
-fs::path gray_pictures(const fs::path& folder) {
+fs::path gray_images(const fs::path& folder) {
   fs::create_directories(folder);
   for (const auto& file : fs::directory_iterator(source_recording() / "mav0/cam0/data")) {
     cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
@@ -125,12 +125,12 @@ TEST_P(RosBag, OfPythonsRosbagGivesTheNumbersOfTheFolder) {
   const std::string compression = GetParam();
   const fs::path bag = folder / "room.bag";
   const bool raw = compression == "lz4";
-  const std::string pictures = raw ? gray_pictures(folder / "gray").string() : "";
+  const std::string images = raw ? gray_images(folder / "gray").string() : "";
   const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros1_bag.py {} {} {} {}",
                                                   source_recording().string(),
                                                   bag.string(),
                                                   compression,
-                                                  pictures));
+                                                  images));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
   expect_results_of_folder(bag, folder);
@@ -147,7 +147,7 @@ TEST(Ros2Database, OfPythonGivesTheNumbersOfTheFolder) {
   const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros2_db3.py {} {} {}",
                                                   source_recording().string(),
                                                   bag.string(),
-                                                  gray_pictures(folder / "gray").string()));
+                                                  gray_images(folder / "gray").string()));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
   expect_results_of_folder(bag, folder);

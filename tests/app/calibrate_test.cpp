@@ -32,7 +32,7 @@ Camera camera() {
 }
 
 /// Pictures of the board from many sides, without a calibration.
-void write_pictures(const fs::path& folder, int count) {
+void write_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i) {
     const double turn = 2.4 * i;
@@ -52,7 +52,7 @@ std::vector<double> numbers_of(const fs::path& file, const char* key) {
 
 TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   const fs::path folder = test::fresh_folder();
-  write_pictures(folder / "in", 24);
+  write_images(folder / "in", 24);
   const fs::path output = folder / "in/camera.yaml";
   const Outcome outcome = program(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
                                               (folder / "in").string(),
@@ -179,10 +179,10 @@ TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
 TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
   const fs::path folder = test::fresh_folder();
   int number = 0;
-  std::set<fs::path> pictures;
+  std::set<fs::path> images;
   for (const auto& file : fs::directory_iterator(test::desk() / "mav0/cam0/data"))
-    pictures.insert(file.path());
-  for (const fs::path& file : pictures)
+    images.insert(file.path());
+  for (const fs::path& file : images)
     if (number < 30) fs::copy_file(file, folder / fmt::format("{}.jpg", number++));
   const Outcome run = program(fmt::format("run {} --json -", folder.string()));
   const auto json = nlohmann::json::parse(run.out);

@@ -5,7 +5,7 @@
 // tests/fuzz.
 #include "app/terminal/quiet_libraries.h"
 #include "tests/app/program.h"
-#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/recording/images/made_video.h"
 
 #include <algorithm>
 #include <functional>
@@ -42,20 +42,20 @@ distortion_model: none
 distortion_coefficients: []
 T_BS: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
 )";
-const char* const kPictureList = "#timestamp [ns],filename\n1000000000,0.pgm\n1050000000,1.pgm\n";
+const char* const kImageList = "#timestamp [ns],filename\n1000000000,0.pgm\n1050000000,1.pgm\n";
 const char* const kGyroscope =
     "#timestamp [ns],wx,wy,wz\n990000000,0,0,0\n1000000000,0,0,0\n1060000000,0,0,0\n";
 const char* const kTruth =
     "#timestamp [ns],px,py,pz,qw,qx,qy,qz\n990000000,0,0,1,1,0,0,0\n1060000000,0,0,1,1,0,0,0\n";
 
-std::string picture() { return "P5 8 6 255\n" + std::string(48, 'x'); }
+std::string image() { return "P5 8 6 255\n" + std::string(48, 'x'); }
 
 /// A small recording in EuRoC's layout, without faults.
 void write_recording(const fs::path& folder) {
   write_file(folder / "cam0/sensor.yaml", kCamera);
-  write_file(folder / "cam0/data.csv", kPictureList);
-  write_file(folder / "cam0/data/0.pgm", picture());
-  write_file(folder / "cam0/data/1.pgm", picture());
+  write_file(folder / "cam0/data.csv", kImageList);
+  write_file(folder / "cam0/data/0.pgm", image());
+  write_file(folder / "cam0/data/1.pgm", image());
   write_file(folder / "imu0/data.csv", kGyroscope);
   write_file(folder / "state_groundtruth_estimate0/data.csv", kTruth);
   write_file(folder / "plane.yaml", "normal: [0, 0, 1]\ndistance: 0\n");
@@ -188,12 +188,12 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: found something"}));
 
 INSTANTIATE_TEST_SUITE_P(
-    Pictures,
+    Images,
     HostileFile,
     ::testing::Values(
         Replaced{"cam0/data/0.pgm", "", "0.pgm: found"},
         Replaced{"cam0/data/0.pgm", "no picture at all", "cannot be decoded, expected a picture"},
-        Replaced{"cam0/data/0.pgm", picture().substr(0, 40), "found a cut or broken picture"},
+        Replaced{"cam0/data/0.pgm", image().substr(0, 40), "found a cut or broken picture"},
         Replaced{"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found a picture of 65535x65535"},
         Replaced{
             "cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}));
@@ -275,9 +275,9 @@ TEST(HostileInput, BrokenVideosAreRefused) {
   const fs::path folder = fresh_folder();
   const fs::path video = folder / "recording/a.mp4";
   write_file(folder / "recording/camera.yaml", camera_with("[8, 6]", "[64, 48]"));
-  std::vector<cv::Mat> pictures;
-  for (int i = 0; i < 10; ++i) pictures.emplace_back(48, 64, CV_8UC3, cv::Scalar::all(20 * i));
-  test::make_video(video, pictures);
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < 10; ++i) images.emplace_back(48, 64, CV_8UC3, cv::Scalar::all(20 * i));
+  test::make_video(video, images);
   const std::string whole = read_file(video);
   const std::string info = "info " + (folder / "recording").string();
   EXPECT_EQ(program(info).exit_code, 0);

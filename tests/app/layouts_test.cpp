@@ -4,7 +4,7 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/app/program.h"
-#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>
@@ -36,7 +36,7 @@ const Recording& original() {
   return *kDesk;
 }
 
-fs::path picture_file(int frame) {
+fs::path image_file(int frame) {
   return desk() / "mav0/cam0/data" / fmt::format("{}.jpg", original().timestamps_ns[frame]);
 }
 
@@ -46,17 +46,17 @@ std::string seconds(std::int64_t ns) {
   return fmt::format("{}.{:09d}", ns / 1000000000, ns % 1000000000);
 }
 
-void copy_pictures(const fs::path& folder, const std::function<std::string(int)>& name) {
+void copy_images(const fs::path& folder, const std::function<std::string(int)>& name) {
   fs::create_directories(folder);
-  for (int i = 0; i < kFrames; ++i) fs::copy_file(picture_file(i), folder / name(i));
+  for (int i = 0; i < kFrames; ++i) fs::copy_file(image_file(i), folder / name(i));
 }
 
 /// Gray pictures in another format; `scale` makes 16 bits of 8.
 void write_gray(const fs::path& folder, const char* ending, int depth, double scale) {
   for (int i = 0; i < kFrames; ++i) {
-    cv::Mat picture;
-    original().pictures->gray(i).convertTo(picture, depth, scale);
-    ASSERT_TRUE(cv::imwrite((folder / fmt::format("{}.{}", i, ending)).string(), picture));
+    cv::Mat image;
+    original().images->gray(i).convertTo(image, depth, scale);
+    ASSERT_TRUE(cv::imwrite((folder / fmt::format("{}.{}", i, ending)).string(), image));
   }
 }
 
@@ -181,7 +181,7 @@ const std::vector<Fixture>& fixtures() {
          for (int i = 0; i < kFrames; ++i) {
            list += fmt::format("{} rgb/{}.jpg\n", seconds(original().timestamps_ns[i]), i);
          }
-         copy_pictures(folder / "rgb", [](int i) { return fmt::format("{}.jpg", i); });
+         copy_images(folder / "rgb", [](int i) { return fmt::format("{}.jpg", i); });
          write_file(folder / "rgb.txt", list);
          write_opencv_camera(folder / "camera.yaml");
          write_truth(folder, seconds);
@@ -191,7 +191,7 @@ const std::vector<Fixture>& fixtures() {
        true,
        true,
        [](const fs::path& folder) {
-         copy_pictures(folder / "images", [](int i) { return fmt::format("frame{}.jpg", i); });
+         copy_images(folder / "images", [](int i) { return fmt::format("frame{}.jpg", i); });
          write_file(folder / "camera.yaml", kEurocCamera);
          write_frame_times(folder / "frame_timestamps.txt", "timestamp", seconds_since_start);
          write_gyroscope(folder / "gyro.csv", "timestamp,wx,wy,wz,ax,ay,az", seconds_since_start);
@@ -202,7 +202,7 @@ const std::vector<Fixture>& fixtures() {
        true,
        true,
        [](const fs::path& folder) {
-         copy_pictures(folder, [](int i) { return fmt::format("{}.jpg", i); });
+         copy_images(folder, [](int i) { return fmt::format("{}.jpg", i); });
          write_file(folder / "camchain-imucam-desk.yaml", kKalibrCamera);
          write_frame_times(folder / "frame_timestamps.txt", "time_ms", milliseconds_of_a_day);
          write_gyroscope(folder / "gyro.csv",
@@ -250,9 +250,9 @@ const std::vector<Fixture>& fixtures() {
        true,
        false,
        [](const fs::path& folder) {
-         std::vector<cv::Mat> pictures;
-         for (int i = 0; i < kFrames; ++i) pictures.push_back(original().pictures->bgr(i));
-         test::make_video(folder / "movie.mp4", pictures);
+         std::vector<cv::Mat> images;
+         for (int i = 0; i < kFrames; ++i) images.push_back(original().images->bgr(i));
+         test::make_video(folder / "movie.mp4", images);
          write_file(folder / "camera.yaml", kEurocCamera);
          write_frame_times(folder / "frame_timestamps.txt",
                            "Frame timestamp[nanosec],Unix time[nanosec]",
@@ -298,11 +298,11 @@ TEST_P(Layouts, OpenFromInfoRunAndTheWindow) {
   EXPECT_NEAR(metrics["pne_deg"], expected["pne_deg"], fixture.same_pixels ? 1e-3 : 0.5);
   EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels ? 1e-6 : 1e-3);
 
-  const fs::path picture = folder.parent_path() / (std::string(fixture.name) + ".png");
+  const fs::path image = folder.parent_path() / (std::string(fixture.name) + ".png");
   const Outcome window =
-      program("snapshot " + folder.string() + " --view window --output " + picture.string());
+      program("snapshot " + folder.string() + " --view window --output " + image.string());
   EXPECT_EQ(window.exit_code, 0) << window.err;
-  EXPECT_FALSE(cv::imread(picture.string()).empty());
+  EXPECT_FALSE(cv::imread(image.string()).empty());
   fs::remove_all(folder);
 }
 

@@ -193,7 +193,7 @@ class Installed {
     fs::create_directories(folder_ / "pictures");
     for (int i = 0; i < kDeskFrames; ++i) {
       cv::Mat straight;
-      cv::undistort(recording->pictures->bgr(i), straight, K, c.coefficients);
+      cv::undistort(recording->images->bgr(i), straight, K, c.coefficients);
       cv::imwrite((folder_ / fmt::format("pictures/{:03}.png", i)).string(), straight);
     }
     camera_ = fmt::format("{} {} {} {}", c.fx, c.fy, c.cx, c.cy);

@@ -54,14 +54,14 @@ void make_and_unpack() {
 
 void expect_that_the_program_runs() {
   const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
-  const fs::path picture = folder() / "image.png";
+  const fs::path image = folder() / "image.png";
   const test::Outcome drawn =
       shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
                         (root() / "usr/bin/gpo-inspector").string(),
                         desk.string(),
-                        picture.string()));
+                        image.string()));
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
-  EXPECT_TRUE(fs::exists(picture));
+  EXPECT_TRUE(fs::exists(image));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
               AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
 }

@@ -139,7 +139,7 @@ TEST(Readme, EveryCommandWorks) {
   }
 }
 
-TEST(Readme, WithoutADisplayRunPrintsTheTableAndNamesThePictures) {
+TEST(Readme, WithoutADisplayRunPrintsTheTableAndNamesTheImages) {
   const Outcome outcome = shell_in(linked_checkout(), "./run.sh");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("status      ok"));

@@ -66,9 +66,9 @@ TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
 
 TEST(RecipeAsRecording, SnapshotDrawsIt) {
   const fs::path recipe = fresh_recipe("snapshottest", inspectable_recipe());
-  const fs::path picture = recipe.parent_path() / "picture.png";
-  program("snapshot " + recipe.string() + " --frames 4 --view image --output " + picture.string());
-  EXPECT_TRUE(fs::exists(picture));
+  const fs::path image = recipe.parent_path() / "picture.png";
+  program("snapshot " + recipe.string() + " --frames 4 --view image --output " + image.string());
+  EXPECT_TRUE(fs::exists(image));
 }
 
 /// Runs it and presses Ctrl-C as soon as there is `begun`.

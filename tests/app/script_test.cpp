@@ -20,7 +20,7 @@ class Script : public testing::Test {
     return program("snapshot --script '" + (folder_ / "script.txt").string() + "' " + arguments);
   }
   std::string in(const std::string& name) const { return (folder_ / name).string(); }
-  cv::Mat picture(const std::string& name) const { return cv::imread(in(name)); }
+  cv::Mat image(const std::string& name) const { return cv::imread(in(name)); }
 
   std::filesystem::path folder_ = fresh_folder();
 };
@@ -41,10 +41,10 @@ TEST_F(Script, OpensChoosesAndDrawsAnyViewAtAnySize) {
                             in("normals.png") + " normals 500x400\nview compare\nscreenshot " +
                             in("compare.png") + " compare 1200x500\n");
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_EQ(picture("window.png").size(), cv::Size(1024, 640));
-  EXPECT_EQ(picture("picture.png").size(), cv::Size(640, 480));
-  EXPECT_EQ(picture("normals.png").size(), cv::Size(500, 400));
-  EXPECT_EQ(picture("compare.png").size(), cv::Size(1200, 500));
+  EXPECT_EQ(image("window.png").size(), cv::Size(1024, 640));
+  EXPECT_EQ(image("picture.png").size(), cv::Size(640, 480));
+  EXPECT_EQ(image("normals.png").size(), cv::Size(500, 400));
+  EXPECT_EQ(image("compare.png").size(), cv::Size(1200, 500));
   EXPECT_THAT(again.out, HasSubstr("saved " + in("normals.png")));
 }
 
@@ -82,7 +82,7 @@ TEST_F(Script, OfASessionGoesOnWhereItWasSaved) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   // All of the window but the line with the last message.
   const cv::Rect shown(0, 0, 1280, 690);
-  EXPECT_EQ(cv::norm(picture("a.png")(shown), picture("b.png")(shown), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(image("a.png")(shown), image("b.png")(shown), cv::NORM_INF), 0);
   const auto session = nlohmann::json::parse(read_file(in("s.json")));
   EXPECT_EQ(session["settings"]["method"], "ba");
   EXPECT_EQ(session["frame"], 7);

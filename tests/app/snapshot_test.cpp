@@ -112,8 +112,8 @@ TEST(Snapshot, CurvesNeedGroundTruth) {
 TEST(Snapshot, TakesTheSizeThatIsAskedFor) {
   const fs::path file = fresh_folder() / "a.png";
   ASSERT_EQ(snapshot("window", file, "--size 1000x600").exit_code, 0);
-  const cv::Mat picture = cv::imread(file.string());
-  EXPECT_EQ(picture.size(), cv::Size(1000, 600));
+  const cv::Mat image = cv::imread(file.string());
+  EXPECT_EQ(image.size(), cv::Size(1000, 600));
 }
 
 TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/autodiff_gpo.h"
 
-#include "engine/methods/plane/delivery.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/residuals/ceres_solver.h"
 #include "engine/methods/residuals/direction.h"
@@ -66,7 +66,7 @@ Initialization initialize_autodiff_gpo(const Window& window) {
   }
   const SolverReport solver = solve_by_schur(problem, std::move(ordering), {}, {});
   motion.normal = direction(q).normalized();
-  return deliver(window, motion, solver);
+  return make_result(window, motion, solver);
 }
 
 }  // namespace gpo::bench

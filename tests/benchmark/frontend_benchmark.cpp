@@ -31,13 +31,13 @@ void decode(benchmark::State& state, const Recording& /*recording*/) {
   const auto recording = desk({.tracks = {}, .cache_bytes = 1});  // keeps one picture
   int frame = 0;
   measure(state, thread_ms, [&] {
-    benchmark::DoNotOptimize(recording->pictures->bgr(frame));
+    benchmark::DoNotOptimize(recording->images->bgr(frame));
     frame = (frame + 1) % kFrames;
   });
 }
 
 void detect(benchmark::State& state, const Recording& recording) {
-  const cv::Mat gray = recording.pictures->gray(0);
+  const cv::Mat gray = recording.images->gray(0);
   measure(state, thread_ms, [&] { benchmark::DoNotOptimize(detect_corners(gray)); });
   state.counters["tracks"] = static_cast<double>(detect_corners(gray).cols());
 }
@@ -54,7 +54,7 @@ void track(benchmark::State& state, const Recording& recording, Tracking trackin
       if (done > 1) ms.push_back(now - begin);
       begin = now;
     };
-    track_window([&](int frame) { return recording.pictures->gray(frame); },
+    track_window([&](int frame) { return recording.images->gray(frame); },
                  recording.camera,
                  0,
                  kFrames,
@@ -80,7 +80,7 @@ Eigen::Matrix2Xd undistorted(const Camera& camera, const Eigen::Matrix2Xd& raw_p
 }
 
 void undistort_tracks(benchmark::State& state, const Recording& recording) {
-  const Eigen::Matrix2Xd corners = detect_corners(recording.pictures->gray(0));
+  const Eigen::Matrix2Xd corners = detect_corners(recording.images->gray(0));
   measure(
       state, thread_ms, [&] { benchmark::DoNotOptimize(undistorted(recording.camera, corners)); });
 }
@@ -88,7 +88,7 @@ void undistort_tracks(benchmark::State& state, const Recording& recording) {
 /// Between the window's first and last frame, where the most tracks are off the plane.
 void ransac(benchmark::State& state, const Recording& recording) {
   const auto tracks = track_window(
-      [&](int frame) { return recording.pictures->gray(frame); }, recording.camera, 0, kFrames);
+      [&](int frame) { return recording.images->gray(frame); }, recording.camera, 0, kFrames);
   const Eigen::Matrix2Xd& last = tracks->raw_px.back();
   std::vector<int> seen;
   for (int j = 0; j < last.cols(); ++j) {

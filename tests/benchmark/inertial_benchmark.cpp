@@ -13,7 +13,7 @@ namespace {
 constexpr int kSeconds[] = {1, 2, 4};
 
 void align(benchmark::State& state, int seconds) {
-  const SimulatedAlignment made = simulated_alignment(Pace::brisk, kPhone, seconds, 1);
+  const SimulatedAlignment made = simulated_alignment(ReportTimer::brisk, kPhone, seconds, 1);
   InertialAlignment result;
   measure(state, thread_ms, [&] {
     result = align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);

@@ -10,14 +10,14 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/picture/image_view.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <thread>
@@ -58,18 +58,18 @@ class ImageView : public View {
  public:
   explicit ImageView(const Inspections& inspections) : inspection_(*inspections.front()) {}
   void draw(int frame) override {
-    if (frame != frame_) texture_.upload(inspection_.recording->pictures->bgr(frame));
+    if (frame != frame_) texture_.upload(inspection_.recording->images->bgr(frame));
     frame_ = frame;
     gui_.begin_frame(kSize.width, kSize.height);
     draw_image_view(
         *ImGui::GetBackgroundDrawList(), whole(), inspection_, frame, &texture_, {}, {});
-    gui_.end_frame(picture_, color_of(Role::border));
+    gui_.end_frame(image_, color_of(Role::border));
   }
 
  private:
   Gui gui_;
-  WindowPicture picture_;
-  PictureTexture texture_;
+  WindowImage image_;
+  ImageTexture texture_;
   int frame_ = -1;
   const Inspection& inspection_;
 };
@@ -78,17 +78,17 @@ class CompareView : public View {
  public:
   explicit CompareView(const Inspections& inspections) : inspections_(inspections) {}
   void draw(int frame) override {
-    if (frame != frame_) texture_.upload(inspections_[0]->recording->pictures->bgr(frame));
+    if (frame != frame_) texture_.upload(inspections_[0]->recording->images->bgr(frame));
     frame_ = frame;
     gui_.begin_frame(kSize.width, kSize.height);
     draw_compare_view(*ImGui::GetBackgroundDrawList(), whole(), inspections_, frame, &texture_);
-    gui_.end_frame(picture_, color_of(Role::border));
+    gui_.end_frame(image_, color_of(Role::border));
   }
 
  private:
   Gui gui_;
-  WindowPicture picture_;
-  PictureTexture texture_;
+  WindowImage image_;
+  ImageTexture texture_;
   int frame_ = -1;
   const Inspections& inspections_;
 };
@@ -104,12 +104,12 @@ class OnlyScene : public View {
     gui_.begin_frame(kSize.width, kSize.height);
     draw_scene_view(
         *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, options_);
-    gui_.end_frame(picture_, color_of(Role::border));
+    gui_.end_frame(image_, color_of(Role::border));
   }
 
  private:
   Gui gui_;
-  WindowPicture picture_;
+  WindowImage image_;
   SceneView view_;
   const Inspection& inspection_;
 
@@ -136,7 +136,7 @@ class WholeWindow : public View {
   explicit WholeWindow(const Inspections& inspections) {
     const auto& inspection = inspections.front();
     state_.document.settings = inspection->settings;
-    adopt(state_, inspection->recording);
+    apply_recording(state_, inspection->recording);
     state_.results.inspection = inspection;
   }
   void draw(int frame) override {

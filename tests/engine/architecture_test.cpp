@@ -49,7 +49,7 @@ const Names kPure = {"engine/base/",
                      "engine/methods/",
                      "engine/truth/",
                      "engine/evaluation/"};
-const Names kLibrariesOfPicturesAndFiles = {"opencv2/",
+const Names kLibrariesOfImagesAndFiles = {"opencv2/",
                                             "yaml-cpp/",
                                             "nlohmann/",
                                             "libav",
@@ -201,7 +201,7 @@ TEST(Architecture, NoTwoFoldersIncludeEachOther) { EXPECT_THAT(mutual_folders(tr
 TEST(Architecture, NoTwoFilesKnowEachOther) { EXPECT_THAT(mutual_units(tree()), IsEmpty()); }
 
 TEST(Architecture, TheMathematicsUseEigenAndCeresOnly) {
-  EXPECT_THAT(using_libraries(tree(), kPure, kLibrariesOfPicturesAndFiles), IsEmpty());
+  EXPECT_THAT(using_libraries(tree(), kPure, kLibrariesOfImagesAndFiles), IsEmpty());
 }
 
 TEST(Architecture, TheEngineNeedsNoScreen) {
@@ -301,7 +301,7 @@ TEST(Architecture, IncludesAgainstTheLayersAreFound) {
               testing::ElementsAre("engine/a", "engine/b", "engine/c", "engine/d"));
   EXPECT_THAT(mutual_units(includes),
               testing::ElementsAre("engine/geometry/a and engine/geometry/b"));
-  EXPECT_THAT(using_libraries(includes, kPure, kLibrariesOfPicturesAndFiles),
+  EXPECT_THAT(using_libraries(includes, kPure, kLibrariesOfImagesAndFiles),
               testing::ElementsAre("engine/geometry/pose.cpp includes opencv2/core.hpp"));
   EXPECT_EQ(type_defined_in("class PlaneProblem {"), "PlaneProblem");
   EXPECT_EQ(type_defined_in("enum class Loss { squared, huber };"), "Loss");

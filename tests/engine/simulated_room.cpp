@@ -99,7 +99,7 @@ Room simulate_room(const RoomOptions& options) {
   room.window = make_window(
       tracks, camera, base.window.timestamps_ns, {.seed = options.seed}, Inliers::planes);
   for (int i = 0; i < options.frames; ++i) room.window.R_wc[i] = base.cameras[i].R_wc;
-  if (options.told_truly) tell_truly(room);
+  if (options.known_exactly) tell_truly(room);
   return room;
 }
 

@@ -31,7 +31,7 @@ struct RoomOptions {
   std::function<double(const Eigen::Vector3d&)> surface = nullptr;
   /// The window's planes are the true ones with all their tracks, not those that the front end
   /// finds.
-  bool told_truly = false;
+  bool known_exactly = false;
   std::uint64_t seed = 1;
 };
 

@@ -35,9 +35,9 @@ class TestFolder {
     std::ofstream(path_ / name, std::ios::binary) << content;
     return path_ / name;
   }
-  std::filesystem::path write(const std::string& name, const cv::Mat& picture) const {
+  std::filesystem::path write(const std::string& name, const cv::Mat& image) const {
     std::filesystem::create_directories((path_ / name).parent_path());
-    EXPECT_TRUE(cv::imwrite((path_ / name).string(), picture));
+    EXPECT_TRUE(cv::imwrite((path_ / name).string(), image));
     return path_ / name;
   }
   std::string read(const std::string& name) const {

@@ -9,6 +9,6 @@ void gpo::fuzz::fuzz_bag(std::string_view bytes) {
   const auto file = gpo::fuzz::file_of(bytes);
   gpo::fuzz::parse([&] {
     const auto recording = gpo::read_bag(file, {.tracks = {}, .cache_bytes = std::size_t{1} << 20});
-    recording.pictures->bgr(recording.frame_count() - 1);
+    recording.images->bgr(recording.frame_count() - 1);
   });
 }

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The first byte chooses the encoding and the type.
-#include "engine/recording/bags/bag_picture.h"
+#include "engine/recording/bags/bag_image.h"
 #include "engine/recording/bags/messages.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"
@@ -31,7 +31,7 @@ void gpo::fuzz::fuzz_message(std::string_view bytes) {
   gpo::fuzz::parse([&] {
     gpo::read_header(bytes, encoding);
     gpo::read_imu(bytes, encoding);
-    if (gpo::is_picture_type(type)) gpo::bag_picture(bytes, {"/camera", type, encoding}, "camera");
+    if (gpo::is_image_type(type)) gpo::bag_image(bytes, {"/camera", type, encoding}, "camera");
     if (const auto pose = gpo::read_pose(bytes, encoding, type)) pose->pose();
     if (type == gpo::kTransformsType) gpo::read_transforms(bytes, encoding);
     if (type != gpo::kCameraInfoType) return;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // FFmpeg's own code is not instrumented: this looks for what ours makes of its answers.
-#include "engine/recording/pictures/video_decoder.h"
+#include "engine/recording/images/video_decoder.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"
 

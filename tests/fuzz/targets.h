@@ -13,7 +13,7 @@ void fuzz_calibration(std::string_view bytes);
 void fuzz_experiment(std::string_view bytes);
 void fuzz_logs(std::string_view bytes);
 void fuzz_message(std::string_view bytes);
-void fuzz_picture(std::string_view bytes);
+void fuzz_image(std::string_view bytes);
 void fuzz_poses(std::string_view bytes);
 void fuzz_recipe(std::string_view bytes);
 void fuzz_recording(std::string_view bytes);
@@ -38,7 +38,7 @@ inline constexpr std::array kTargets = {
     Target{"experiment", fuzz_experiment},
     Target{"logs", fuzz_logs},
     Target{"message", fuzz_message},
-    Target{"picture", fuzz_picture},
+    Target{"picture", fuzz_image},
     Target{"poses", fuzz_poses},
     Target{"recipe", fuzz_recipe},
     Target{"recording", fuzz_recording},

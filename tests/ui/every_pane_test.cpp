@@ -3,7 +3,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace gpo {
 namespace {
 
 /// What is open in a window, and how it is looked at.
-struct Look {
+struct Patch {
   cv::Size size;
   float scale;
 };
 
-class EveryPane : public DrawingTest, public testing::WithParamInterface<Look> {};
+class EveryPane : public DrawingTest, public testing::WithParamInterface<Patch> {};
 
 cv::Mat drawn(OffscreenContext& context, Gui& gui, Views& views, const WorkbenchState& state) {
   const JobStatus idle;
@@ -41,35 +41,35 @@ TEST_P(EveryPane, IsDrawnAndOtherThanTheOthers) {
     const auto inspection = std::make_shared<const Inspection>(made_inspection(options));
     WorkbenchState state;
     state.document.settings = inspection->settings;
-    adopt(state, inspection->recording);
+    apply_recording(state, inspection->recording);
     state.results.inspection = inspection;
     run_line(state, "select track " + std::to_string(inspection->tracks->ids[3]));
-    std::vector<cv::Mat> pictures = {drawn(context, gui, views, state)};
+    std::vector<cv::Mat> images = {drawn(context, gui, views, state)};
     for (const Action& action : actions()) {
       if (!action.name.starts_with("view ") || !action.complete()) continue;
       if (action.name == "view scene" || action.name == "view no-drawer") continue;
       WorkbenchState other = state;
       run_line(other, action.name);
-      pictures.push_back(drawn(context, gui, views, other));
-      const auto same = [&](const cv::Mat& one) { return same_bytes(one, pictures.back()); };
-      EXPECT_EQ(std::ranges::count_if(pictures, same), 1) << action.name;
+      images.push_back(drawn(context, gui, views, other));
+      const auto same = [&](const cv::Mat& one) { return same_bytes(one, images.back()); };
+      EXPECT_EQ(std::ranges::count_if(images, same), 1) << action.name;
     }
     for (const char* line : {"help", "palette", "theme light"}) {
       WorkbenchState other = state;
       run_line(other, line);
-      EXPECT_FALSE(same_bytes(drawn(context, gui, views, other), pictures.front())) << line;
+      EXPECT_FALSE(same_bytes(drawn(context, gui, views, other), images.front())) << line;
     }
     // The dark theme again: the very bytes as before.
-    EXPECT_TRUE(same_bytes(drawn(context, gui, views, state), pictures.front()));
+    EXPECT_TRUE(same_bytes(drawn(context, gui, views, state), images.front()));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes,
                          EveryPane,
-                         testing::Values(Look{{1024, 640}, 1},
-                                         Look{{1280, 720}, 1},
-                                         Look{{2560, 1440}, 2},
-                                         Look{{3840, 2160}, 2}),
+                         testing::Values(Patch{{1024, 640}, 1},
+                                         Patch{{1280, 720}, 1},
+                                         Patch{{2560, 1440}, 2},
+                                         Patch{{3840, 2160}, 2}),
                          [](const auto& info) {
                            return std::to_string(info.param.size.width) + "at" +
                                   std::to_string(static_cast<int>(info.param.scale));

@@ -35,16 +35,16 @@ inline bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
 }
 
 /// For people to look at.
-inline void keep(const std::string& name, const cv::Mat& picture) {
+inline void keep(const std::string& name, const cv::Mat& image) {
   std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", picture);
+  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", image);
 }
 
 /// Pixels of nearly that color.
-inline int count_pixels(const cv::Mat& picture, std::uint32_t rgb, int tolerance = 6) {
+inline int count_pixels(const cv::Mat& image, std::uint32_t rgb, int tolerance = 6) {
   const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
   int pixels = 0;
-  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(picture))
+  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(image))
     pixels += cv::norm(cv::Vec3i(bgr) - wanted, cv::NORM_INF) <= tolerance ? 1 : 0;
   return pixels;
 }

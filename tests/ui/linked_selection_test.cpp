@@ -5,12 +5,12 @@
 #include "tests/ui/held_keys.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/panels/panes/view_options.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/image_view.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <Eigen/Geometry>
@@ -31,7 +31,7 @@ class LinkedSelection : public DrawingTest {
 
   LinkedSelection() {
     state_.document.settings = inspection_->settings;
-    adopt(state_, inspection_->recording);
+    apply_recording(state_, inspection_->recording);
     state_.results.inspection = inspection_;
     apply(state_, GoToFrame{kFrame});
     for (int i = 0; i < 3; ++i) draw();
@@ -58,12 +58,12 @@ class LinkedSelection : public DrawingTest {
     for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
   }
 
-  ScreenRect picture() const { return screen_rect(layout_.picture); }
+  ScreenRect image() const { return screen_rect(layout_.image); }
   /// Where the picture shows a track.
   Vector2d track_on_screen(int column) const {
-    const PictureMapping mapping = map_picture(state_.document.recording->camera,
-                                               picture(),
-                                               state_.view.picture_zoom,
+    const ImageMapping mapping = map_image(state_.document.recording->camera,
+                                               image(),
+                                               state_.view.image_zoom,
                                                state_.view.toggles.undistorted);
     return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
   }
@@ -151,20 +151,20 @@ TEST_F(LinkedSelection, ClickPicksAndControlClickAddsAndTakesAway) {
 
 TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
   test::hold(false, true);
-  const Vector2d middle = picture().min + picture().size / 2;
+  const Vector2d middle = image().min + image().size / 2;
   point_at(middle - Vector2d(120, 90));
   press(0, true);
   point_at(middle + Vector2d(120, 90));
   press(0, false);
   test::hold(false, false);
   EXPECT_GT(state_.selection.tracks.size(), 3U);
-  EXPECT_EQ(state_.view.picture_zoom.factor, 1);
-  EXPECT_EQ(state_.view.picture_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
+  EXPECT_EQ(state_.view.image_zoom.factor, 1);
+  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
 }
 
 TEST_F(LinkedSelection, WithoutDistortionTracksArePickedWhereTheyAreShown) {
-  const Eigen::AlignedBox2d inside(picture().min + Vector2d(20, 20),
-                                   picture().min + picture().size - Vector2d(20, 20));
+  const Eigen::AlignedBox2d inside(image().min + Vector2d(20, 20),
+                                   image().min + image().size - Vector2d(20, 20));
   const auto moved = [&](int column) {
     state_.view.toggles.undistorted = false;
     const Vector2d recorded = track_on_screen(column);
@@ -216,15 +216,15 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
 }
 
-TEST_F(LinkedSelection, RightClickInThePictureBringsTheCubeThere) {
-  const Vector2d at = (picture().min + 0.6 * picture().size).array().floor();
+TEST_F(LinkedSelection, RightClickInTheImageBringsTheCubeThere) {
+  const Vector2d at = (image().min + 0.6 * image().size).array().floor();
   click(at, 1);
   ASSERT_TRUE(state_.document.cube_ray.has_value());
-  const PictureMapping mapping =
-      map_picture(state_.document.recording->camera, picture(), state_.view.picture_zoom);
+  const ImageMapping mapping =
+      map_image(state_.document.recording->camera, image(), state_.view.image_zoom);
   const auto ray = point_on_plane(*inspection_,
                                   kFrame - inspection_->window->start,
-                                  to_picture(mapping, at),
+                                  to_image(mapping, at),
                                   inspection_->initialization->plane);
   EXPECT_LT((*ray - *state_.document.cube_ray).norm(), 1e-9);
 }

@@ -51,8 +51,8 @@ Vector3d on_floor(const Camera& camera, const Pose& pose, const Vector2d& raw_px
 }
 
 /// A checkered floor with a grain.
-cv::Mat made_picture(const Camera& camera, int frame) {
-  cv::Mat picture(camera.height, camera.width, CV_8UC3);
+cv::Mat made_image(const Camera& camera, int frame) {
+  cv::Mat image(camera.height, camera.width, CV_8UC3);
   const Vector3d x = Vector3d::UnitX(), y = made_plane().normal.cross(x);
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
@@ -61,9 +61,9 @@ cv::Mat made_picture(const Camera& camera, int frame) {
       const bool dark = (static_cast<long>(std::floor(a)) + static_cast<long>(std::floor(b))) & 1;
       const double grain = 14 * std::sin(11 * a) * std::sin(13 * b);
       const auto value = static_cast<uchar>((dark ? 92 : 158) + grain);
-      picture.at<cv::Vec3b>(v, u) = cv::Vec3b(value - 12, value, value + 8);
+      image.at<cv::Vec3b>(v, u) = cv::Vec3b(value - 12, value, value + 8);
     }
-  return picture;
+  return image;
 }
 
 std::shared_ptr<Recording> made_recording(const MadeOptions& options) {
@@ -71,9 +71,9 @@ std::shared_ptr<Recording> made_recording(const MadeOptions& options) {
   recording->name = "made";
   recording->camera = made_camera(options.distorted);
   for (int i = 0; i < kFrames; ++i) recording->timestamps_ns.push_back(i * 33'333'333L);
-  if (options.pictures)
-    recording->pictures = std::make_shared<FrameCache>(
-        kFrames, [camera = recording->camera](int i) { return made_picture(camera, i); });
+  if (options.images)
+    recording->images = std::make_shared<FrameCache>(
+        kFrames, [camera = recording->camera](int i) { return made_image(camera, i); });
   return recording;
 }
 

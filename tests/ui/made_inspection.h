@@ -9,7 +9,7 @@ namespace gpo {
 /// What a made-up inspection is like.
 struct MadeOptions {
   bool distorted = true;        ///< through a lens with radial-tangential distortion
-  bool pictures = true;         ///< a drawn checkered floor
+  bool images = true;         ///< a drawn checkered floor
   bool ok = true;               ///< else it failed, with a reason
   bool refused = false;         ///< what it found was not believed
   bool truth = true;            ///< known true cameras and plane

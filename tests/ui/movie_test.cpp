@@ -3,7 +3,7 @@
 #include "ui/movie.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/pictures/video_decoder.h"
+#include "engine/recording/images/video_decoder.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
@@ -70,7 +70,7 @@ TEST_F(MovieTest, HasTheWindowsFramesAtTheRecordingsSizeAndRate) {
   const Camera& camera = state.document.recording->camera;
   EXPECT_EQ(frames[0].size(), even_size({camera.width, camera.height}));
   run_line(state, "frame 5");
-  EXPECT_LT(mean_difference(frames[0], host_.picture("picture", frames[0].size())), 8);
+  EXPECT_LT(mean_difference(frames[0], host_.image("picture", frames[0].size())), 8);
   EXPECT_GT(mean_difference(frames[0], frames.back()), 8);
   EXPECT_THAT(state.messages.text, HasSubstr("saved"));
 }
@@ -115,7 +115,7 @@ TEST_F(MovieTest, InCompareModeTheColumnsMove) {
   const auto draw = [this](const WorkbenchState& shown, const std::string& view, cv::Size size) {
     EXPECT_EQ(view, "compare");
     host_.state.view.frame = shown.view.frame;
-    return host_.picture(view, size);
+    return host_.image(view, size);
   };
   WorkbenchState two = state;
   two.view.panes.compare = true;

@@ -6,7 +6,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <cmath>
@@ -32,7 +32,7 @@ class PanesTest : public DrawingTest {
   }
   void open(const Inspection& inspection) {
     state_.document.settings = inspection.settings;
-    adopt(state_, inspection.recording);
+    apply_recording(state_, inspection.recording);
     state_.results.inspection = std::make_shared<const Inspection>(inspection);
     draw();
   }
@@ -49,7 +49,7 @@ class PanesTest : public DrawingTest {
   WindowLayout layout() const {
     return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
   }
-  cv::Mat drawer_picture() {
+  cv::Mat drawer_image() {
     draw();
     draw();
     const Rectangle& place = layout().drawer;
@@ -197,19 +197,19 @@ TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
   EXPECT_EQ(views_->normals.texture().revision(), 0U);
 }
 
-TEST_F(PanesTest, TimesAreLeftOutOfPictures) {
+TEST_F(PanesTest, TimesAreLeftOutOfImages) {
   Inspection inspection = made_inspection();
   state_.view.panes.drawer = find_drawer("timing");
   for (const bool timings : {false, true}) {
     timings_ = timings;
     inspection.timing = {100, 20, 3, 40, 30, 163};
     open(inspection);
-    const cv::Mat first = drawer_picture();
+    const cv::Mat first = drawer_image();
     std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
     cv::imwrite(GPO_TEST_OUTPUT_DIR "/timing.png", first);
     inspection.timing = {10, 220, 33, 4, 3, 270};
     open(inspection);
-    EXPECT_EQ(same_bytes(first, drawer_picture()), !timings);
+    EXPECT_EQ(same_bytes(first, drawer_image()), !timings);
   }
 }
 

@@ -56,10 +56,10 @@ TEST_F(AQuestion, WaitsForOneOfItsButtons) {
 
 TEST_F(AQuestion, ShowsWhatItIsAbout) {
   for (int i = 0; i < 3; ++i) draw();
-  const cv::Mat picture = context_.read_bgr();
-  keep("question", picture);
+  const cv::Mat image = context_.read_bgr();
+  keep("question", image);
   cv::Mat gray, different;
-  cv::extractChannel(picture, gray, 1);
+  cv::extractChannel(image, gray, 1);
   cv::compare(gray, gray.at<std::uint8_t>(0, 0), different, cv::CMP_NE);
   EXPECT_GT(cv::countNonZero(different), 20'000);
 }

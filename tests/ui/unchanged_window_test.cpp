@@ -3,7 +3,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class UnchangedWindow : public DrawingTest {
   UnchangedWindow() {
     const auto inspection = std::make_shared<const Inspection>(made_inspection());
     state_.document.settings = inspection->settings;
-    adopt(state_, inspection->recording);
+    apply_recording(state_, inspection->recording);
     state_.results.inspection = inspection;
     for (int i = 0; i < 3; ++i) draw();  // sizes settle
   }
@@ -59,11 +59,11 @@ TEST_F(UnchangedWindow, StepDrawsTheViewsButNotTheSettingsNorTheSceneAnew) {
   for (const int frame : {20, 21}) {
     apply(state_, GoToFrame{frame});
     draw();
-    EXPECT_TRUE(redrawn(layout_.picture));
+    EXPECT_TRUE(redrawn(layout_.image));
     EXPECT_TRUE(redrawn(layout_.side));
     EXPECT_FALSE(redrawn(layout_.settings));
     const cv::Mat kept = context_.read_bgr();
-    views_.window = WindowPicture();  // all of it is drawn at once now
+    views_.window = WindowImage();  // all of it is drawn at once now
     draw();
     EXPECT_TRUE(same_bytes(kept, context_.read_bgr()));
   }
@@ -73,7 +73,7 @@ TEST_F(UnchangedWindow, StepDrawsTheViewsButNotTheSettingsNorTheSceneAnew) {
 TEST_F(UnchangedWindow, HiddenTracksAreGoneAtOnce) {
   state_.view.toggles.tracks = !state_.view.toggles.tracks;
   draw();
-  EXPECT_TRUE(redrawn(layout_.picture));
+  EXPECT_TRUE(redrawn(layout_.image));
   EXPECT_FALSE(redrawn(layout_.side));
 }
 

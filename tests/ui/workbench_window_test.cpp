@@ -8,9 +8,9 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/window_context.h"
 #include "ui/panels/timeline/time_axis.h"
-#include "ui/views/picture_compare.h"
+#include "ui/views/image_compare.h"
 #include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -47,7 +47,7 @@ class WorkbenchWindow : public DrawingTest {
   void open(std::shared_ptr<const Inspection> inspection = made()) {
     inspection_ = std::move(inspection);
     state_.document.settings = inspection_->settings;
-    adopt(state_, inspection_->recording);
+    apply_recording(state_, inspection_->recording);
     state_.results.inspection = inspection_;
     draw();
   }
@@ -125,14 +125,14 @@ TEST_F(WorkbenchWindow, DraggingOnTheTimeLineScrubs) {
   press(false);
 }
 
-TEST_F(WorkbenchWindow, WheelZoomsThePictureAndDragMovesIt) {
+TEST_F(WorkbenchWindow, WheelZoomsTheImageAndDragMovesIt) {
   open();
-  const float x = layout_.picture.x + 100, y = layout_.picture.y + 300;
+  const float x = layout_.image.x + 100, y = layout_.image.y + 300;
   point_at(x, y);
   ImGui::GetIO().MouseWheel = 1;
   const Commands zoomed = draw();
-  ASSERT_NE(find<ZoomPicture>(zoomed), nullptr);
-  EXPECT_DOUBLE_EQ(find<ZoomPicture>(zoomed)->zoom.factor, 1.25);
+  ASSERT_NE(find<ZoomImage>(zoomed), nullptr);
+  EXPECT_DOUBLE_EQ(find<ZoomImage>(zoomed)->zoom.factor, 1.25);
   apply(state_, zoomed.front());
   press(true);
   const Commands moved = point_at(x + 20, y);
@@ -167,7 +167,7 @@ TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
 
 TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {
   draw();
-  const float x = (layout_.picture.x + layout_.side.right()) / 2;
+  const float x = (layout_.image.x + layout_.side.right()) / 2;
   bool offered = false;
   for (float y = 250; y < 450 && !offered; y += 10) {
     const Commands commands = click(x, y);
@@ -216,7 +216,7 @@ TEST_F(WorkbenchWindow, NarrowTimeLineLeavesOutItsNumbersForTheAxis) {
 
 TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
   for (const MadeOptions& options :
-       {MadeOptions{.pictures = false}, MadeOptions{.ok = false}, MadeOptions{.truth = false}}) {
+       {MadeOptions{.images = false}, MadeOptions{.ok = false}, MadeOptions{.truth = false}}) {
     open(made(options));
     for (const int frame : {0, 15, 39}) {
       apply(state_, GoToFrame{frame});
@@ -230,17 +230,17 @@ TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
   draw();
 }
 
-TEST_F(WorkbenchWindow, PictureToDiskIsAsLargeAsTheRecordings) {
+TEST_F(WorkbenchWindow, ImageToDiskIsAsLargeAsTheRecordings) {
   open();
-  const auto draw_picture = [&] {
+  const auto draw_image = [&] {
     return draw_view("picture", {}, {state_, idle_, no_survey_}, {}, gui_, *views_);
   };
-  const cv::Mat picture = draw_picture();
-  EXPECT_EQ(picture.cols, inspection_->recording->camera.width);
-  EXPECT_EQ(picture.rows, inspection_->recording->camera.height);
+  const cv::Mat image = draw_image();
+  EXPECT_EQ(image.cols, inspection_->recording->camera.width);
+  EXPECT_EQ(image.rows, inspection_->recording->camera.height);
   state_.view.toggles = {false, false, false, false, false};
-  const cv::Mat plain = draw_picture();
-  EXPECT_FALSE(compare_pictures(picture, plain).equal);
+  const cv::Mat plain = draw_image();
+  EXPECT_FALSE(compare_images(image, plain).equal);
 }
 
 TEST(WindowSnapshot, HasTheSameBytesWhateverTheComputationTook) {
@@ -262,11 +262,11 @@ TEST(WindowSnapshot, IsDrawnAtAnySize) {
 TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
   const auto judged = made({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
   for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1280, 720), cv::Size(1920, 1080)}) {
-    const cv::Mat picture = snapshot_window(judged, 29, size);
-    EXPECT_FALSE(same_bytes(picture, snapshot_window(made(), 29, size)));
+    const cv::Mat image = snapshot_window(judged, 29, size);
+    EXPECT_FALSE(same_bytes(image, snapshot_window(made(), 29, size)));
     const std::filesystem::path folder = GPO_TEST_OUTPUT_DIR;
     std::filesystem::create_directories(folder);
-    cv::imwrite((folder / ("window_" + std::to_string(size.width) + ".png")).string(), picture);
+    cv::imwrite((folder / ("window_" + std::to_string(size.width) + ".png")).string(), image);
   }
 }
 
@@ -282,7 +282,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     Views views;
     WorkbenchState state;
     state.document.settings = inspection->settings;
-    adopt(state, inspection->recording);
+    apply_recording(state, inspection->recording);
     state.results.inspection = inspection;
     state.messages.text.clear();
     const JobStatus idle;
@@ -296,7 +296,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
       window.swap();
     }
   }
-  const auto comparison = compare_pictures(on_screen, snapshot_window(inspection, 34, size));
+  const auto comparison = compare_images(on_screen, snapshot_window(inspection, 34, size));
   EXPECT_TRUE(comparison.equal) << comparison.reason;
   if (comparison.equal) return;
   const std::filesystem::path folder = GPO_TEST_OUTPUT_DIR;
@@ -305,7 +305,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
   cv::imwrite((folder / "real-window.diff.png").string(), comparison.difference);
 }
 
-TEST(RealWindow, UnderXvfbEqualsThePictureDrawnOffScreen) {
+TEST(RealWindow, UnderXvfbEqualsTheImageDrawnOffScreen) {
   if (std::system("command -v Xvfb > /dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
   const std::string self = std::filesystem::read_symlink("/proc/self/exe");
   const std::string command = "'" GPO_SOURCE_DIR "/tests/with_display.sh' 1280x1024 '" + self +

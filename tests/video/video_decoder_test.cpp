@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/pictures/video_decoder.h"
+#include "engine/recording/images/video_decoder.h"
 
-#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
@@ -19,13 +19,13 @@ using testing::ElementsAre;
 
 /// Something that moves, so that every frame differs from the last one.
 std::vector<cv::Mat> moving(int count, cv::Size size = {96, 64}) {
-  std::vector<cv::Mat> pictures;
+  std::vector<cv::Mat> images;
   for (int i = 0; i < count; ++i) {
-    cv::Mat picture(size, CV_8UC3, cv::Scalar(40, 90, 10));
-    cv::circle(picture, {(7 * i) % size.width, (3 * i) % size.height}, 12, {200, 30, 220}, -1);
-    pictures.push_back(picture);
+    cv::Mat image(size, CV_8UC3, cv::Scalar(40, 90, 10));
+    cv::circle(image, {(7 * i) % size.width, (3 * i) % size.height}, 12, {200, 30, 220}, -1);
+    images.push_back(image);
   }
-  return pictures;
+  return images;
 }
 
 /// An independent reader, from beginning to end.
@@ -51,20 +51,20 @@ void expect_same_in_any_order(const std::filesystem::path& file, int frames) {
 
 TEST(VideoDecoder, GivesOpenCvsPixelsInAnyOrder) {
   const TestFolder folder;
-  const auto pictures = moving(61);
+  const auto images = moving(61);
   for (const char* name : {"a.mp4", "a.avi", "a.mkv", "a.mov"}) {
     SCOPED_TRACE(name);
-    make_video(folder.path() / name, pictures);
+    make_video(folder.path() / name, images);
     expect_same_in_any_order(folder.path() / name, 61);
   }
 }
 
 TEST(VideoDecoder, GivesOpenCvsPixelsWhereFramesAreStoredInAnotherOrder) {
   const TestFolder folder;
-  const auto pictures = moving(61);
+  const auto images = moving(61);
   for (const char* name : {"b.mp4", "b.mkv", "b.mov", "b.avi"}) {
     SCOPED_TRACE(name);
-    make_video(folder.path() / name, pictures, {.b_frames = true});
+    make_video(folder.path() / name, images, {.b_frames = true});
     expect_same_in_any_order(folder.path() / name, 61);
   }
 }
@@ -104,8 +104,8 @@ TEST(VideoDecoder, GoesOnAfterAFrameThatCannotBeDecoded) {
   VideoDecoder decoder(folder.path() / "broken.mkv");
   const int frames = static_cast<int>(decoder.index().times.size());
   EXPECT_LT(frames, 40);
-  const auto same = [&](int frame, const cv::Mat& picture) {
-    return cv::norm(decoder.decode(frame), picture, cv::NORM_INF) == 0;
+  const auto same = [&](int frame, const cv::Mat& image) {
+    return cv::norm(decoder.decode(frame), image, cv::NORM_INF) == 0;
   };
   for (int repeat = 0; repeat < 2; ++repeat) {
     EXPECT_TRUE(same(frames - 1, expected.back()));
@@ -129,16 +129,16 @@ TEST(VideoFile, TakesVariableTimesFromTheContainer) {
 }
 
 /// As players do. OpenCV 4.6 turns it the other way (its issue 22088).
-TEST(VideoFile, TurnsThePictureAsThePhoneWasHeld) {
+TEST(VideoFile, TurnsTheImageAsThePhoneWasHeld) {
   const TestFolder folder;
-  const auto pictures = moving(3);
-  make_video(folder.path() / "plain.mp4", pictures);
+  const auto images = moving(3);
+  make_video(folder.path() / "plain.mp4", images);
   VideoDecoder plain(folder.path() / "plain.mp4");
   for (const auto& [degrees, code] : {std::pair(90, cv::ROTATE_90_CLOCKWISE),
                                       std::pair(180, cv::ROTATE_180),
                                       std::pair(270, cv::ROTATE_90_COUNTERCLOCKWISE)}) {
     const auto file = folder.path() / (std::to_string(degrees) + ".mp4");
-    make_video(file, pictures, {.clockwise_degrees = degrees});
+    make_video(file, images, {.clockwise_degrees = degrees});
     VideoDecoder turned(file);
     cv::Mat expected;
     cv::rotate(plain.decode(1), expected, code);
@@ -150,13 +150,13 @@ TEST(VideoFile, TurnsThePictureAsThePhoneWasHeld) {
 TEST(VideoFile, OpensALongOneWithoutDecodingIt) {
   const TestFolder folder;
   constexpr int kFrames = 20000;
-  const auto pictures = moving(1, {32, 32});
-  make_video(folder.path() / "long.mp4", std::vector<cv::Mat>(kFrames, pictures[0]));
+  const auto images = moving(1, {32, 32});
+  make_video(folder.path() / "long.mp4", std::vector<cv::Mat>(kFrames, images[0]));
   Camera camera;
   const auto video = open_video(folder.path() / "long.mp4", camera, 1 << 20);
-  ASSERT_EQ(video.pictures->count(), kFrames);
-  for (const int frame : {0, kFrames - 1, kFrames / 2, 7}) video.pictures->bgr(frame);
-  EXPECT_LE(video.pictures->bytes(), std::size_t{1} << 20);
+  ASSERT_EQ(video.images->count(), kFrames);
+  for (const int frame : {0, kFrames - 1, kFrames / 2, 7}) video.images->bgr(frame);
+  EXPECT_LE(video.images->bytes(), std::size_t{1} << 20);
 }
 
 }  // namespace

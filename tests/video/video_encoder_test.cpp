@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/pictures/video_encoder.h"
+#include "engine/recording/images/video_encoder.h"
 
 #include "tests/engine/test_folder.h"
 
@@ -18,9 +18,9 @@ using test::TestFolder;
 using testing::HasSubstr;
 
 cv::Mat disc(int i) {
-  cv::Mat picture(48, 64, CV_8UC3, cv::Scalar(30, 60, 90));
-  cv::circle(picture, {8 + 4 * i, 24}, 6, {20, 200, 240}, cv::FILLED);
-  return picture;
+  cv::Mat image(48, 64, CV_8UC3, cv::Scalar(30, 60, 90));
+  cv::circle(image, {8 + 4 * i, 24}, 6, {20, 200, 240}, cv::FILLED);
+  return image;
 }
 
 TEST(VideoEncoder, WritesTheWholeFileOrNothing) {

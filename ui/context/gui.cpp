@@ -5,7 +5,7 @@
 #include "ui/context/gui_style.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/context/window_context.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 
 #include <algorithm>
 
@@ -80,9 +80,9 @@ void Gui::end_frame() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void Gui::end_frame(WindowPicture& picture, std::uint32_t background_rgb) {
+void Gui::end_frame(WindowImage& image, std::uint32_t background_rgb) {
   ImGui::Render();
-  picture.show(*ImGui::GetDrawData(), background_rgb);
+  image.show(*ImGui::GetDrawData(), background_rgb);
 }
 
 }  // namespace gpo

@@ -11,7 +11,7 @@ struct ImFont;
 namespace gpo {
 
 class WindowContext;
-class WindowPicture;
+class WindowImage;
 
 enum class Font { regular, bold, small, heading };
 
@@ -40,7 +40,7 @@ class Gui {
   /// Renders into the framebuffer that is bound, over what is there.
   void end_frame();
   /// The same, but draws only what has changed since the picture's last frame.
-  void end_frame(WindowPicture& picture, std::uint32_t background_rgb);
+  void end_frame(WindowImage& image, std::uint32_t background_rgb);
   /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
   float scale() const { return scale_; }
   /// Everything so many times as large as the screen's own scale has it, which a window that moves

@@ -3,20 +3,20 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 #include "ui/panels/facts/curve_facts.h"
 #include "ui/panels/facts/track_rows.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/track_colors.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/folder_lister.h"
-#include "ui/workbench/work/picture_fetcher.h"
+#include "ui/workbench/work/image_fetcher.h"
 #include "ui/workbench/work/survey.h"
 
 #include <array>
@@ -35,7 +35,7 @@ struct PanelInput {
   float scale = 1;                     ///< of the text: sizes for 96 dpi times this
   const JobStatus* writing = nullptr;  ///< how far a movie is; null: none is written
   const SurveyStatus* scan = nullptr;  ///< how far a scan is; null: none is made
-  PictureFetcher* fetcher = nullptr;   ///< null: drawing waits for pictures itself
+  ImageFetcher* fetcher = nullptr;   ///< null: drawing waits for pictures itself
   FolderLister* lister = nullptr;      ///< null: folders are shown as empty
   std::filesystem::path example = {};  ///< the recording that comes with the program
 
@@ -61,8 +61,8 @@ struct BrowserEntry {
 };
 
 /// An enlarged part of a picture, and what it shows.
-struct Patch {
-  PictureTexture texture;
+struct TrackPatch {
+  ImageTexture texture;
   std::shared_ptr<const Recording> recording;
   int frame = -1;
   Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
@@ -83,7 +83,7 @@ struct KeptTrackColors {
 };
 
 /// A model, and which one it is.
-struct KeptModel {
+struct CachedModel {
   std::string name;                         ///< empty: none
   std::shared_ptr<const SolidModel> model;  ///< null: it could not be read
   std::string error;
@@ -97,37 +97,37 @@ struct KeptTrackRows {
 
 /// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
 struct Views {
-  PictureTexture picture;
-  cv::Mat pixels;                              ///< of `picture`; CV_8UC3, BGR
-  std::shared_ptr<const Recording> recording;  ///< of the picture that is in `picture`
+  ImageTexture image;
+  cv::Mat pixels;                              ///< of `image`; CV_8UC3, BGR
+  std::shared_ptr<const Recording> recording;  ///< of the picture that is in `image`
   int frame = -1;                              ///< -1: none of it is there, yet
   int asked = -1;                              ///< frame that is being fetched; -1: none
-  std::string picture_error;                   ///< why there is none
+  std::string image_error;                   ///< why there is none
   SceneView scene;
   PaletteEntry palette;
   BrowserEntry browser;
-  std::array<Patch, 2> patches;             ///< of a track: in its first frame, in the current one
+  std::array<TrackPatch, 2> patches;             ///< of a track: in its first frame, in the current one
   std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
   KeptCurveFacts curves;                    ///< of the drawer
   Residuals residuals;
   TrackLives lives;
   KeptTrackColors colors;
-  KeptModel model;
+  CachedModel model;
   KeptTrackRows tracks;  ///< of the drawer, as it has sorted them
   NormalsMap normals;
-  WindowPicture window;  ///< of which only the parts that change are drawn anew
+  WindowImage window;  ///< of which only the parts that change are drawn anew
 };
 
 /// A picture of the recording, which has some: as soon as it is fetched, or at once where nobody
 /// fetches.
-FetchedPicture picture_of(const PanelInput& input, int frame);
+FetchedImage image_of(const PanelInput& input, int frame);
 
 /// Brings the picture of the current frame into `views`, where it is not there yet. Returns the
 /// frame to draw: the current one, but while its picture is fetched the one whose picture is there.
-int update_picture(const PanelInput& input, Views& views);
+int update_image(const PanelInput& input, Views& views);
 
-/// What `update_picture` has brought; null where there is nothing.
-PictureTexture* shown_picture(Views& views);
+/// What `update_image` has brought; null where there is nothing.
+ImageTexture* shown_image(Views& views);
 
 // Each draws one part of the window through Dear ImGui and changes nothing but `Views`.
 void menu_bar(const PanelInput& input, Commands& commands);

@@ -13,7 +13,7 @@
 
 namespace gpo {
 
-DrawPane picture_alone, compare_alone;
+DrawPane image_alone, compare_alone;
 DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
@@ -25,7 +25,7 @@ struct PaneDrawing {
   DrawPane* draw;
 };
 
-constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", picture_alone},
+constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
                                                        {"scene", scene_pane},
                                                        {"normals", normals_pane},
                                                        {"solver", solver_pane},

@@ -5,7 +5,7 @@
 #include "engine/inspection/studies/track_life.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ void camera_tooltip(const PanelInput& input, int frame) {
 
 void lead_with(const WorkbenchState& state, std::int64_t id, Commands& commands) {
   if (!state.results.inspection) return;
-  const auto plane = to_lead(*state.results.inspection, id);
+  const auto plane = to_main_plane(*state.results.inspection, id);
   if (!plane) return;
   Settings settings = state.document.settings;
   settings.options.plane = *plane;

@@ -6,7 +6,7 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
@@ -47,10 +47,10 @@ cv::Mat snapshot_image(const Inspection& inspection,
                        const ViewOptions& options) {
   const Recording& recording = *inspection.recording;
   const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
-  using Texture = PictureTexture;
+  using Texture = ImageTexture;
   return snapshot<Texture>(
       pixels, text_scale(pixels), [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
-        if (recording.pictures) texture.upload(recording.pictures->bgr(frame));
+        if (recording.images) texture.upload(recording.images->bgr(frame));
         draw_image_view(list, rect, inspection, frame, &texture, {}, options);
       });
 }
@@ -84,11 +84,11 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
   const cv::Size pixels = size.value_or(default_compare_size(inspections));
   const auto scale = static_cast<float>(compare_text_scale(inspections, pixels));
-  using Texture = PictureTexture;
+  using Texture = ImageTexture;
   return snapshot<Texture>(
       pixels, scale, [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
-        if (!inspections.empty() && inspections.front()->recording->pictures)
-          texture.upload(inspections.front()->recording->pictures->bgr(frame));
+        if (!inspections.empty() && inspections.front()->recording->images)
+          texture.upload(inspections.front()->recording->images->bgr(frame));
         draw_compare_view(list, rect, inspections, frame, &texture);
       });
 }

@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/picture/image_view.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <memory>

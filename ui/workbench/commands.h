@@ -5,7 +5,7 @@
 #include "engine/inspection/settings/settings.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/picture_zoom.h"
+#include "ui/look/image_zoom.h"
 #include "ui/workbench/division.h"
 #include "ui/workbench/selection.h"
 
@@ -36,12 +36,12 @@ struct SetCubeSide {
 struct MoveCube {
   std::optional<Eigen::Vector3d> ray;
 };
-struct ZoomPicture {
-  PictureZoom zoom;
+struct ZoomImage {
+  ImageZoom zoom;
 };
 /// All columns of the comparison; nothing: around the cubes.
 struct ZoomCompare {
-  std::optional<PictureZoom> zoom;
+  std::optional<ImageZoom> zoom;
 };
 struct ZoomNormals {
   NormalsZoom zoom;
@@ -70,7 +70,7 @@ using Command = std::variant<RunAction,
                              GoToFrame,
                              SetCubeSide,
                              MoveCube,
-                             ZoomPicture,
+                             ZoomImage,
                              ZoomCompare,
                              ZoomNormals,
                              OrbitScene,

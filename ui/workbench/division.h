@@ -9,7 +9,7 @@
 namespace gpo {
 
 /// A part that may have the whole window.
-enum class WindowPart { none, picture, side, drawer };
+enum class WindowPart { none, image, side, drawer };
 
 template <>
 struct ChoiceKeys<WindowPart> {
@@ -21,7 +21,7 @@ struct ChoiceKeys<WindowPart> {
 struct Division {
   double column_px = 0;      ///< width of the left column
   double settings_px = 0;    ///< height of its upper part
-  double picture_share = 0;  ///< of the views' width, or of their height where it stands above
+  double image_share = 0;  ///< of the views' width, or of their height where it stands above
   double drawer_share = 0;   ///< of the views' height
   bool column = true;        ///< shown
   bool timeline = true;      ///< shown

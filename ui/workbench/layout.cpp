@@ -11,7 +11,7 @@ namespace gpo {
 namespace {
 
 // At scale 1.
-constexpr float kPictureShare =
+constexpr float kImageShare =
     0.57F;  // of the views' width: a picture fills it, a scene is mostly empty
 constexpr float kMenuHeight = 26;
 constexpr float kStatusHeight = 26;
@@ -48,23 +48,23 @@ void put_drawer(WindowLayout& layout, float scale, const Division& division, boo
 }
 
 /// Picture and side pane, else one above the other.
-bool stands_beside(const Rectangle& views) { return views.width >= 1.2f * views.height; }
+bool places_side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
 
 /// Picture and side pane within the views.
 void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {
   const Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
-  Rectangle side = layout.picture = views;
-  const auto given = static_cast<float>(division.picture_share);
-  if (stands_beside(views)) {
-    const float share = given > 0 ? given : kPictureShare;
-    layout.picture.width = std::round((views.width - gap) * share);
-    side.x = layout.picture.right() + gap;
+  Rectangle side = layout.image = views;
+  const auto given = static_cast<float>(division.image_share);
+  if (places_side_by_side(views)) {
+    const float share = given > 0 ? given : kImageShare;
+    layout.image.width = std::round((views.width - gap) * share);
+    side.x = layout.image.right() + gap;
     side.width = views.right() - side.x;
   } else {
     const float share = given > 0 ? given : 0.5F;
-    layout.picture.height = std::round((views.height - gap) * share);
-    side.y = layout.picture.bottom() + gap;
+    layout.image.height = std::round((views.height - gap) * share);
+    side.y = layout.image.bottom() + gap;
     side.height = views.bottom() - side.y;
   }
   layout.side_tabs = {side.x, side.y, side.width, tabs};
@@ -76,7 +76,7 @@ void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   for (Rectangle* part : {&layout.settings,
                           &layout.results,
                           &layout.views,
-                          &layout.picture,
+                          &layout.image,
                           &layout.side_tabs,
                           &layout.side,
                           &layout.drawer_tabs,
@@ -108,10 +108,10 @@ void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPar
   const float tabs_height = scaled(kTabsHeight, scale);
   const Rectangle tabs{all.x, all.y, all.width, tabs_height};
   const Rectangle below{all.x, tabs.bottom(), all.width, all.height - tabs_height};
-  layout.settings = layout.results = layout.picture = layout.side_tabs = layout.side = {};
+  layout.settings = layout.results = layout.image = layout.side_tabs = layout.side = {};
   layout.drawer_tabs = layout.drawer = {};
   layout.views = all;
-  if (part == WindowPart::picture) layout.picture = all;
+  if (part == WindowPart::image) layout.image = all;
   if (part == WindowPart::side) std::tie(layout.side_tabs, layout.side) = std::tie(tabs, below);
   if (part != WindowPart::drawer) return;
   layout.views = {};
@@ -164,7 +164,7 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
                settings,
                results,
                views,
-               picture,
+               image,
                side_tabs,
                side,
                drawer_tabs,
@@ -178,10 +178,10 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
     case Splitter::settings:
       if (settings.empty()) return {};
       return {settings.x, settings.bottom() - gap, settings.width, gap};
-    case Splitter::picture:
-      if (picture.empty() || side.empty()) return {};
-      if (stands_beside(views)) return {picture.right(), picture.y, gap, picture.height};
-      return {picture.x, picture.bottom(), picture.width, gap};
+    case Splitter::image:
+      if (image.empty() || side.empty()) return {};
+      if (places_side_by_side(views)) return {image.right(), image.y, gap, image.height};
+      return {image.x, image.bottom(), image.width, gap};
     case Splitter::drawer:
       if (views.empty() || drawer.empty()) return {};
       return {drawer_tabs.x, drawer_tabs.y - gap, drawer_tabs.width, gap};
@@ -207,9 +207,9 @@ Division dragged(const Division& division,
     case Splitter::settings:
       result.settings_px = std::max((y - layout.settings.y) / scale, kLeastSettings);
       break;
-    case Splitter::picture:
-      result.picture_share =
-          stands_beside(views) ? share(x - views.x, views.width) : share(y - views.y, views.height);
+    case Splitter::image:
+      result.image_share =
+          places_side_by_side(views) ? share(x - views.x, views.width) : share(y - views.y, views.height);
       break;
     case Splitter::drawer: {
       const float tabs = layout.drawer_tabs.height;
@@ -225,7 +225,7 @@ Division dragged(const Division& division,
 Division automatic(Division division, Splitter splitter) {
   double Division::*const lengths[] = {&Division::column_px,
                                        &Division::settings_px,
-                                       &Division::picture_share,
+                                       &Division::image_share,
                                        &Division::drawer_share};
   division.*lengths[static_cast<int>(splitter)] = 0;
   return division;

@@ -23,7 +23,7 @@ struct WindowLayout {
   Rectangle settings;  ///< left column, above
   Rectangle results;   ///< left column, below
   Rectangle views;     ///< picture, side tabs and side pane together: what compare mode takes
-  Rectangle picture;
+  Rectangle image;
   Rectangle side_tabs;    ///< which side pane is open
   Rectangle side;         ///< the side pane
   Rectangle drawer_tabs;  ///< which drawer is open
@@ -46,7 +46,7 @@ WindowLayout window_layout(float width,
 inline constexpr float kScanHeight = 22;
 
 /// A line between two parts that can be dragged.
-enum class Splitter { column, settings, picture, drawer };
+enum class Splitter { column, settings, image, drawer };
 
 /// Where it is, as wide as the gap; empty where there is none.
 Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale);

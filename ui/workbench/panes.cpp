@@ -15,7 +15,7 @@ constexpr auto kPanes = [] {
   using enum PaneKind;
   constexpr PaneNeeds kCompared = {.compared = true};
   return std::to_array<Pane>({
-    {picture, "image", "Image", "The frame with its overlays", {}, false, "picture"},
+    {image, "image", "Image", "The frame with its overlays", {}, false, "picture"},
     {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", {}, true},
     {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, answers",
      {.compared = true, .study = true}},

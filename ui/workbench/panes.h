@@ -16,7 +16,7 @@ struct PaneNeeds {
 };
 
 /// Where in the window a view is.
-enum class PaneKind { picture, side, columns, drawer, window };
+enum class PaneKind { image, side, columns, drawer, window };
 
 /// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
 /// read its row; the function that draws it is in the table of ui/panels/panes.cpp.

@@ -11,7 +11,7 @@
 #include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
-#include "ui/look/picture_zoom.h"
+#include "ui/look/image_zoom.h"
 #include "ui/look/view_choices.h"
 #include "ui/look/view_toggles.h"
 #include "ui/workbench/division.h"
@@ -73,7 +73,7 @@ struct UndoStep {
 };
 
 /// What is a recording's own: where one looks at it, and how; it comes back with the recording.
-struct KeptSpan {
+struct SavedSpan {
   std::filesystem::path recording;
   int start = 0;
   int frames = 0;
@@ -94,7 +94,7 @@ struct Document {
   Settings settings;
   std::vector<UndoStep> undo, redo;  ///< before earlier changes, and undone ones; the last one last
   bool dragging_settings = false;    ///< the last change was one of many small ones
-  std::vector<KeptSpan> spans;       ///< of recordings that were open before
+  std::vector<SavedSpan> spans;       ///< of recordings that were open before
   std::vector<Bookmark> bookmarks;   ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
   bool metric = false;                      ///< poses and points are exported in meters
@@ -119,10 +119,10 @@ struct ViewState {
   Division division;
   double text_zoom = 1;                      ///< of everything, times the screen's own scale
   bool fullscreen = false;                   ///< wanted
-  std::optional<PictureZoom> compare_zoom;   ///< of all columns; nothing: around the cubes
+  std::optional<ImageZoom> compare_zoom;   ///< of all columns; nothing: around the cubes
   bool flip = false;                         ///< the picture shows `flipped_result`
   std::vector<std::string> hidden_curves;    ///< keys of Configurations
-  PictureZoom picture_zoom;                  ///< of the picture
+  ImageZoom image_zoom;                  ///< of the picture
   NormalsZoom normals_zoom;                  ///< of the disc of normals
   Viewpoint viewpoint = Viewpoint::oblique;  ///< of the scene
   Coloring coloring = Coloring::plane;       ///< of tracks and map points
@@ -175,7 +175,7 @@ struct SessionFiles {
 };
 
 /// What the user has open, chosen and selected. A plain value; it changes in `apply`, `advance` and
-/// `adopt` alone. A field that sessions keep has its row in session_fields.cpp.
+/// `apply_recording` alone. A field that sessions keep has its row in session_fields.cpp.
 struct WorkbenchState {
   MethodTable methods;  ///< to choose from
   Document document;

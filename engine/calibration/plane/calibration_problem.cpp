@@ -39,7 +39,7 @@ struct HeightError {
 
 /// By which rotation two poses and the gyroscope differ, in pixels of the noise.
 struct TurnError {
-  GyroTurn turn;
+  GyroRotation rotation;
   double weight;
 
   template <typename T>
@@ -49,10 +49,10 @@ struct TurnError {
     ceres::AngleAxisToRotationMatrix(pose_a, R_a.data());
     ceres::AngleAxisToRotationMatrix(pose_b, R_b.data());
     const Eigen::Matrix<T, 3, 1> correction =
-        turn.d_bias.cast<T>() * Eigen::Matrix<T, 3, 1>(bias[0], bias[1], bias[2]);
+        rotation.d_bias.cast<T>() * Eigen::Matrix<T, 3, 1>(bias[0], bias[1], bias[2]);
     Matrix R_bias;
     ceres::AngleAxisToRotationMatrix(correction.data(), R_bias.data());
-    const Matrix off = (turn.R_from_to.cast<T>() * R_bias).transpose() * (R_a * R_b.transpose());
+    const Matrix off = (rotation.R_from_to.cast<T>() * R_bias).transpose() * (R_a * R_b.transpose());
     ceres::RotationMatrixToAngleAxis(off.data(), error);
     for (int k = 0; k < 3; ++k) error[k] *= T(weight);
     return true;
@@ -60,16 +60,16 @@ struct TurnError {
 };
 
 /// How often each point of a plane is seen.
-std::vector<int> sight_counts(const SightedPlane& plane) {
+std::vector<int> view_counts(const ObservedPlane& plane) {
   std::vector<int> counts(plane.points, 0);
-  for (const PlaneSight& sight : plane.sights)
-    for (const int j : sight.points) ++counts[j];
+  for (const PlaneView& view : plane.views)
+    for (const int j : view.points) ++counts[j];
   return counts;
 }
 
 /// Two points of the plane that are seen often and are far apart.
-std::pair<int, int> held_points(const SightedPlane& plane, const Eigen::Matrix3Xd& places) {
-  const std::vector<int> counts = sight_counts(plane);
+std::pair<int, int> held_points(const ObservedPlane& plane, const Eigen::Matrix3Xd& places) {
+  const std::vector<int> counts = view_counts(plane);
   const int most = *std::ranges::max_element(counts);
   const auto first = static_cast<int>(std::ranges::find(counts, most) - counts.begin());
   int second = first == 0 ? 1 : 0;
@@ -86,8 +86,8 @@ std::pair<int, int> held_points(const SightedPlane& plane, const Eigen::Matrix3X
 
 }  // namespace
 
-CalibrationProblem::CalibrationProblem(const std::vector<SightedPlane>& planes,
-                                       const GyroTurns& gyro,
+CalibrationProblem::CalibrationProblem(const std::vector<ObservedPlane>& planes,
+                                       const GyroRotations& gyro,
                                        int width,
                                        int height,
                                        const LensPrior& prior,
@@ -106,36 +106,36 @@ CalibrationProblem::CalibrationProblem(const std::vector<SightedPlane>& planes,
       nullptr,
       unknowns_.lens.data());
   sources_.push_back({.rows = kLensUnknowns, .sigma_px = options.prior_px});
-  add_sights(planes, width, height);
+  add_observations(planes, width, height);
   hold_gauge(planes);
   if (options.height_sigma > 0) add_heights();
-  if (!gyro.turns.empty()) add_turns(planes, gyro);
+  if (!gyro.rotations.empty()) add_rotations(planes, gyro);
 }
 
-void CalibrationProblem::add_sights(const std::vector<SightedPlane>& planes,
+void CalibrationProblem::add_observations(const std::vector<ObservedPlane>& planes,
                                     int width,
                                     int height) {
   auto* const loss = new ceres::HuberLoss(options_.knee_px);
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    for (std::size_t i = 0; i < planes[p].sights.size(); ++i) {
-      const PlaneSight& sight = planes[p].sights[i];
+    for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
+      const PlaneView& view = planes[p].views[i];
       double* const pose = unknowns_.planes[p].poses[i].data();
-      for (std::size_t k = 0; k < sight.points.size(); ++k) {
+      for (std::size_t k = 0; k < view.points.size(); ++k) {
         problem_.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<SightError, 2, kLensUnknowns, 6, 3>(
-                new SightError(sight, static_cast<Eigen::Index>(k), width, height)),
+            new ceres::AutoDiffCostFunction<ObservationError, 2, kLensUnknowns, 6, 3>(
+                new ObservationError(view, static_cast<Eigen::Index>(k), width, height)),
             loss,
             unknowns_.lens.data(),
             pose,
-            unknowns_.planes[p].points.col(sight.points[k]).data());
-        sources_.push_back({static_cast<int>(p), static_cast<int>(i), sight.points[k]});
+            unknowns_.planes[p].points.col(view.points[k]).data());
+        sources_.push_back({static_cast<int>(p), static_cast<int>(i), view.points[k]});
       }
-      if (!sight.points.empty()) free_blocks_.push_back(pose);
+      if (!view.points.empty()) free_blocks_.push_back(pose);
     }
   }
 }
 
-void CalibrationProblem::hold_gauge(const std::vector<SightedPlane>& planes) {
+void CalibrationProblem::hold_gauge(const std::vector<ObservedPlane>& planes) {
   const bool flat = !(options_.height_sigma > 0);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     Eigen::Matrix3Xd& places = unknowns_.planes[p].points;
@@ -170,7 +170,7 @@ void CalibrationProblem::add_heights() {
   }
 }
 
-void CalibrationProblem::add_turns(const std::vector<SightedPlane>& planes, const GyroTurns& gyro) {
+void CalibrationProblem::add_rotations(const std::vector<ObservedPlane>& planes, const GyroRotations& gyro) {
   double* const bias = unknowns_.bias_change_rad_s.data();
   const Vector3d weights = Vector3d::Constant(options_.prior_px / gyro.bias_sigma_rad_s);
   problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorError<3>, 3, 3>(
@@ -181,15 +181,15 @@ void CalibrationProblem::add_turns(const std::vector<SightedPlane>& planes, cons
   free_blocks_.push_back(bias);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     std::map<int, double*> pose_of_frame;
-    for (std::size_t i = 0; i < planes[p].sights.size(); ++i)
-      if (!planes[p].sights[i].points.empty())
-        pose_of_frame[planes[p].sights[i].frame] = unknowns_.planes[p].poses[i].data();
-    for (const GyroTurn& turn : gyro.turns) {
-      const auto a = pose_of_frame.find(turn.from);
-      const auto b = pose_of_frame.find(turn.to);
+    for (std::size_t i = 0; i < planes[p].views.size(); ++i)
+      if (!planes[p].views[i].points.empty())
+        pose_of_frame[planes[p].views[i].frame] = unknowns_.planes[p].poses[i].data();
+    for (const GyroRotation& rotation : gyro.rotations) {
+      const auto a = pose_of_frame.find(rotation.from);
+      const auto b = pose_of_frame.find(rotation.to);
       if (a == pose_of_frame.end() || b == pose_of_frame.end()) continue;
       problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<TurnError, 3, 6, 6, 3>(
-                                    new TurnError{turn, options_.prior_px / turn.sigma_rad}),
+                                    new TurnError{rotation, options_.prior_px / rotation.sigma_rad}),
                                 nullptr,
                                 a->second,
                                 b->second,

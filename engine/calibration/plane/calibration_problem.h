@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_views.h"
 #include "engine/calibration/plane/plane_unknowns.h"
 
 #include <memory>
@@ -14,11 +14,11 @@
 namespace gpo {
 
 /// Where the lens puts a plane's point, less where it was seen [px] (engine/method.md, 19).
-class SightError {
+class ObservationError {
  public:
-  SightError(const PlaneSight& sight, Eigen::Index column, int width, int height)
-      : raw_px_(sight.raw_px.col(column)),
-        read_px_(((raw_px_.y() + 0.5) / height - 0.5) * sight.flow_px.col(column)),
+  ObservationError(const PlaneView& view, Eigen::Index column, int width, int height)
+      : raw_px_(view.raw_px.col(column)),
+        read_px_(((raw_px_.y() + 0.5) / height - 0.5) * view.flow_px.col(column)),
         width_(width),
         height_(height) {}
 
@@ -55,7 +55,7 @@ class SightError {
 /// What a row of the problem's Jacobian is about.
 struct ResidualSource {
   int plane = -1;  ///< -1: a prior, or the gyroscope
-  int sight = 0;
+  int view = 0;
   int point = 0;
   int rows = 2;
   double sigma_px = 0;  ///< of a prior's rows: what they weigh as
@@ -64,8 +64,8 @@ struct ResidualSource {
 /// The least squares of `adjust`, over the unknowns of an adjustment that it changes in place.
 class CalibrationProblem {
  public:
-  CalibrationProblem(const std::vector<SightedPlane>& planes,
-                     const GyroTurns& gyro,
+  CalibrationProblem(const std::vector<ObservedPlane>& planes,
+                     const GyroRotations& gyro,
                      int width,
                      int height,
                      const LensPrior& prior,
@@ -79,9 +79,9 @@ class CalibrationProblem {
   void evaluate(std::vector<double>& residuals, ceres::CRSMatrix& jacobian);
 
  private:
-  void add_sights(const std::vector<SightedPlane>& planes, int width, int height);
-  void add_turns(const std::vector<SightedPlane>& planes, const GyroTurns& gyro);
-  void hold_gauge(const std::vector<SightedPlane>& planes);
+  void add_observations(const std::vector<ObservedPlane>& planes, int width, int height);
+  void add_rotations(const std::vector<ObservedPlane>& planes, const GyroRotations& gyro);
+  void hold_gauge(const std::vector<ObservedPlane>& planes);
   void add_heights();
 
   const PlaneAdjustmentOptions& options_;

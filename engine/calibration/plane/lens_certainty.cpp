@@ -64,9 +64,9 @@ LensColumns first_columns(Eigen::Index size) {
 }
 
 /// Which stretch of time a sight is in, as many of each plane's sights in each.
-int stretch_of(const std::vector<SightedPlane>& planes, const ResidualSource& source) {
-  const auto count = std::ssize(planes[source.plane].sights);
-  return static_cast<int>(source.sight * std::ptrdiff_t{kStretches} / count);
+int stretch_of(const std::vector<ObservedPlane>& planes, const ResidualSource& source) {
+  const auto count = std::ssize(planes[source.plane].views);
+  return static_cast<int>(source.view * std::ptrdiff_t{kStretches} / count);
 }
 
 LensMatrix outer_sum(const std::map<std::pair<int, int>, LensVector>& moves) {
@@ -78,7 +78,7 @@ LensMatrix outer_sum(const std::map<std::pair<int, int>, LensVector>& moves) {
 
 /// How far the lens moves without one stretch of time after the other: each one solved for anew, to
 /// first order.
-LensMatrix stretch_covariance(const std::vector<SightedPlane>& planes,
+LensMatrix stretch_covariance(const std::vector<ObservedPlane>& planes,
                               const std::vector<ResidualSource>& sources,
                               const Linear& linear,
                               const Sparse& normal,
@@ -108,8 +108,8 @@ LensMatrix stretch_covariance(const std::vector<SightedPlane>& planes,
 
 }  // namespace
 
-LensCertainty lens_certainty(const std::vector<SightedPlane>& planes,
-                             const GyroTurns& gyro,
+LensCertainty lens_certainty(const std::vector<ObservedPlane>& planes,
+                             const GyroRotations& gyro,
                              int width,
                              int height,
                              const Adjustment& adjustment,

@@ -35,8 +35,8 @@ LensVector lens_of(const Camera& camera) {
   return lens;
 }
 
-Adjustment adjust(const std::vector<SightedPlane>& planes,
-                  const GyroTurns& gyro,
+Adjustment adjust(const std::vector<ObservedPlane>& planes,
+                  const GyroRotations& gyro,
                   int width,
                   int height,
                   const Adjustment& start,
@@ -48,21 +48,21 @@ Adjustment adjust(const std::vector<SightedPlane>& planes,
   return result;
 }
 
-SightErrors sight_errors(const std::vector<SightedPlane>& planes,
+ViewErrors view_errors(const std::vector<ObservedPlane>& planes,
                          int width,
                          int height,
                          const Adjustment& adjustment) {
-  SightErrors errors(planes.size());
+  ViewErrors errors(planes.size());
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    for (std::size_t i = 0; i < planes[p].sights.size(); ++i) {
-      const PlaneSight& sight = planes[p].sights[i];
-      Eigen::VectorXd lengths(sight.raw_px.cols());
+    for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
+      const PlaneView& view = planes[p].views[i];
+      Eigen::VectorXd lengths(view.raw_px.cols());
       for (Eigen::Index k = 0; k < lengths.size(); ++k) {
-        const SightError error(sight, k, width, height);
+        const ObservationError error(view, k, width, height);
         Eigen::Vector2d e;
         const bool in_front = error(adjustment.lens.data(),
                                     adjustment.planes[p].poses[i].data(),
-                                    adjustment.planes[p].points.col(sight.points[k]).data(),
+                                    adjustment.planes[p].points.col(view.points[k]).data(),
                                     e.data());
         lengths[k] = in_front ? e.norm() : std::numeric_limits<double>::infinity();
       }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_views.h"
 #include "engine/calibration/plane/plane_unknowns.h"
 #include "engine/geometry/camera.h"
 
@@ -17,8 +17,8 @@ LensVector lens_of(const Camera& camera);
 
 /// Least squares over the lens, all points and all poses (engine/method.md, 19). Of each plane two
 /// points are held, which is the gauge.
-Adjustment adjust(const std::vector<SightedPlane>& planes,
-                  const GyroTurns& gyro,
+Adjustment adjust(const std::vector<ObservedPlane>& planes,
+                  const GyroRotations& gyro,
                   int width,
                   int height,
                   const Adjustment& start,
@@ -26,8 +26,8 @@ Adjustment adjust(const std::vector<SightedPlane>& planes,
                   const PlaneAdjustmentOptions& options);
 
 /// Lengths of the errors [px], one an observation: plane, sight, point. Infinite behind the camera.
-using SightErrors = std::vector<std::vector<Eigen::VectorXd>>;
-SightErrors sight_errors(const std::vector<SightedPlane>& planes,
+using ViewErrors = std::vector<std::vector<Eigen::VectorXd>>;
+ViewErrors view_errors(const std::vector<ObservedPlane>& planes,
                          int width,
                          int height,
                          const Adjustment& adjustment);
@@ -41,8 +41,8 @@ struct LensCertainty {
 /// Of an adjusted lens (engine/method.md, 20): what is wrong with a point, or with a stretch of
 /// time (a tenth of the sights), counts as one thing that is wrong. `noise_px` is that of one
 /// coordinate.
-LensCertainty lens_certainty(const std::vector<SightedPlane>& planes,
-                             const GyroTurns& gyro,
+LensCertainty lens_certainty(const std::vector<ObservedPlane>& planes,
+                             const GyroRotations& gyro,
                              int width,
                              int height,
                              const Adjustment& adjustment,

@@ -21,13 +21,13 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Planes = std::vector<SightedPlane>;
+using Planes = std::vector<ObservedPlane>;
 using Progress = std::function<void(int done, int of)>;
 
 constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // of f [widths]
 constexpr double kSameStart = 0.05;  // by which the guess differs from one, or is one more [-]
 constexpr int kNormals = 2;          // that are tried with each
-constexpr int kLeastPictures = 6;    // in all
+constexpr int kLeastImages = 6;    // in all
 constexpr int kRounds = 4;           // of dropping what is far off
 constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // of the progress
 constexpr double kFar = 4.5;  // noises, beyond which an observation is dropped
@@ -44,7 +44,7 @@ constexpr double kLeastMoved = 0.1;
 /// All that a calibration goes through.
 struct Work {
   Planes planes;
-  const GyroTurns& gyro;
+  const GyroRotations& gyro;
   int width;
   int height;
   LensPrior prior;
@@ -74,7 +74,7 @@ std::optional<Adjustment> started(Planes& planes, const Camera& camera, int norm
   Adjustment start;
   start.lens = lens_of(camera);
   const double focal_px = std::sqrt(camera.fx * camera.fy);
-  for (SightedPlane& plane : planes) {
+  for (ObservedPlane& plane : planes) {
     const PlaneMosaic mosaic = plane_mosaic(plane, camera);
     plane = placed_part(plane, mosaic);
     std::optional<AdjustedPlane> found;
@@ -88,7 +88,7 @@ std::optional<Adjustment> started(Planes& planes, const Camera& camera, int norm
     if (!found) return std::nullopt;
     start.planes.push_back(*std::move(found));
   }
-  const auto errors = sight_errors(planes, camera.width, camera.height, start);
+  const auto errors = view_errors(planes, camera.width, camera.height, start);
   planes = visible_part(std::move(planes), errors);
   return start;
 }
@@ -155,8 +155,8 @@ std::optional<Adjustment> begun(Work& work, const LensVector& lens) {
   return best;
 }
 
-SightErrors errors_of(const Work& work, const Adjustment& adjustment) {
-  return sight_errors(work.planes, work.width, work.height, adjustment);
+ViewErrors errors_of(const Work& work, const Adjustment& adjustment) {
+  return view_errors(work.planes, work.width, work.height, adjustment);
 }
 
 /// The largest angle between the plane's normals in the camera's axes, and distance between
@@ -164,8 +164,8 @@ SightErrors errors_of(const Work& work, const Adjustment& adjustment) {
 void measure_motion(const Work& work, const Adjustment& now, PlaneLens& result) {
   for (std::size_t p = 0; p < work.planes.size(); ++p) {
     std::vector<Vector3d> normals, centers;
-    for (std::size_t i = 0; i < work.planes[p].sights.size(); ++i) {
-      if (work.planes[p].sights[i].points.empty()) continue;
+    for (std::size_t i = 0; i < work.planes[p].views.size(); ++i) {
+      if (work.planes[p].views[i].points.empty()) continue;
       const auto& pose = now.planes[p].poses[i];
       const Matrix3d R = so3_exp(pose.head<3>());
       normals.emplace_back(R.col(2));
@@ -192,7 +192,7 @@ Adjustment settled(Work& work,
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
     if (work.options.stop.stop_requested()) break;
-    const SightErrors errors = errors_of(work, now);
+    const ViewErrors errors = errors_of(work, now);
     const double noise_px = noise_of(errors);
     work.options.knee_px = kKnee * noise_px;
     work.options.prior_px = work.options.noise_px = noise_px;
@@ -264,13 +264,13 @@ void take_lens(const Work& work,
   const std::vector<double> errors = finite(errors_of(work, now));
   result.rms_px = root_mean_square(errors);
   result.points = point_count(work.planes);
-  result.sights = sight_count(work.planes);
+  result.views = view_count(work.planes);
 }
 
 }  // namespace
 
-PlaneLens lens_from_planes(std::vector<SightedPlane> planes,
-                           const GyroTurns& gyro,
+PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
+                           const GyroRotations& gyro,
                            const Camera& guess,
                            const PlaneLensOptions& options,
                            const Progress& progress,
@@ -278,12 +278,12 @@ PlaneLens lens_from_planes(std::vector<SightedPlane> planes,
   PlaneLens result;
   Work work{
       cleaned(std::move(planes)), gyro, guess.width, guess.height, options.prior, {.stop = stop}};
-  result.sights = sight_count(work.planes);
-  if (result.sights < kLeastPictures)
+  result.views = view_count(work.planes);
+  if (result.views < kLeastImages)
     return failed(result,
                   fmt::format("a plane is seen in {} pictures; at least {} are needed",
-                              result.sights,
-                              kLeastPictures));
+                              result.views,
+                              kLeastImages));
   const auto few = best_by_few(work, guess, progress);
   result.stopped = stop.stop_requested();
   if (result.stopped) return failed(result, "stopped");
@@ -292,7 +292,7 @@ PlaneLens lens_from_planes(std::vector<SightedPlane> planes,
   now = settled(work, *std::move(now), result.left_out, progress);
   result.stopped = stop.stop_requested();
   if (result.stopped) return failed(result, "stopped");
-  if (!now->usable || sight_count(work.planes) < kLeastPictures)
+  if (!now->usable || view_count(work.planes) < kLeastImages)
     return failed(result, "the tracks do not lie on planes");
   const LensCertainty certainty = weigh_prior(work, *now);
   take_lens(work, *now, certainty, options, result);

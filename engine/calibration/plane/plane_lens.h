@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_views.h"
 #include "engine/geometry/camera.h"
 
 #include <array>
@@ -31,7 +31,7 @@ struct PlaneLens {
   std::array<bool, kLensUnknowns> prior_only{};  ///< the pictures say nothing of it
   double rms_px = 0;                             ///< [raw px]
   int points = 0;
-  int sights = 0;
+  int views = 0;
   double tilt_deg = 0;        ///< how far apart the plane's normals are, in the camera's axes
   double moved = 0;           ///< how far the camera moved [distances of the plane]
   std::vector<int> left_out;  ///< frames whose pictures disagree with all others
@@ -42,8 +42,8 @@ struct PlaneLens {
 /// from several focal lengths, the guess' among them, each with the normals that suit it best, then
 /// one least squares over the lens, all points and all poses. `guess` has the pictures' size and,
 /// roughly, the lens' bend.
-PlaneLens lens_from_planes(std::vector<SightedPlane> planes,
-                           const GyroTurns& gyro,
+PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
+                           const GyroRotations& gyro,
                            const Camera& guess,
                            const PlaneLensOptions& options = {},
                            const std::function<void(int done, int of)>& progress = {},

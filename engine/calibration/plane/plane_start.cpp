@@ -32,34 +32,34 @@ constexpr double kLeastSlope = 0.02;  // of a ray to the plane; below it the poi
 constexpr double kMostBehind = 0.03;  // of the points
 constexpr double kApart_rad = 0.25;   // two guesses of a normal are at least
 
-Matrix2Xd undistorted_from_middle(const PlaneSight& sight, const Camera& camera) {
-  Matrix2Xd points(2, sight.raw_px.cols());
+Matrix2Xd undistorted_from_middle(const PlaneView& view, const Camera& camera) {
+  Matrix2Xd points(2, view.raw_px.cols());
   const Vector2d middle(camera.cx, camera.cy);
   for (Eigen::Index k = 0; k < points.cols(); ++k)
-    points.col(k) = undistort(camera, sight.raw_px.col(k)) - middle;
+    points.col(k) = undistort(camera, view.raw_px.col(k)) - middle;
   return points;
 }
 
 /// Those of a sight's observations whose points are placed.
-std::vector<int> placed(const PlaneSight& sight, const Matrix2Xd& seen, const Matrix2Xd& points) {
+std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matrix2Xd& points) {
   std::vector<int> columns;
-  for (int k = 0; k < static_cast<int>(sight.points.size()); ++k)
-    if (points.col(sight.points[k]).allFinite() && seen.col(k).allFinite()) columns.push_back(k);
+  for (int k = 0; k < static_cast<int>(view.points.size()); ++k)
+    if (points.col(view.points[k]).allFinite() && seen.col(k).allFinite()) columns.push_back(k);
   return columns;
 }
 
 /// From the points to a sight, by those that agree with most of the others.
-std::optional<Matrix3d> homography_to(const PlaneSight& sight,
+std::optional<Matrix3d> homography_to(const PlaneView& view,
                                       const Matrix2Xd& seen,
                                       const Matrix2Xd& points) {
   constexpr int kRounds = 3;
   constexpr double kMostMedians = 3;
-  std::vector<int> columns = placed(sight, seen, points);
+  std::vector<int> columns = placed(view, seen, points);
   std::optional<Matrix3d> H;
   for (int round = 0; round < kRounds && std::ssize(columns) >= kLeastCommon; ++round) {
     std::vector<int> numbers;
     numbers.reserve(columns.size());
-    for (const int k : columns) numbers.push_back(sight.points[k]);
+    for (const int k : columns) numbers.push_back(view.points[k]);
     const Matrix2Xd from = points(Eigen::all, numbers);
     const Matrix2Xd to = seen(Eigen::all, columns);
     H = fit_homography(from, to);
@@ -78,7 +78,7 @@ std::optional<Matrix3d> homography_to(const PlaneSight& sight,
 
 /// Points of a sight that have no place yet get theirs; not those that the mosaic's picture would
 /// see behind itself or far outside.
-void place_points(const PlaneSight& sight,
+void place_points(const PlaneView& view,
                   const Matrix2Xd& seen,
                   const Matrix3d& H,
                   double farthest_px,
@@ -86,10 +86,10 @@ void place_points(const PlaneSight& sight,
   const Matrix3d back = H.inverse();
   // Signs: in front as most of those that are placed already.
   double sign = 0;
-  for (const int k : placed(sight, seen, points))
+  for (const int k : placed(view, seen, points))
     sign += back.row(2).dot(seen.col(k).homogeneous()) > 0 ? 1 : -1;
-  for (std::size_t k = 0; k < sight.points.size(); ++k) {
-    auto point = points.col(sight.points[k]);
+  for (std::size_t k = 0; k < view.points.size(); ++k) {
+    auto point = points.col(view.points[k]);
     if (point.allFinite() || !seen.col(static_cast<Eigen::Index>(k)).allFinite()) continue;
     const Vector3d there = back * seen.col(static_cast<Eigen::Index>(k)).homogeneous();
     if (there.z() * sign <= 0) continue;
@@ -136,33 +136,33 @@ Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
 
 }  // namespace
 
-PlaneMosaic plane_mosaic(const SightedPlane& plane, const Camera& camera) {
-  const auto count = std::ssize(plane.sights);
+PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera) {
+  const auto count = std::ssize(plane.views);
   PlaneMosaic mosaic{Matrix2Xd::Constant(2, plane.points, kNaN),
                      std::vector<Matrix3d>(count, Matrix3d::Constant(kNaN)),
                      0};
   std::vector<Matrix2Xd> seen;
   std::vector<int> left;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    seen.push_back(undistorted_from_middle(plane.sights[i], camera));
+    seen.push_back(undistorted_from_middle(plane.views[i], camera));
     left.push_back(static_cast<int>(i));
   }
   if (left.empty()) return mosaic;
-  const auto size = [&](int i) { return plane.sights[i].points.size(); };
+  const auto size = [&](int i) { return plane.views[i].points.size(); };
   int next = *std::ranges::max_element(left, {}, size);
-  mosaic.points(Eigen::all, plane.sights[next].points) = seen[next];
+  mosaic.points(Eigen::all, plane.views[next].points) = seen[next];
   mosaic.H_i_m[next].setIdentity();
   mosaic.root = next;
   const double farthest_px = 6.0 * camera.width;
-  const auto common = [&](int i) { return placed(plane.sights[i], seen[i], mosaic.points).size(); };
+  const auto common = [&](int i) { return placed(plane.views[i], seen[i], mosaic.points).size(); };
   std::erase(left, next);
   while (!left.empty()) {
     next = *std::ranges::max_element(left, {}, common);
     std::erase(left, next);
-    const auto H = homography_to(plane.sights[next], seen[next], mosaic.points);
+    const auto H = homography_to(plane.views[next], seen[next], mosaic.points);
     if (!H) continue;
     mosaic.H_i_m[next] = *H;
-    place_points(plane.sights[next], seen[next], *H, farthest_px, mosaic.points);
+    place_points(plane.views[next], seen[next], *H, farthest_px, mosaic.points);
   }
   return mosaic;
 }
@@ -177,9 +177,9 @@ std::vector<NormalGuess> normal_guesses(const PlaneMosaic& mosaic, double focal_
     const int around =
         std::max(1, static_cast<int>(2 * std::numbers::pi * std::sin(slant) / kRing_rad));
     for (int k = 0; k < around; ++k) {
-      const double turn = 2 * std::numbers::pi * k / around;
+      const double rotation = 2 * std::numbers::pi * k / around;
       const Vector3d normal(
-          std::sin(slant) * std::cos(turn), std::sin(slant) * std::sin(turn), -std::cos(slant));
+          std::sin(slant) * std::cos(rotation), std::sin(slant) * std::sin(rotation), -std::cos(slant));
       const Matrix3d frame = plane_frame(normal);
       NormalGuess guess{normal, 0};
       for (const Matrix3d& H : homographies) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_sights.h"
+#include "engine/calibration/plane/plane_views.h"
 
 #include <optional>
 #include <vector>
@@ -21,7 +21,7 @@ struct PlaneMosaic {
 };
 
 /// From sight to sight, those that share most points first. `camera` undistorts.
-PlaneMosaic plane_mosaic(const SightedPlane& plane, const Camera& camera);
+PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera);
 
 /// Normals that the plane may have in the mosaic's view, if the focal length is so much, the best
 /// first, with how badly they do (0: perfectly; Triggs 1998): a homography from the plane, in

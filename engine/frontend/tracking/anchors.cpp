@@ -17,14 +17,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A step of all tracks from a picture to the next.
 struct Step {
   Anchors& anchors;
-  const cv::Mat& soft;
+  const cv::Mat& smoothed;
   const Matrix2Xd& before_px;
   const AnchorOptions& options;
   Held held;
 
-  Step(Anchors& all, const cv::Mat& picture, const Matrix2Xd& before, const AnchorOptions& settings)
+  Step(Anchors& all, const cv::Mat& image, const Matrix2Xd& before, const AnchorOptions& settings)
       : anchors(all),
-        soft(picture),
+        smoothed(image),
         before_px(before),
         options(settings),
         held{Matrix2Xd::Constant(2, before.cols(), kNaN),
@@ -47,12 +47,12 @@ struct Step {
 
 /// From the track's own warp in the picture before, moved.
 Found search_from(const Step& step, int j, const Vector2d& motion_px) {
-  const Sought& look = step.anchors.looks[j];
+  const PatchTemplate& patch = step.anchors.patches[j];
   Warp start = step.anchors.warps[j];
   start.center += motion_px;
-  const Found found = search(step.soft, look, start, Unknown::affine, step.options.search);
+  const Found found = search(step.smoothed, patch, start, MotionModel::affine, step.options.search);
   // What covers a part of the look may bend the rest out of shape.
-  return found.end ? search(step.soft, look, start, Unknown::shift, step.options.search) : found;
+  return found.end ? search(step.smoothed, patch, start, MotionModel::shift, step.options.search) : found;
 }
 
 /// Of the neighbors that are seen.
@@ -105,7 +105,7 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   const double limit = std::max(step.options.search.farthest_px,
                                 step.options.most_unlike * median_motion(around).norm());
   if (*decisive <= limit) return std::nullopt;
-  return TrackEnd{0, LossReason::look_far, *decisive, limit};
+  return TrackEnd{0, LossReason::far_from_prediction, *decisive, limit};
 }
 
 /// Those that are lost or have jumped get a second chance where their neighbors went.
@@ -140,25 +140,25 @@ void take_shape(Step& step) {
                               step.options.half_patch_px,
                               step.anchors.neighborhoods[j],
                               step.options.shape);
-    const Sought& look = step.anchors.looks[j];
-    step.take(j, search(step.soft, look, start, Unknown::shift, step.options.search));
+    const PatchTemplate& patch = step.anchors.patches[j];
+    step.take(j, search(step.smoothed, patch, start, MotionModel::shift, step.options.search));
   }
 }
 
 void lose_what_slides(Step& step) {
   const SearchOptions& options = step.options.search;
   for (int j = 0; j < step.before_px.cols(); ++j) {
-    if (!step.is_seen(j) || !(step.anchors.looks[j].edge < options.edge)) continue;
-    const auto detail = detail_along_edge(step.soft, step.anchors.looks[j], step.anchors.warps[j]);
+    if (!step.is_seen(j) || !(step.anchors.patches[j].edge < options.edge)) continue;
+    const auto detail = detail_along_edge(step.smoothed, step.anchors.patches[j], step.anchors.warps[j]);
     if (detail && !(*detail >= options.least_detail))
-      step.take(j, {.end = TrackEnd{0, LossReason::look_unlike, *detail, options.least_detail}});
+      step.take(j, {.end = TrackEnd{0, LossReason::low_correlation, *detail, options.least_detail}});
   }
 }
 
 /// The pixel of a whole place; of one that is far from the picture or not known, one whose patch
 /// has nothing of the picture.
-cv::Point pixel_at(const Vector2d& middle, const cv::Mat& picture, int half) {
-  const Vector2d size(picture.cols, picture.rows);
+cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image, int half) {
+  const Vector2d size(image.cols, image.rows);
   const bool near =
       (middle.array() >= -half).all() && (middle.array() < (size.array() + half)).all();
   if (!near) return {-half - 1, -half - 1};
@@ -167,7 +167,7 @@ cv::Point pixel_at(const Vector2d& middle, const cv::Mat& picture, int half) {
 
 }  // namespace
 
-Anchors make_anchors(const cv::Mat& soft,
+Anchors make_anchors(const cv::Mat& smoothed,
                      const Matrix2Xd& raw_px,
                      const Camera& camera,
                      const AnchorOptions& options) {
@@ -175,7 +175,7 @@ Anchors make_anchors(const cv::Mat& soft,
   Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half, options.shape), {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
-    anchors.looks.push_back(make_sought(make_look(soft, pixel_at(middle, soft, half), half)));
+    anchors.patches.push_back(make_patch_template(make_patch(smoothed, pixel_at(middle, smoothed, half), half)));
     anchors.corners_px.col(j) -= middle;
     anchors.warps.push_back({middle});
   }
@@ -183,11 +183,11 @@ Anchors make_anchors(const cv::Mat& soft,
 }
 
 Held hold(Anchors& anchors,
-          const cv::Mat& soft,
+          const cv::Mat& smoothed,
           const Matrix2Xd& before_px,
           const Matrix2Xd& flow_px,
           const AnchorOptions& options) {
-  Step step(anchors, soft, before_px, options);
+  Step step(anchors, smoothed, before_px, options);
   for (int j = 0; j < before_px.cols(); ++j)
     if (step.was_seen(j)) step.take(j, search_from(step, j, flow_px.col(j)));
   follow_neighbors(step);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/frontend/tracking/local_shape.h"
-#include "engine/frontend/tracking/look_search.h"
+#include "engine/frontend/tracking/patch_alignment.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
 
@@ -27,15 +27,15 @@ struct AnchorOptions {
 /// What tracks look like in the reference frame, and where and how each was seen last.
 struct Anchors {
   Camera camera;
-  std::vector<Sought> looks;                ///< one a track, around its nearest whole pixel
+  std::vector<PatchTemplate> patches;                ///< one a track, around its nearest whole pixel
   Eigen::Matrix2Xd corners_px;              ///< 2 x tracks, from the looks' middles
   std::vector<Neighborhood> neighborhoods;  ///< one a track
   std::vector<Warp> warps;                  ///< one a track, of its look
 };
 
-/// `soft` is the reference picture (soft_picture.h); `raw_px` 2 x tracks, its corners in raw
+/// `soft` is the reference picture (smoothed_image.h); `raw_px` 2 x tracks, its corners in raw
 /// pixels.
-Anchors make_anchors(const cv::Mat& soft,
+Anchors make_anchors(const cv::Mat& smoothed,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
                      const AnchorOptions& options = {});
@@ -50,7 +50,7 @@ struct Held {
 /// roughly; both 2 x tracks, raw pixels. A track is lost where its look is not found, where it
 /// moves as hardly any of its neighbors, and where the look is an edge along which it slides.
 Held hold(Anchors& anchors,
-          const cv::Mat& soft,
+          const cv::Mat& smoothed,
           const Eigen::Matrix2Xd& before_px,
           const Eigen::Matrix2Xd& flow_px,
           const AnchorOptions& options = {});

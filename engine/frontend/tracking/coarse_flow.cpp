@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/coarse_flow.h"
 
-#include "engine/frontend/tracking/look_kernel.h"
-#include "engine/frontend/tracking/soft_picture.h"
+#include "engine/frontend/tracking/patch_kernel.h"
+#include "engine/frontend/tracking/smoothed_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,39 +25,39 @@ constexpr int kFarthest = 6;        // of the picture as a whole [px of the smal
 constexpr int kMostSteps = 8;       // of Gauss-Newton, on a level
 constexpr double kConverged = 0.1;  // length of its last step [px of the level]
 
-Look empty_look() {
-  Look look;
-  look.half = kHalf;
+Patch empty_patch() {
+  Patch patch;
+  patch.half = kHalf;
   for (int v = -kHalf; v < kHalf; ++v) {
     for (int u = -kHalf; u < kHalf; ++u) {
-      look.dx.push_back(static_cast<float>(u));
-      look.dy.push_back(static_cast<float>(v));
+      patch.dx.push_back(static_cast<float>(u));
+      patch.dy.push_back(static_cast<float>(v));
     }
   }
-  for (auto* values : {&look.slope_x, &look.slope_y, &look.brightness})
-    values->resize(look.dx.size());
-  look.one.assign(look.dx.size(), 1);
-  return look;
+  for (auto* values : {&patch.slope_x, &patch.slope_y, &patch.brightness})
+    values->resize(patch.dx.size());
+  patch.one.assign(patch.dx.size(), 1);
+  return patch;
 }
 
 /// What is around a pixel; the normal matrix over slopes, brightness and 1.
-Matrix4d look_at(const cv::Mat& soft, int u, int v, Look& look) {
+Matrix4d look_at(const cv::Mat& smoothed, int u, int v, Patch& patch) {
   constexpr int kSide = 2 * kHalf;
   for (int row = 0; row < kSide; ++row) {
-    const auto* here = soft.ptr<std::uint16_t>(v - kHalf + row) + u - kHalf;
-    const auto* above = soft.ptr<std::uint16_t>(v - kHalf + row - 1) + u - kHalf;
-    const auto* below = soft.ptr<std::uint16_t>(v - kHalf + row + 1) + u - kHalf;
+    const auto* here = smoothed.ptr<std::uint16_t>(v - kHalf + row) + u - kHalf;
+    const auto* above = smoothed.ptr<std::uint16_t>(v - kHalf + row - 1) + u - kHalf;
+    const auto* below = smoothed.ptr<std::uint16_t>(v - kHalf + row + 1) + u - kHalf;
     const int k = row * kSide;
     for (int i = 0; i < kSide; ++i) {
-      look.brightness[k + i] = here[i];
-      look.slope_x[k + i] = 0.5F * static_cast<float>(here[i + 1] - here[i - 1]);
-      look.slope_y[k + i] = 0.5F * static_cast<float>(below[i] - above[i]);
+      patch.brightness[k + i] = here[i];
+      patch.slope_x[k + i] = 0.5F * static_cast<float>(here[i + 1] - here[i - 1]);
+      patch.slope_y[k + i] = 0.5F * static_cast<float>(below[i] - above[i]);
     }
   }
   using Column = Eigen::Map<Eigen::Array<float, kSide * kSide, 1>>;
-  Column T(look.brightness.data());
-  const Column gx(look.slope_x.data());
-  const Column gy(look.slope_y.data());
+  Column T(patch.brightness.data());
+  const Column gx(patch.slope_x.data());
+  const Column gy(patch.slope_y.data());
   T -= T.mean();
   Matrix4d normal = Matrix4d::Zero();
   normal.row(0) << (gx * gx).sum(), (gx * gy).sum(), (gx * T).sum(), gx.sum();
@@ -72,7 +72,7 @@ Vector2d moved(const cv::Mat& from,
                const cv::Mat& to,
                const Vector2d& from_px,
                const Vector2d& guess_px,
-               Look& look) {
+               Patch& patch) {
   // Near the edge what moves with it is looked at in its place.
   const Vector2d least = (Vector2d::Constant(kHalf + 1) - guess_px).cwiseMax(kHalf + 1);
   const Vector2d most =
@@ -84,7 +84,7 @@ Vector2d moved(const cv::Mat& from,
                               .round();
   if (!((middle - least).minCoeff() >= 0)) return guess_px;
   const Matrix4d normal =
-      look_at(from, static_cast<int>(middle.x()), static_cast<int>(middle.y()), look);
+      look_at(from, static_cast<int>(middle.x()), static_cast<int>(middle.y()), patch);
   const Eigen::LDLT<Matrix4d> solver(normal);
   const double n = normal(3, 3);
   Vector2d moved_px = guess_px;
@@ -92,8 +92,8 @@ Vector2d moved(const cv::Mat& from,
   double best = -1;
   for (int step = 0; step < kMostSteps; ++step) {
     const Warp warp{middle + moved_px};
-    if (!is_inside(to.size(), look, warp)) break;
-    const LookSums sums = shifted_sums(to, look, warp.center);
+    if (!is_inside(to.size(), patch, warp)) break;
+    const PatchSums sums = shifted_sums(to, patch, warp.center);
     const Vector4d b(sums.products[0], sums.products[1], sums.products[6], sums.products[7]);
     const double variances = (sums.squares - b[3] * b[3] / n) * normal(2, 2);
     const double correlation = variances > 0 ? b[2] / std::sqrt(variances) : 0;
@@ -113,13 +113,13 @@ Vector2d moved(const cv::Mat& from,
 
 /// In whole numbers, so that what is added up is the same in any order: deviations from the mean in
 /// 64ths of the standard deviation, whatever gain and offset the exposure has. CV_16SC1.
-cv::Mat standardized(const cv::Mat& soft) {
+cv::Mat standardized(const cv::Mat& smoothed) {
   cv::Scalar mean;
   cv::Scalar deviation;
-  cv::meanStdDev(soft, mean, deviation);
+  cv::meanStdDev(smoothed, mean, deviation);
   const double scale = deviation[0] > 0 ? 64 / deviation[0] : 0;
   cv::Mat result;
-  soft.convertTo(result, CV_16S, scale, -scale * mean[0]);
+  smoothed.convertTo(result, CV_16S, scale, -scale * mean[0]);
   return result;
 }
 
@@ -142,7 +142,7 @@ double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
 
 /// By how much the picture as a whole moves: what each place starts from, so that a jolt does not
 /// lose those near the edge, around which the next picture has little.
-Vector2d picture_motion(const cv::Mat& from, const cv::Mat& to) {
+Vector2d image_motion(const cv::Mat& from, const cv::Mat& to) {
   const cv::Mat a = standardized(from);
   const cv::Mat b = standardized(to);
   const int farthest = std::min({kFarthest, from.cols / 3, from.rows / 3});
@@ -163,7 +163,7 @@ Vector2d picture_motion(const cv::Mat& from, const cv::Mat& to) {
 }  // namespace
 
 SoftPyramid soft_pyramid(const cv::Mat& gray) {
-  SoftPyramid pyramid{soften(gray)};
+  SoftPyramid pyramid{smoothed(gray)};
   for (int level = 1; level <= kCoarsest; ++level) {
     if (std::min(pyramid.back().cols, pyramid.back().rows) / 2 < kLeastSide_px) break;
     pyramid.push_back(halved(pyramid.back()));
@@ -174,16 +174,16 @@ SoftPyramid soft_pyramid(const cv::Mat& gray) {
 Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
                              const SoftPyramid& to,
                              const Eigen::Matrix2Xd& raw_px) {
-  Look look = empty_look();
+  Patch patch = empty_patch();
   const Vector2d start =
-      picture_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
+      image_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
   Eigen::Matrix2Xd flow = start.replicate(1, raw_px.cols());
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     for (auto level = static_cast<int>(from.size()) - 1; level >= 1; --level) {
       const double scale = std::ldexp(1.0, -level);
       // The middle of the first pixel of a level is the middle of four.
       const Vector2d px = scale * (raw_px.col(j).array() + 0.5) - 0.5;
-      flow.col(j) = moved(from[level], to[level], px, scale * flow.col(j), look) / scale;
+      flow.col(j) = moved(from[level], to[level], px, scale * flow.col(j), patch) / scale;
     }
   }
   return flow;

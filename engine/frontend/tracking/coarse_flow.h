@@ -9,7 +9,7 @@
 
 namespace gpo {
 
-/// Soft pictures (soft_picture.h), each of half the size of the one before.
+/// Soft pictures (smoothed_image.h), each of half the size of the one before.
 using SoftPyramid = std::vector<cv::Mat>;
 
 /// `gray` is CV_8UC1.

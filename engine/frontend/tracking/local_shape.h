@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/look.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/geometry/camera.h"
 
 #include <optional>

@@ -104,7 +104,7 @@ std::optional<TrackEnd> end_of(const cv::Point2f& there,
                                double distance_px,
                                const TrackerOptions& options) {
   if (std::isnan(there.x))
-    return TrackEnd{.reason = left ? LossReason::left_picture : LossReason::no_flow};
+    return TrackEnd{.reason = left ? LossReason::left_image : LossReason::no_flow};
   if (std::isnan(distance_px)) return TrackEnd{.reason = LossReason::no_flow};
   if (distance_px <= options.forward_backward_px) return std::nullopt;
   return TrackEnd{.reason = LossReason::forward_backward,
@@ -244,7 +244,7 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
   return to_matrix(kept);
 }
 
-std::optional<Tracks> track_window(const GrayPictures& gray_at,
+std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
                                    int start,
                                    int frames,

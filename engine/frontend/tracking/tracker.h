@@ -41,7 +41,7 @@ struct TrackerOptions {
 };
 
 /// A frame of the recording in gray, CV_8UC1. Throws InputError where it cannot be decoded.
-using GrayPictures = std::function<cv::Mat(int frame)>;
+using GrayImages = std::function<cv::Mat(int frame)>;
 
 /// Told of what is done; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
@@ -50,7 +50,7 @@ using FrameProgress = std::function<void(int done, int of)>;
 /// or, in anchored tracking, by their looks in the reference frame. A track is lost for good in the
 /// first frame in which it fails a check or leaves the picture. Nothing where stopped. Throws
 /// InputError for a picture that cannot be decoded.
-std::optional<Tracks> track_window(const GrayPictures& pictures,
+std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    int start,
                                    int frames,

@@ -85,7 +85,7 @@ std::optional<TruthInfo> describe_truth(const Recording& recording) {
                      known_count(*recording.truth),
                      static_cast<int>(recording.truth->poses.size())};
   }
-  if (recording.board && recording.pictures) return examine_board(recording);
+  if (recording.board && recording.images) return examine_board(recording);
   return std::nullopt;
 }
 
@@ -246,7 +246,7 @@ RecordingInfo describe(const Recording& recording) {
   info.path = recording.path.string();
   info.name = recording.name;
   info.layout = recording.layout;
-  info.pictures = recording.pictures != nullptr;
+  info.images = recording.images != nullptr;
   info.frames = recording.frame_count();
   info.duration_s = in_seconds(times.back() - times.front());
   info.rate_hz = gpo::rate_hz(times);
@@ -267,7 +267,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
   nlohmann::json json = {{"recording", info.path},
                          {"name", info.name},
                          {"layout", info.layout},
-                         {"pictures", info.pictures},
+                         {"pictures", info.images},
                          {"frames", info.frames},
                          {"duration_s", info.duration_s},
                          {"rate_hz", info.rate_hz},
@@ -310,7 +310,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
 std::string to_text(const RecordingInfo& info) {
   Table table;
   table.row("recording", info.path);
-  table.row("layout", info.layout + (info.pictures ? "" : ", without pictures"));
+  table.row("layout", info.layout + (info.images ? "" : ", without pictures"));
   table.row("frames",
             fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");

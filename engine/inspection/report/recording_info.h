@@ -48,7 +48,7 @@ struct RecordingInfo {
   std::string path;
   std::string name;
   std::string layout;
-  bool pictures = false;
+  bool images = false;
   int frames = 0;
   double duration_s = 0;
   double rate_hz = 0;         ///< 1 / median period; 0 for a single frame

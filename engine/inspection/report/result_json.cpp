@@ -265,7 +265,7 @@ ordered_json verdict_json(const Verdict& verdict) {
   ordered_json planes = ordered_json::array();
   for (const PlaneEvidence& plane : verdict.planes) {
     planes.push_back({{"track_share", plane.track_share},
-                      {"picture_share", plane.picture_share},
+                      {"picture_share", plane.image_share},
                       {"stability", plane.stability}});
   }
   ordered_json criterion = nullptr;
@@ -355,9 +355,9 @@ ordered_json to_json(const Inspection& inspection) {
       json["uncertainty"]["lens"] = "a guess, taken as exact";
   }
   if (inspection.inertial) json["inertial"] = inertial_json(*inspection.inertial);
-  if (inspection.scale_known_at)
+  if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] =
-        inspection.window->start + *inspection.scale_known_at;
+        inspection.window->start + *inspection.metric_scale_from;
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);

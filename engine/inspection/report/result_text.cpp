@@ -87,9 +87,9 @@ std::string planes_text(const Inspection& inspection) {
 
 /// Up to which frame it takes to know the scale.
 std::string known_at_text(const Inspection& inspection) {
-  if (!inspection.scale_known_at) return "";
+  if (!inspection.metric_scale_from) return "";
   return fmt::format(", known from frame {} on",
-                     inspection.window->start + *inspection.scale_known_at);
+                     inspection.window->start + *inspection.metric_scale_from);
 }
 
 /// Gravity's direction and the scale, or why there are none.

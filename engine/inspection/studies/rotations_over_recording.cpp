@@ -67,22 +67,22 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
 
 }  // namespace
 
-std::vector<PictureRotations> rotations_over_recording(
+std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
     int most_windows,
     const std::function<void(int, int)>& progress,
     const std::stop_token& stop) {
-  auto pictures_only = std::make_shared<Recording>(*recording);
-  pictures_only->gyroscope.reset();
-  pictures_only->truth.reset();
-  pictures_only->board.reset();
-  Inspector inspector(pictures_only);
+  auto images_only = std::make_shared<Recording>(*recording);
+  images_only->gyroscope.reset();
+  images_only->truth.reset();
+  images_only->board.reset();
+  Inspector inspector(images_only);
   Settings settings;
   settings.frames = std::min(window_frames(*recording), recording->frame_count());
   const int step = settings.frames - 1;
   const int fit = std::max(1, (recording->frame_count() - 1) / std::max(1, step));
   const int count = std::min(fit, most_windows);
-  std::vector<PictureRotations> windows;
+  std::vector<ImageRotations> windows;
   for (int w = 0; w < count && !stop.stop_requested(); ++w) {
     settings.start = step * static_cast<int>(static_cast<std::int64_t>(w) * fit / count);
     const auto inspection = inspector.inspect(settings, stop);

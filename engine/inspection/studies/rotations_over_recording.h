@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/recording/recording.h"
-#include "engine/window/picture_rotations.h"
+#include "engine/window/image_rotations.h"
 
 #include <functional>
 #include <memory>
@@ -18,7 +18,7 @@ namespace gpo {
 /// of the cameras that the default method finds, or would have started from; where the camera does
 /// nothing but turn, those that explain the homographies. Windows that tell nothing are left out.
 /// `progress(done, of)` is called after each. Throws InputError where there is nothing to track.
-std::vector<PictureRotations> rotations_over_recording(
+std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
     int most_windows = 80,
     const std::function<void(int, int)>& progress = {},

@@ -123,7 +123,7 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
 
 std::string reason_of(const TrackEnd& end) {
   switch (end.reason) {
-    case LossReason::left_picture:
+    case LossReason::left_image:
       return "left the picture";
     case LossReason::no_flow:
       return "not found again";
@@ -131,11 +131,11 @@ std::string reason_of(const TrackEnd& end) {
       return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
     case LossReason::look_not_found:
       return "its look in the reference frame not found";
-    case LossReason::look_far:
+    case LossReason::far_from_prediction:
       return fmt::format("its look found {:.1f} px from where it was expected, above {:.1f} px",
                          end.value,
                          end.limit);
-    case LossReason::look_unlike:
+    case LossReason::low_correlation:
       return fmt::format("correlation {:.2f} with its look in the reference frame below {:.1f}",
                          end.value,
                          end.limit);

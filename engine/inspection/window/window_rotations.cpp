@@ -29,7 +29,7 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
 
 std::string why_no_rotations(const Recording& recording, RotationSource source) {
   if (needs_gyroscope(source) && !recording.gyroscope) return recording.name + " has no gyroscope";
-  const bool truth = recording.truth || (recording.board && recording.pictures);
+  const bool truth = recording.truth || (recording.board && recording.images);
   if (source == RotationSource::truth && !truth)
     return recording.name + " has no ground truth, and no pictures of a board to compute it from";
   return "";

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracker.h"
-#include "engine/inspection/window/kept.h"
+#include "engine/inspection/window/cached.h"
 #include "engine/recording/frame_cache.h"
 
 #include <chrono>
@@ -27,7 +27,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
-  if (!recording.pictures) {
+  if (!recording.images) {
     throw InputError(
         fmt::format("{}: no pictures and no tracks; expected a file of tracks", recording.name));
   }
@@ -38,8 +38,8 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
     if (progress) progress("tracking", done, of);
   };
   const TrackerOptions options{.tracking = tracking};
-  PicturesAhead pictures(*recording.pictures, start, start + frames);
-  auto tracks = track_window([&](int frame) { return pictures.gray(frame); },
+  ImagesAhead images(*recording.images, start, start + frames);
+  auto tracks = track_window([&](int frame) { return images.gray(frame); },
                              recording.camera,
                              start,
                              frames,

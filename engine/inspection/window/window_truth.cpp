@@ -20,8 +20,8 @@ const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};
 std::optional<Plane> plane_of_board(const Recording& recording,
                                     int frame,
                                     const std::optional<Pose>& T_truth_camera) {
-  if (!recording.board || !recording.pictures || !T_truth_camera) return std::nullopt;
-  const auto corners = find_board(recording.pictures->gray(frame), *recording.board);
+  if (!recording.board || !recording.images || !T_truth_camera) return std::nullopt;
+  const auto corners = find_board(recording.images->gray(frame), *recording.board);
   const auto found = board_pose(corners, *recording.board, recording.camera);
   if (!found) return std::nullopt;
   return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
@@ -41,7 +41,7 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
     if (!truth.plane) truth.plane = plane_of_board(recording, start, truth.cameras.front());
     return std::make_shared<const WindowTruth>(std::move(truth));
   }
-  if (!recording.board || !recording.pictures) return nullptr;
+  if (!recording.board || !recording.images) return nullptr;
   const auto told = [&](int done, int of) {
     if (progress) progress("finding the board", done, of);
   };
@@ -60,8 +60,8 @@ std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowT
 }
 
 std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame) {
-  if (!recording.board || !recording.pictures) return {};
-  auto corners = find_board(recording.pictures->gray(frame), *recording.board);
+  if (!recording.board || !recording.images) return {};
+  auto corners = find_board(recording.images->gray(frame), *recording.board);
   const auto hidden = [](const Eigen::Vector2d& corner) { return !corner.allFinite(); };
   if (std::ranges::none_of(corners, hidden)) return corners;
   const auto found = board_pose(corners, *recording.board, recording.camera);

@@ -23,7 +23,7 @@ Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
   return window.K.inverse() * points.colwise().homogeneous();
 }
 
-std::string reason_of_sight(const HomographyCandidate& candidate) {
+std::string reason_of_view(const HomographyCandidate& candidate) {
   if (candidate.behind <= kMostBehind * candidate.of) return "";
   return fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of);
 }
@@ -39,7 +39,7 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
     HomographyCandidate candidate{.frame = frame, .motion = motion, .score = score};
     candidate.behind = points_behind(motion, rays_1);
     candidate.of = static_cast<int>(rays_1.cols());
-    if (std::string reason = reason_of_sight(candidate); !reason.empty())
+    if (std::string reason = reason_of_view(candidate); !reason.empty())
       candidate.reject(Rejection::sight, std::move(reason));
     candidates.push_back(std::move(candidate));
   }

@@ -81,7 +81,7 @@ std::vector<PlaneEvidence> plane_evidence(const Window& window) {
   std::vector<PlaneEvidence> evidence;
   for (const WindowPlane& plane : window.planes) {
     evidence.push_back({static_cast<double>(plane.tracks.size()) / window.track_count(),
-                        plane.picture_share,
+                        plane.image_share,
                         plane.stability});
   }
   return evidence;

@@ -126,7 +126,7 @@ struct Initialization {
 };
 
 /// Puts what the uncertainty says of the planes beside each of them.
-void tell_planes_uncertainty(Initialization& result);
+void set_planes_uncertainty(Initialization& result);
 
 Initialization failed(std::string reason, SolverReport solver = {});
 /// Of a solution that is not to be believed: what was found is kept in `refused`.

@@ -19,7 +19,7 @@ struct Sources {
   const Gyroscope* gyroscope = nullptr;    ///< of the whole recording
   std::optional<Pose> T_body_camera = {};  ///< body: the axes of the IMU; where it is told
   /// A video of the whole recording, or one picture a frame of the window.
-  std::vector<std::filesystem::path> pictures = {};
+  std::vector<std::filesystem::path> images = {};
 };
 
 }  // namespace gpo

@@ -31,7 +31,7 @@ struct ChoiceKeys<SceneKind> {
 /// What speaks for a plane of the window.
 struct PlaneEvidence {
   double track_share = 0;    ///< of the window's tracks [-]
-  double picture_share = 0;  ///< of the reference picture, inside its tracks' hull [-]
+  double image_share = 0;  ///< of the reference picture, inside its tracks' hull [-]
   double stability = 0;      ///< share of its tracks that stay where the gate is halved [-]
 };
 

@@ -171,7 +171,7 @@ std::optional<Pose> PoseMessage::pose() const {
   return Pose{Eigen::Quaterniond(quaternion_xyzw).normalized().toRotationMatrix(), position};
 }
 
-bool is_picture_type(const std::string& type) {
+bool is_image_type(const std::string& type) {
   return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage";
 }
 

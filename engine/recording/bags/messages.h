@@ -73,7 +73,7 @@ struct PoseMessage {
   std::optional<Pose> pose() const;
 };
 
-bool is_picture_type(const std::string& type);
+bool is_image_type(const std::string& type);
 bool is_pose_type(const std::string& type);
 inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 inline constexpr const char* kImuType = "sensor_msgs/Imu";

@@ -26,7 +26,7 @@ bool is_imu(const std::string& type) { return type == kImuType; }
 
 /// As `TopicRole` counts them.
 constexpr std::array<RoleKind, kTopicRoles> kRoles = {
-    {{is_picture_type, "pictures", "sensor_msgs/Image or CompressedImage", "depth"},
+    {{is_image_type, "pictures", "sensor_msgs/Image or CompressedImage", "depth"},
      {is_camera_info, "calibrations", "sensor_msgs/CameraInfo", "depth"},
      {is_imu, "a gyroscope", "sensor_msgs/Imu", "accel"},
      {is_pose_type,
@@ -87,7 +87,7 @@ std::optional<int> found(const Bag& bag,
 constexpr std::uint64_t kMostSmallBytes = 2048;
 constexpr std::size_t kMostTransforms = 100'000;
 
-struct Picture {
+struct Image {
   MessageHeader header;
   BagMessage message;
 };
@@ -96,7 +96,7 @@ struct Picture {
 struct Reading {
   const Bag& bag;
   BagContents contents{};
-  std::vector<Picture> pictures{};
+  std::vector<Image> images{};
   bool some_without_stamp = false;
 };
 
@@ -132,10 +132,10 @@ T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   return made;
 }
 
-void read_picture_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+void read_image_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
   const auto header = read_header(first_bytes(reading, message), topic.encoding);
-  reading.pictures.push_back(
-      stamped(reading, message, header ? std::optional(Picture{*header, message}) : std::nullopt));
+  reading.images.push_back(
+      stamped(reading, message, header ? std::optional(Image{*header, message}) : std::nullopt));
 }
 
 void read_camera_info_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
@@ -171,7 +171,7 @@ using Reader = void (*)(Reading& reading, const BagMessage& message, const BagTo
 
 /// As `TopicRole` counts them.
 constexpr std::array<Reader, kTopicRoles> kReaders = {
-    read_picture_of, read_camera_info_of, read_imu_of, read_truth_of};
+    read_image_of, read_camera_info_of, read_imu_of, read_truth_of};
 
 bool is_static_transforms(const BagTopic& topic) {
   return topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
@@ -258,14 +258,14 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
       read(reading, message, bag.topics[message.topic]);
 
   BagContents& contents = reading.contents;
-  put_in_order(reading.pictures, "pictures", contents.notes);
+  put_in_order(reading.images, "pictures", contents.notes);
   put_in_order(contents.imu, "samples of the gyroscope", contents.notes);
   put_in_order(contents.truth, "poses", contents.notes);
-  for (const Picture& picture : reading.pictures) {
-    contents.picture_times_ns.push_back(picture.header.stamp_ns);
-    contents.pictures.push_back(picture.message);
+  for (const Image& image : reading.images) {
+    contents.image_times_ns.push_back(image.header.stamp_ns);
+    contents.images.push_back(image.message);
   }
-  contents.camera_frame = reading.pictures.front().header.frame_id;
+  contents.camera_frame = reading.images.front().header.frame_id;
   if (reading.some_without_stamp)
     contents.notes.emplace_back(
         "messages without a time stamp have the time at which they were recorded");

@@ -50,8 +50,8 @@ std::string topics_text(const Bag& bag);
 /// What a recording is made of, as the bag has it: by the time stamps in the messages' headers,
 /// strictly ascending. Where a header has none it is the time at which it was recorded.
 struct BagContents {
-  std::vector<std::int64_t> picture_times_ns;
-  std::vector<BagMessage> pictures;  ///< as many
+  std::vector<std::int64_t> image_times_ns;
+  std::vector<BagMessage> images;  ///< as many
   std::string camera_frame;          ///< where the first picture was taken: its `frame_id`
   std::optional<CameraInfoMessage> camera_info;  ///< the first
   std::vector<ImuMessage> imu;

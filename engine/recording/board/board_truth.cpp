@@ -60,7 +60,7 @@ BoardViews look_at(const Recording& recording,
     if (cache && !found.empty()) save_board_views(*cache, found);
   };
   try {
-    for_each_picture(*recording.pictures, missing, stop, look);
+    for_each_image(*recording.images, missing, stop, look);
   } catch (...) {
     save();
     throw;
@@ -226,11 +226,11 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty) {
 }
 
 std::optional<fs::path> board_cache_file(const Recording& recording) {
-  if (recording.cache_folder.empty() || recording.picture_files.empty() || !recording.board)
+  if (recording.cache_folder.empty() || recording.image_files.empty() || !recording.board)
     return std::nullopt;
   std::string key = fmt::format("{} {}\n", kAlgorithm, CV_VERSION) + key_of(recording.camera) +
                     text_of(*recording.board) + "\n";
-  for (const fs::path& file : recording.picture_files) {
+  for (const fs::path& file : recording.image_files) {
     std::error_code no_size;
     std::error_code no_time;
     const auto size = fs::file_size(file, no_size);

@@ -41,8 +41,8 @@ constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
 constexpr double kMostShift_s = 3600;
 /// From one picture in 100 s to a high-speed camera: the time stamps of as many pictures as are
 /// read are all different and fit into nanoseconds.
-constexpr double kLeastPictureRate_hz = 0.01;
-constexpr double kMostPictureRate_hz = 100'000;
+constexpr double kLeastImageRate_hz = 0.01;
+constexpr double kMostImageRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
   for (const char* name : names) {
@@ -246,8 +246,8 @@ Pose rigid_motion(const YamlEntry& entry) {
   return {nearest_rotation(R), T.topRightCorner<3, 1>()};
 }
 
-bool is_picture_rate(double rate_hz) {
-  return rate_hz >= kLeastPictureRate_hz && rate_hz <= kMostPictureRate_hz;
+bool is_image_rate(double rate_hz) {
+  return rate_hz >= kLeastImageRate_hz && rate_hz <= kMostImageRate_hz;
 }
 
 const char* distortion_name(Distortion distortion) {
@@ -278,10 +278,10 @@ Calibration read_calibration(const std::filesystem::path& file) {
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
-    if (!is_picture_rate(*result.rate_hz)) {
+    if (!is_image_rate(*result.rate_hz)) {
       yaml_fail(
           *rate,
-          fmt::format("{} to {:.0f} pictures a second", kLeastPictureRate_hz, kMostPictureRate_hz));
+          fmt::format("{} to {:.0f} pictures a second", kLeastImageRate_hz, kMostImageRate_hz));
     }
   }
   return result;

@@ -28,7 +28,7 @@ struct Calibration {
 Calibration read_calibration(const std::filesystem::path& file);
 
 /// Whether `read_calibration` takes it as a camera's `rate_hz`.
-bool is_picture_rate(double rate_hz);
+bool is_image_rate(double rate_hz);
 
 /// As EuRoC's files call it.
 const char* distortion_name(Distortion distortion);

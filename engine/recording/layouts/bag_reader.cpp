@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/bag_picture.h"
+#include "engine/recording/bags/bag_image.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/bags/topic_roles.h"
@@ -12,8 +12,8 @@
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/layouts.h"
-#include "engine/recording/pictures/picture_file.h"
-#include "engine/recording/pictures/picture_files.h"
+#include "engine/recording/images/image_file.h"
+#include "engine/recording/images/image_files.h"
 
 #include <algorithm>
 #include <utility>
@@ -55,24 +55,24 @@ OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
 
 /// Decodes the first picture: it tells how many bits are significant, and the camera's size where
 /// the calibration does not.
-std::shared_ptr<const FrameCache> pictures_of(const OpenedBag& opened,
+std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
                                               Camera& camera,
                                               std::size_t cache_bytes) {
   const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image)](
                         const BagMessage& message, int frame) {
     const std::string name =
         fmt::format("{}: {}: picture {}", bag->file.string(), topic.name, frame);
-    return std::pair(bag_picture(bag->read(message, kWholeMessage), topic, name), name);
+    return std::pair(bag_image(bag->read(message, kWholeMessage), topic, name), name);
   };
-  const auto& messages = opened.contents.pictures;
+  const auto& messages = opened.contents.images;
   const auto [first, first_name] = read(messages.front(), 0);
   check_size(first_name, first.size(), camera);
   camera.width = first.cols;
   camera.height = first.rows;
   const auto decode = [read, messages, camera, bits = significant_bits(first)](int frame) {
-    const auto [picture, name] = read(messages[frame], frame);
-    check_size(name, picture.size(), camera);
-    return to_8_bits(picture, bits);
+    const auto [image, name] = read(messages[frame], frame);
+    check_size(name, image.size(), camera);
+    return to_8_bits(image, bits);
   };
   return std::make_shared<const FrameCache>(static_cast<int>(messages.size()), decode, cache_bytes);
 }
@@ -213,21 +213,21 @@ Recording read_bag(const fs::path& path, const OpenOptions& options) {
   const auto found = calibration_of(opened, folder, recording.notes);
   const Calibration calibration = found.value_or(Calibration{});
   recording.camera = calibration.camera;
-  recording.timestamps_ns = opened.contents.picture_times_ns;
-  recording.pictures = pictures_of(opened, recording.camera, options.cache_bytes);
+  recording.timestamps_ns = opened.contents.image_times_ns;
+  recording.images = images_of(opened, recording.camera, options.cache_bytes);
   if (!found) guess_camera(recording);
-  recording.picture_files = {opened.bag->file};
+  recording.image_files = {opened.bag->file};
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
   add_gyroscope(recording, opened, calibration, folder);
   add_truth(recording, opened, folder);
   return recording;
 }
 
-std::shared_ptr<const FrameCache> open_bag_pictures(const fs::path& path,
+std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                     std::size_t cache_bytes,
                                                     const TopicChoices& choices) {
   Camera of_any_size;
-  return pictures_of(open_with_roles(path, choices), of_any_size, cache_bytes);
+  return images_of(open_with_roles(path, choices), of_any_size, cache_bytes);
 }
 
 }  // namespace gpo

@@ -8,7 +8,7 @@
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/layouts.h"
-#include "engine/recording/pictures/picture_files.h"
+#include "engine/recording/images/image_files.h"
 
 #include <algorithm>
 #include <vector>
@@ -21,15 +21,15 @@ namespace fs = std::filesystem;
 
 /// Pictures that a table lists, or where there is none those of a folder, named by their time
 /// stamps.
-struct PictureList {
+struct ImageList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;
   std::optional<CsvTable> table;
 };
 
 /// `folder` is where the table's names begin.
-PictureList listed_pictures(CsvTable table, TimeUnit unit, const fs::path& folder) {
-  PictureList list;
+ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
+  ImageList list;
   list.timestamps_ns = csv_time_stamps(table, unit);
   list.files.reserve(table.rows.size());
   for (const auto& row : table.rows) list.files.push_back(folder / csv_cell(table, row, 1));
@@ -37,9 +37,9 @@ PictureList listed_pictures(CsvTable table, TimeUnit unit, const fs::path& folde
   return list;
 }
 
-PictureList named_pictures(const fs::path& cam) {
-  PictureList list;
-  list.files = numbered_pictures(cam / "data");
+ImageList named_images(const fs::path& cam) {
+  ImageList list;
+  list.files = numbered_images(cam / "data");
   for (const auto& file : list.files) {
     const auto time = parse_integer(file.stem().string());
     if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back())) {
@@ -52,23 +52,23 @@ PictureList named_pictures(const fs::path& cam) {
   return list;
 }
 
-PictureList read_picture_list(const fs::path& folder) {
+ImageList read_image_list(const fs::path& folder) {
   const fs::path cam = folder / "cam0";
   if (!is_file(cam / "data.csv") && is_folder(cam / "data")) {
-    auto named = named_pictures(cam);
+    auto named = named_images(cam);
     if (!named.files.empty()) return named;
   }
-  return listed_pictures(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
+  return listed_images(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
                          TimeUnit::nanoseconds,
                          cam / "data");
 }
 
 /// With the tracks that are asked for; with these pictures may be missing.
-void add_pictures(Recording& recording, PictureList list, const OpenOptions& options) {
+void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
   if (missing == list.files.end()) {
-    add_picture_files(recording, std::move(list.files), options.cache_bytes);
+    add_image_files(recording, std::move(list.files), options.cache_bytes);
   } else if (!options.tracks) {
     csv_fail(*list.table,
              list.table->rows[missing - list.files.begin()].line,
@@ -153,8 +153,8 @@ std::optional<fs::path> find_euroc(const fs::path& folder) {
   return std::nullopt;
 }
 
-bool euroc_lacks_pictures(const fs::path& folder) {
-  const PictureList list = read_picture_list(folder);
+bool euroc_lacks_images(const fs::path& folder) {
+  const ImageList list = read_image_list(folder);
   return std::ranges::none_of(list.files, is_file);
 }
 
@@ -164,7 +164,7 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   const auto calibration = read_calibration(calibration_file);
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
-  add_pictures(recording, read_picture_list(folder), options);
+  add_images(recording, read_image_list(folder), options);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
@@ -180,12 +180,12 @@ std::optional<fs::path> find_tum(const fs::path& folder) {
 
 Recording read_tum(const fs::path& folder, const OpenOptions& options) {
   Recording recording;
-  PictureList list = listed_pictures(
+  ImageList list = listed_images(
       read_csv(folder / "rgb.txt", {"timestamp", ""}, CsvColumns::exactly, Separator::blanks),
       TimeUnit::seconds,
       folder);
   recording.camera = read_calibration(calibration_in(folder)).camera;
-  add_pictures(recording, std::move(list), options);
+  add_images(recording, std::move(list), options);
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }

@@ -18,7 +18,7 @@ namespace gpo {
 // How EuRoC's files have numbers: what is written by one part of the program is read by another.
 
 /// The heads of EuRoC's tables, each a line.
-inline constexpr const char* kPictureListHead = "#timestamp [ns],filename\n";
+inline constexpr const char* kImageListHead = "#timestamp [ns],filename\n";
 inline constexpr const char* kGyroscopeHead =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
 inline constexpr const char* kAccelerometerHead =

@@ -15,14 +15,14 @@ namespace fs = std::filesystem;
 bool always(const fs::path& /*found*/) { return true; }
 bool never(const fs::path& /*found*/) { return false; }
 
-bool has_euroc_pictures(const fs::path& folder) { return !euroc_lacks_pictures(folder); }
+bool has_euroc_images(const fs::path& folder) { return !euroc_lacks_images(folder); }
 
 /// The calibration and the gyroscope may lie in any folder; the tracks may come from elsewhere.
 std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
 }
 
-void count_frames(const Layout& layout, const fs::path& found, Glance& result) {
+void count_frames(const Layout& layout, const fs::path& found, PathProbe& result) {
   try {
     const Recording recording = layout.read(found, {.tracks = {}, .cache_bytes = 0});
     result.frames = recording.frame_count();
@@ -41,37 +41,37 @@ std::span<const Layout> layouts() {
       std::to_array<Layout>({{.title = "EuRoC",
                               .expected = "cam0/data.csv (EuRoC)",
                               .find = find_euroc,
-                              .has_pictures = has_euroc_pictures,
+                              .has_images = has_euroc_images,
                               .read = read_euroc},
                              {.title = "TUM RGB-D",
                               .expected = "rgb.txt (TUM RGB-D)",
                               .file = "rgb.txt",
                               .find = find_tum,
-                              .has_pictures = always,
+                              .has_images = always,
                               .read = read_tum},
                              {.title = "pictures",
                               .expected = "a video or numbered pictures",
-                              .find = find_pictures,
-                              .has_pictures = always,
-                              .read = read_pictures},
+                              .find = find_images,
+                              .has_images = always,
+                              .read = read_images},
                              {.title = "ROS bag",
                               .expected = "a bag of ROS (bag, db3, mcap)",
                               .find = find_bag,
-                              .has_pictures = always,
+                              .has_images = always,
                               .read = read_bag,
                               .has_topics = true},
                              {.title = "tracks",
                               .expected = "tracks.csv",
                               .file = "tracks.csv",
                               .find = any_folder,
-                              .has_pictures = never,
-                              .read = read_pictures,
+                              .has_images = never,
+                              .read = read_images,
                               .tracks_alone = true}});
   return kLayouts;
 }
 
-Glance glance(const fs::path& path) {
-  Glance result;
+PathProbe probe_path(const fs::path& path) {
+  PathProbe result;
   std::error_code none;
   for (const Layout& layout : layouts()) {
     try {

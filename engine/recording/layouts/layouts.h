@@ -32,7 +32,7 @@ struct Layout {
   /// What `read` wants, where the path (a folder, or one file) has this layout.
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
   /// Whether it has pictures, so that tracks beside them are not wanted unless asked for.
-  bool (*has_pictures)(const std::filesystem::path& found);
+  bool (*has_images)(const std::filesystem::path& found);
   /// Throws InputError. With tracks pictures may be missing.
   Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
   bool has_topics = false;    ///< to choose from
@@ -44,14 +44,14 @@ std::span<const Layout> layouts();
 
 /// What a folder or a file is, as far as its list of frames tells: no picture is decoded, no truth
 /// computed.
-struct Glance {
+struct PathProbe {
   std::string layout;  ///< "EuRoC"; empty: no recording
   int frames = 0;      ///< 0: cannot be told
   double seconds = 0;
 };
 
 /// Never throws: what cannot be read has no frames.
-Glance glance(const std::filesystem::path& path);
+PathProbe probe_path(const std::filesystem::path& path);
 
 // The layouts' readers, each with what finds it. All throw InputError.
 
@@ -61,7 +61,7 @@ std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& fol
 /// none.
 Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
 /// Whether none of the pictures that cam0/data.csv lists exists.
-bool euroc_lacks_pictures(const std::filesystem::path& folder);
+bool euroc_lacks_images(const std::filesystem::path& folder);
 
 /// The folder, where it holds rgb.txt.
 std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
@@ -70,15 +70,15 @@ std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folde
 Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
 
 /// The path itself, where it is a video or a folder with a video or with numbered pictures.
-std::optional<std::filesystem::path> find_pictures(const std::filesystem::path& path);
+std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
 /// A video, or a folder with a video or with numbered pictures (in it, or in its folder images,
 /// frames, rgb or data), and beside them a calibration, gyro.csv or gyro_accel.csv,
 /// frame_timestamps.txt and groundtruth.txt. With tracks there need be no pictures; without, no
 /// calibration: the camera is a guess then (camera_source.h).
-Recording read_pictures(const std::filesystem::path& path, const OpenOptions& options);
+Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
 /// Only the pictures of a video, of a folder with one or with numbered pictures, or of any layout's
 /// folder, or of a bag; of whatever size, without a calibration.
-std::shared_ptr<const FrameCache> open_pictures(const std::filesystem::path& path,
+std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
                                                 std::size_t cache_bytes,
                                                 const TopicChoices& topics = {});
 
@@ -91,7 +91,7 @@ std::filesystem::path bag_at(const std::filesystem::path& path);
 /// Pictures stay in the bag until they are looked at.
 Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
 /// Only the pictures, of whatever size, without a calibration.
-std::shared_ptr<const FrameCache> open_bag_pictures(const std::filesystem::path& path,
+std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
                                                     std::size_t cache_bytes,
                                                     const TopicChoices& choices);
 

@@ -37,7 +37,7 @@ std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options
   if (options.tracks) return options.tracks;
   auto tracks = if_file(found.folder / "tracks.csv");
   if (!tracks) tracks = if_file(found.path / "tracks.csv");
-  return tracks && !found.layout->has_pictures(found.path) ? tracks : std::nullopt;
+  return tracks && !found.layout->has_images(found.path) ? tracks : std::nullopt;
 }
 
 /// A folder, or a file that is a recording by itself; nothing where it has no layout.
@@ -121,7 +121,7 @@ void add_sidecars(Recording& recording, const Found& found) {
   if (const auto file = beside("board.yaml")) recording.board = read_board(*file);
   if (const auto file = beside("plane.yaml")) recording.plane = read_plane(*file);
   // Truth that comes from the board has the board's frame, z into the board.
-  if (!recording.truth && recording.board && recording.pictures) {
+  if (!recording.truth && recording.board && recording.images) {
     recording.plane = Plane{{0, 0, -1}, 0};
   }
 }
@@ -129,7 +129,7 @@ void add_sidecars(Recording& recording, const Found& found) {
 /// Of a gyroscope of which no file says more than that it has one.
 void take_bias_from_rest(Recording& recording) {
   if (!recording.gyroscope || recording.gyroscope->bias_known) return;
-  const auto rest = find_rest(recording);
+  const auto rest = find_stationary_interval(recording);
   if (!rest) return;
   Gyroscope& gyroscope = *recording.gyroscope;
   gyroscope.bias_rad_s = rest->mean_rad_s;
@@ -143,12 +143,12 @@ bool has_value(const std::optional<Pose>& pose) { return pose.has_value(); }
 
 void add_notes(Recording& recording) {
   auto& notes = recording.notes;
-  if (!recording.pictures)
+  if (!recording.images)
     notes.emplace_back("no pictures: tracks are drawn on a plain background");
   if (!recording.tracks.empty() && recording.tracks.front().frame > 0)
     notes.push_back(fmt::format("tracks begin in frame {}", recording.tracks.front().frame));
   if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from the pictures alone");
-  const bool from_board = !recording.truth && recording.board && recording.pictures;
+  const bool from_board = !recording.truth && recording.board && recording.images;
   if (from_board) {
     notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",
                                    board_title(*recording.board)));
@@ -235,10 +235,10 @@ std::vector<double> tracks_moved_px(const Recording& recording, int first, int s
   return lengths;
 }
 
-std::vector<double> pictures_moved_px(const Recording& recording, int first, int second) {
+std::vector<double> images_moved_px(const Recording& recording, int first, int second) {
   constexpr int kCorners = 200;
-  const cv::Mat from = recording.pictures->gray(first);
-  const cv::Mat to = recording.pictures->gray(second);
+  const cv::Mat from = recording.images->gray(first);
+  const cv::Mat to = recording.images->gray(second);
   std::vector<cv::Point2f> corners, followed;
   cv::goodFeaturesToTrack(from, corners, kCorners, 0.01, 8);
   if (corners.empty()) return {};
@@ -253,8 +253,8 @@ std::vector<double> pictures_moved_px(const Recording& recording, int first, int
 
 /// Median motion between two frames [px]; nothing where there is too little to see.
 std::optional<double> moved_px(const Recording& recording, int first, int second) {
-  auto lengths = recording.tracks.empty() && recording.pictures
-                     ? pictures_moved_px(recording, first, second)
+  auto lengths = recording.tracks.empty() && recording.images
+                     ? images_moved_px(recording, first, second)
                      : tracks_moved_px(recording, first, second);
   if (lengths.size() < kLeastPoints) return std::nullopt;
   return median(std::move(lengths));
@@ -265,7 +265,7 @@ std::optional<double> moved_px(const Recording& recording, int first, int second
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
   const Found found = find_recording(path, options);
   Recording recording = read(found, options);
-  recording.layout = recording.pictures
+  recording.layout = recording.images
                          ? found.layout->title
                          : std::ranges::find(layouts(), true, &Layout::tracks_alone)->title;
   recording.path = path;
@@ -274,16 +274,16 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   add_sidecars(recording, found);
   take_bias_from_rest(recording);
   add_notes(recording);
-  if (recording.pictures) recording.pictures->bgr(0);  // a wrong size or format shows here
+  if (recording.images) recording.images->bgr(0);  // a wrong size or format shows here
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-std::optional<Rest> find_rest(const Recording& recording) {
+std::optional<StationaryInterval> find_stationary_interval(const Recording& recording) {
   if (!recording.gyroscope) return std::nullopt;
   const Gyroscope& gyroscope = *recording.gyroscope;
   const Block quiet = quietest(gyroscope);
   if (quiet.end == 0) return std::nullopt;
-  Rest rest{gyroscope.timestamps_ns[quiet.begin] - gyroscope.time_offset_ns,
+  StationaryInterval rest{gyroscope.timestamps_ns[quiet.begin] - gyroscope.time_offset_ns,
             gyroscope.timestamps_ns[quiet.end - 1] - gyroscope.time_offset_ns,
             quiet.mean};
   const auto& frames_ns = recording.timestamps_ns;

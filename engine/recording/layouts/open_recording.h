@@ -21,7 +21,7 @@ std::shared_ptr<const Recording> open_recording(const std::filesystem::path& pat
 
 /// A stretch of time in which neither the gyroscope's rates vary nor the pictures move: what the
 /// gyroscope says there is its bias.
-struct Rest {
+struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;
   Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
@@ -30,6 +30,6 @@ struct Rest {
 
 /// The longest one of at least 0.75 s. Looks at pictures (or tracks) only where the gyroscope seems
 /// to rest. Throws InputError where a picture cannot be read.
-std::optional<Rest> find_rest(const Recording& recording);
+std::optional<StationaryInterval> find_stationary_interval(const Recording& recording);
 
 }  // namespace gpo

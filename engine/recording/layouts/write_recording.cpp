@@ -11,7 +11,7 @@
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/euroc_text.h"
-#include "engine/recording/pictures/picture_file.h"
+#include "engine/recording/images/image_file.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
@@ -36,7 +36,7 @@ constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
 /// As `kTopics` counts them.
-enum class Topic { pictures, camera_info, imu, truth, tf_static };
+enum class Topic { images, camera_info, imu, truth, tf_static };
 const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/camera_info", kCameraInfoType},
                                            {"/imu", kImuType},
@@ -67,7 +67,7 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::int64_t time = recording.timestamps_ns[i];
-    plan.push_back({Topic::pictures, time, i});
+    plan.push_back({Topic::images, time, i});
     if (poses && poses->poses[i]) plan.push_back({Topic::truth, time, i});
   }
   if (const auto& gyroscope = recording.gyroscope) {
@@ -93,8 +93,8 @@ class Messages {
 
   std::string operator()(const Planned& one) {
     switch (one.topic) {
-      case Topic::pictures:
-        return picture(one);
+      case Topic::images:
+        return image(one);
       case Topic::camera_info: {
         CameraInfoMessage info = camera_info_of(recording_.camera);
         info.header = {one.time_ns, kCamera};
@@ -114,8 +114,8 @@ class Messages {
   }
 
  private:
-  std::string picture(const Planned& one) const {
-    const cv::Mat unpadded = gray_if_gray(recording_.pictures->bgr(one.number));
+  std::string image(const Planned& one) const {
+    const cv::Mat unpadded = gray_if_gray(recording_.images->bgr(one.number));
     const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
     const bool gray = pixels.channels() == 1;
     const std::size_t bytes = pixels.total() * pixels.elemSize();
@@ -207,7 +207,7 @@ void check_bag(const Recording& recording,
   std::error_code none;
   if (fs::exists(output, none))
     throw InputError(name + ": found something there already, expected no file");
-  if (!recording.pictures)
+  if (!recording.images)
     throw InputError(recording.path.string() + ": found no pictures, expected some for a bag");
   const std::int64_t first = plan.front().time_ns;
   if (first < format.earliest_ns) {
@@ -230,12 +230,12 @@ void write_bag(const Recording& recording,
   const auto files = beside_bag(recording, poses);
   check_beside(folder, files);
   make_folder(folder);
-  UnfinishedFile unfinished(output);
+  AtomicFile unfinished(output);
   const BagWriter writer = format.open(unfinished.path(), kTopics);
   Messages messages(recording, poses, writer.encoding);
   for (const Planned& one : plan) {
     writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
-    if (progress && one.topic == Topic::pictures) progress(one.number + 1, recording.frame_count());
+    if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
   }
   writer.finish();
   for (const auto& [name, text] : files) write_file(folder / name, text);
@@ -246,7 +246,7 @@ std::string camera_yaml(const Recording& recording) {
   std::string text = "sensor_type: camera\n" +
                      transformation_yaml(recording.T_body_camera.value_or(Pose{})) +
                      lens_yaml(recording.camera);
-  if (const double rate = rate_hz(recording.timestamps_ns); is_picture_rate(rate))
+  if (const double rate = rate_hz(recording.timestamps_ns); is_image_rate(rate))
     text += fmt::format("rate_hz: {:.6g}\n", rate);
   if (recording.gyroscope && recording.gyroscope->time_offset_ns != 0)
     text += fmt::format("timeshift_cam_imu: {}  # [s] gyroscope's clock - camera's clock\n",
@@ -288,16 +288,16 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
 }
 
 /// The pictures that the recording has, and the list of all frames.
-void write_pictures(const Recording& recording,
+void write_images(const Recording& recording,
                     const fs::path& cam,
                     const std::function<void(int done, int of)>& progress) {
   make_folder(cam / "data");
-  std::string list = kPictureListHead;
+  std::string list = kImageListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::string name = fmt::format("{:019d}.png", recording.timestamps_ns[i]);
     list += fmt::format("{},{}\n", recording.timestamps_ns[i], name);
-    if (!recording.pictures) continue;
-    write_picture(cam / "data" / name, gray_if_gray(recording.pictures->bgr(i)));
+    if (!recording.images) continue;
+    write_image(cam / "data" / name, gray_if_gray(recording.images->bgr(i)));
     if (progress) progress(i + 1, recording.frame_count());
   }
   write_file(cam / "data.csv", list);
@@ -327,7 +327,7 @@ void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,
                  const fs::path& folder,
                  const std::function<void(int done, int of)>& progress) {
-  UnfinishedFolder unfinished(folder);
+  AtomicFolder unfinished(folder);
   const fs::path mav = unfinished.path() / "mav0";
   make_folder(mav / "cam0");
   write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recording));
@@ -340,7 +340,7 @@ void write_euroc(const Recording& recording,
   if (truth) write_truth(recording, *truth, mav);
   for (const auto& [name, text] : sidecar_texts(recording))
     write_file(unfinished.path() / name, text);
-  write_pictures(recording, mav / "cam0", progress);
+  write_images(recording, mav / "cam0", progress);
   unfinished.finish();
 }
 

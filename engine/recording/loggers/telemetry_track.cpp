@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/pictures/libav.h"
+#include "engine/recording/images/libav.h"
 
 #include <array>
 #include <bit>

@@ -213,16 +213,16 @@ TEST(CalibrationViews, KnowHowWideEdgesAre) {
   camera.cx = 160;
   camera.cy = 120;
   const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
-  const FrameCache pictures(3, [&](int index) {
-    cv::Mat picture;
+  const FrameCache images(3, [&](int index) {
+    cv::Mat image;
     const std::vector<cv::Size> blur = {{1, 1}, {7, 1}, {1, 9}};
-    cv::blur(sharp, picture, blur[index]);
-    cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
-    return picture;
+    cv::blur(sharp, image, blur[index]);
+    cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+    return image;
   });
   std::vector<int> told;
   const BoardSearch search =
-      find_calibration_views(pictures, kBoard, 10, [&](int done, int) { told.push_back(done); });
+      find_calibration_views(images, kBoard, 10, [&](int done, int) { told.push_back(done); });
   EXPECT_THAT(told, ElementsAre(1, 2, 3));
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);
@@ -232,14 +232,14 @@ TEST(CalibrationViews, KnowHowWideEdgesAre) {
 }
 
 TEST(CalibrationViews, MustBeOfOneSize) {
-  const FrameCache pictures(
+  const FrameCache images(
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
-  EXPECT_EQ(test::error_of([&] { find_calibration_views(pictures, kBoard, 10); }),
+  EXPECT_EQ(test::error_of([&] { find_calibration_views(images, kBoard, 10); }),
             "picture 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 
 /// Of an AprilGrid, by OpenCV's warp of a large print: no lens distortion.
-cv::Mat grid_picture(const cv::Mat& print, double texels, const Camera& camera, const Pose& pose) {
+cv::Mat grid_image(const cv::Mat& print, double texels, const Camera& camera, const Pose& pose) {
   constexpr int kFine = 3;
   const Eigen::Matrix3d R = pose.R_wc.transpose();
   Eigen::Matrix3d plane;  // board [m] -> camera
@@ -252,7 +252,7 @@ cv::Mat grid_picture(const cv::Mat& print, double texels, const Camera& camera, 
   const Eigen::Matrix3d H = to_fine * intrinsic_matrix(camera) * plane * to_board;
   const cv::Matx33d warp(
       H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2));
-  cv::Mat fine, picture;
+  cv::Mat fine, image;
   cv::warpPerspective(print,
                       fine,
                       warp,
@@ -260,12 +260,12 @@ cv::Mat grid_picture(const cv::Mat& print, double texels, const Camera& camera, 
                       cv::INTER_AREA,
                       cv::BORDER_CONSTANT,
                       cv::Scalar(110));
-  cv::resize(fine, picture, {camera.width, camera.height}, 0, 0, cv::INTER_AREA);
-  cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
-  return picture;
+  cv::resize(fine, image, {camera.width, camera.height}, 0, 0, cv::INTER_AREA);
+  cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+  return image;
 }
 
-TEST(Calibrate, TakesPicturesOfAnAprilGrid) {
+TEST(Calibrate, TakesImagesOfAnAprilGrid) {
   const Board grid{8, 6, 0.05, {}, BoardTags{0.3, 2, {}}};
   constexpr double kTexels = 2400;  // a meter
   cv::Mat print(static_cast<int>(0.24 * kTexels), static_cast<int>(0.31 * kTexels), CV_8U);
@@ -282,11 +282,11 @@ TEST(Calibrate, TakesPicturesOfAnAprilGrid) {
   }
   const Camera camera{640, 480, 600, 604, 317, 243, Distortion::none, {}};
   std::mt19937 random(5);
-  std::vector<cv::Mat> pictures;
+  std::vector<cv::Mat> images;
   for (int i = 0; i < 30; ++i)
-    pictures.push_back(grid_picture(print, kTexels, camera, pose_from(random, 0.45, 35)));
+    images.push_back(grid_image(print, kTexels, camera, pose_from(random, 0.45, 35)));
   const FrameCache frames(
-      30, [&](int frame) { return pictures[frame]; }, FrameCache::kDefaultByteLimit);
+      30, [&](int frame) { return images[frame]; }, FrameCache::kDefaultByteLimit);
   const auto found = calibrate_camera(find_calibration_views(frames, grid, 30), grid);
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_GE(found.found, 28);

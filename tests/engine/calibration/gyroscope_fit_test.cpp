@@ -31,7 +31,7 @@ struct Truth {
 };
 
 struct Recorded {
-  std::vector<PictureRotations> windows;
+  std::vector<ImageRotations> windows;
   Gyroscope gyroscope;
 };
 
@@ -56,7 +56,7 @@ Recorded record(const Truth& truth, double seconds, double noise_rad, std::uint6
   };
   Recorded recorded;
   for (double from_s = 0; from_s + 0.3 < seconds; from_s += std::max(0.3, seconds / 80)) {
-    PictureRotations window;
+    ImageRotations window;
     Matrix3d R = Matrix3d::Identity();
     for (int i = 0; i < 10; ++i) {
       const double at_s = from_s + i / 30.0;
@@ -142,7 +142,7 @@ TEST(GyroscopeFit, TellsMirroredAxes) {
 TEST(GyroscopeFit, RefusesWhatCannotTell) {
   Recorded still = record({}, 5, 0.001, 6);
   for (Vector3d& rate : still.gyroscope.rates_rad_s) rate *= 0;
-  for (PictureRotations& window : still.windows)
+  for (ImageRotations& window : still.windows)
     for (Matrix3d& R : window.R_wc) R.setIdentity();
   EXPECT_FALSE(fit_gyroscope(still.windows, still.gyroscope).ok);
 
@@ -172,7 +172,7 @@ class RealGyroscope : public testing::Test {
   }
 
   std::shared_ptr<const Recording> recording_;
-  std::vector<PictureRotations> windows_;
+  std::vector<ImageRotations> windows_;
 };
 
 /// All 24 proper ways to name three axes.
@@ -184,8 +184,8 @@ std::vector<Matrix3d> axis_permutations() {
                                 so3_exp(Vector3d(0, -M_PI / 2, 0)),
                                 so3_exp(Vector3d(M_PI / 2, 0, 0)),
                                 so3_exp(Vector3d(-M_PI / 2, 0, 0))})
-    for (int turns = 0; turns < 4; ++turns)
-      all.emplace_back(first * so3_exp(Vector3d(0, 0, turns * M_PI / 2)));
+    for (int rotations = 0; rotations < 4; ++rotations)
+      all.emplace_back(first * so3_exp(Vector3d(0, 0, rotations * M_PI / 2)));
   return all;
 }
 
@@ -207,8 +207,8 @@ TEST_F(RealGyroscope, OfEurocIsWhereItsCalibrationSays) {
   if (IsSkipped()) return;
   const Vector3d bias(-0.0022, 0.0208, 0.0765);  // of this flight, by its publishers
   for (const double late_s : {0.0, 0.035}) {
-    for (const Vector3d& turn : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
-      const Matrix3d R = so3_exp(turn);
+    for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
+      const Matrix3d R = so3_exp(rotation);
       const GyroscopeFit fit = fit_gyroscope(windows_, turned(R, late_s));
       ASSERT_TRUE(fit.ok) << fit.reason;
       const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * R *

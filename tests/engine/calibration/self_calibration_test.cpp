@@ -36,7 +36,7 @@ Pose pose_at(double t, double lean_deg) {
 }
 
 /// Pictures of a texture on z = 0, in closed form.
-FrameCache pictures_of(int count, double lean_deg) {
+FrameCache images_of(int count, double lean_deg) {
   const auto rays = std::make_shared<std::vector<Vector3d>>();
   for (int v = 0; v < kFilmingCamera.height; ++v)
     for (int u = 0; u < kFilmingCamera.width; ++u)
@@ -53,18 +53,18 @@ FrameCache pictures_of(int count, double lean_deg) {
           return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
         };
         cv::Mat bgr;
-        cv::cvtColor(test::picture_of({kFilmingCamera.width, kFilmingCamera.height}, place),
+        cv::cvtColor(test::image_of({kFilmingCamera.width, kFilmingCamera.height}, place),
                      bgr,
                      cv::COLOR_GRAY2BGR);
         return bgr;
       }};
 }
 
-TEST(SelfCalibration, FindsTheCameraOfPicturesOfAPlane) {
-  const FrameCache pictures = pictures_of(60, 25);
+TEST(SelfCalibration, FindsTheCameraOfImagesOfAPlane) {
+  const FrameCache images = images_of(60, 25);
   std::vector<std::string> told;
   const auto found =
-      calibrate_from_plane(pictures,
+      calibrate_from_plane(images,
                            camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
                            nullptr,
                            {},
@@ -88,9 +88,9 @@ TEST(SelfCalibration, FindsTheCameraOfPicturesOfAPlane) {
 }
 
 TEST(SelfCalibration, RefusesWhereTheCameraKeepsItsTilt) {
-  const FrameCache pictures = pictures_of(40, 1);
+  const FrameCache images = images_of(40, 1);
   const auto found =
-      calibrate_from_plane(pictures, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
+      calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
   EXPECT_FALSE(found.lens.ok);
   EXPECT_THAT(found.lens.reason, testing::HasSubstr("keeps its tilt to the plane"));
 }

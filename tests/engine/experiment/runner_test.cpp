@@ -227,9 +227,9 @@ TEST_F(RunnerTest, WindowsWhoseTimesAreToldComeLastAndSayTheirJobs) {
   }
 }
 
-TEST_F(RunnerTest, PicturesOfWhatIsDoneAreLetGo) {
+TEST_F(RunnerTest, ImagesOfWhatIsDoneAreLetGo) {
   ASSERT_TRUE(run(a_, {.jobs = 2}));
-  EXPECT_EQ(recordings_[0]->pictures->bytes(), 0U);
+  EXPECT_EQ(recordings_[0]->images->bytes(), 0U);
 }
 
 TEST_F(RunnerTest, ShardsMergeToWhatOneRunMakes) {

@@ -278,7 +278,7 @@ TEST(WindowJson, TellsWhatTheWindowHolds) {
     gyroscope.rates_rad_s.emplace_back(i, 0, 0);
   }
   const Sources sources{.gyroscope = &gyroscope,
-                        .pictures = std::vector<std::filesystem::path>(6, "a.png")};
+                        .images = std::vector<std::filesystem::path>(6, "a.png")};
   const Json json = Json::parse(json_text(window_json(window, sources), -1));
   EXPECT_EQ(json["tracks"].size(), 6U);
   EXPECT_EQ(json["tracks"][2].size(), 60U);

@@ -129,11 +129,11 @@ TEST(OutputFile, IsRefusedInAFolderOfOthers) {
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
-TEST(UnfinishedFile, IsRemovedUnlessFinished) {
+TEST(AtomicFile, IsRemovedUnlessFinished) {
   const TestFolder folder;
   const fs::path file = folder.path() / "movie.mp4";
   {
-    const UnfinishedFile unfinished(file);
+    const AtomicFile unfinished(file);
     EXPECT_EQ(unfinished.path().extension(), ".mp4");
     std::ofstream(unfinished.path()) << "half";
   }

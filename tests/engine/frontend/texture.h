@@ -19,7 +19,7 @@ inline double brightness(const Eigen::Vector2d& p) {
 }
 
 /// The picture whose pixels show the texture at `place`. CV_8UC1.
-inline cv::Mat picture_of(const cv::Size& size,
+inline cv::Mat image_of(const cv::Size& size,
                           const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place,
                           double gain = 1,
                           double offset = 0) {

@@ -42,14 +42,14 @@ AlignmentState true_state(const SimulatedAlignment& made, const AlignmentProblem
 }
 
 TEST(AlignmentProblem, NothingIsLeftAtTheTruth) {
-  const auto made = simulated_alignment(Pace::brisk, kPhone, 2, 5, 0);
+  const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 2, 5, 0);
   const AlignmentProblem problem = problem_of(made, *made.poses.bias_rad_s);
   const VectorXd r = residuals(problem, true_state(made, problem));
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-3);  // of the integration over 2 s [m]
 }
 
 TEST(AlignmentProblem, JacobiansAreThoseOfFiniteDifferences) {
-  const auto made = simulated_alignment(Pace::brisk, kPhone, 1, 6);
+  const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 1, 6);
   const AlignmentProblem problem = problem_of(made, *made.poses.bias_rad_s);
   AlignmentState state = true_state(made, problem);
   state.lever += Vector3d(0.01, -0.02, 0.03);
@@ -75,7 +75,7 @@ TEST(AlignmentProblem, JacobiansAreThoseOfFiniteDifferences) {
 }
 
 TEST(AlignmentProblem, LinearStartIsExactWithoutNoise) {
-  const auto made = simulated_alignment(Pace::gentle, kPhone, 2, 7, 0);
+  const auto made = simulated_alignment(ReportTimer::gentle, kPhone, 2, 7, 0);
   const AlignmentState start = linear_start(problem_of(made, *made.poses.bias_rad_s), 9.81);
   EXPECT_NEAR(std::exp(start.log_scale), made.scale, 0.01 * made.scale);
   EXPECT_LT(angle_deg(start.gravity, made.gravity), 0.1);

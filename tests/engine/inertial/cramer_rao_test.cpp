@@ -26,7 +26,7 @@ struct Bound {
 };
 
 /// With what is known of bias and lever before, as the window itself has them (van Trees).
-Bound bound_of(Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed) {
+Bound bound_of(ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed) {
   const auto exact = simulated_alignment(pace, sensor, seconds, seed, 0);
   const ImuNoise noise{sensor.gyroscope_density, sensor.accelerometer_density};
   const auto between =
@@ -64,7 +64,7 @@ TEST(InertialAlignment, MediansAreNearTheCramerRaoBound) {
   unsigned seed = 20000;
   std::vector<double> all_of_gravity, all_of_scale;
   for (const SimulatedSensor& sensor : {kPhone, kEuroc}) {
-    for (const Pace pace : {Pace::gentle, Pace::brisk}) {
+    for (const ReportTimer pace : {ReportTimer::gentle, ReportTimer::brisk}) {
       for (const double seconds : {1, 2, 4}) {
         std::vector<double> of_gravity, of_scale;
         for (int k = 0; k < kSeeds; ++k, ++seed) {

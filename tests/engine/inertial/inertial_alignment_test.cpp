@@ -32,7 +32,7 @@ double squared_error(const InertialAlignment& result, const Vector3d& gravity) {
 }
 
 TEST(InertialAlignment, IsExactWithoutNoise) {
-  for (const Pace pace : {Pace::gentle, Pace::brisk}) {
+  for (const ReportTimer pace : {ReportTimer::gentle, ReportTimer::brisk}) {
     const auto made = simulated_alignment(pace, kPhone, 2, 21, 0);
     const InertialAlignment result = aligned(made);
     ASSERT_TRUE(result.ok) << result.reason;
@@ -57,7 +57,7 @@ TEST(InertialAlignment, ErrorsAreAsLargeAsItSays) {
   Statistics all;
   int seed = 500;
   for (const SimulatedSensor& sensor : {kPhone, kEuroc}) {
-    for (const Pace pace : {Pace::gentle, Pace::brisk}) {
+    for (const ReportTimer pace : {ReportTimer::gentle, ReportTimer::brisk}) {
       for (const double seconds : {1, 2, 4}) {
         Statistics of;
         for (int k = 0; k < kSeeds; ++k, ++of.windows) {
@@ -102,7 +102,7 @@ TEST(InertialAlignment, PullsPosesAndBiasToTheTruth) {
   for (const double seconds : {1, 2}) {
     double squares = 0, bias_before = 0, bias_after = 0, before = 0, after = 0;
     for (int k = 0; k < kSeeds; ++k) {
-      const auto made = simulated_alignment(Pace::brisk, kPhone, seconds, 7000 + k);
+      const auto made = simulated_alignment(ReportTimer::brisk, kPhone, seconds, 7000 + k);
       const auto [inertial, pull] =
           align_and_pull(made.poses, made.gyroscope, made.T_body_camera, made.options);
       ASSERT_TRUE(inertial.ok) << inertial.reason;
@@ -129,7 +129,7 @@ TEST(InertialAlignment, AtRestTellsGravityAndNoScale) {
   Statistics of;
   for (const double seconds : {1, 2}) {
     for (int k = 0; k < 30; ++k, ++of.windows) {
-      const auto made = simulated_alignment(Pace::still, kPhone, seconds, 3000 + k);
+      const auto made = simulated_alignment(ReportTimer::still, kPhone, seconds, 3000 + k);
       const InertialAlignment result = aligned(made);
       ASSERT_TRUE(result.ok) << result.reason;
       EXPECT_FALSE(result.scale_known) << result.log_scale_sigma;
@@ -145,7 +145,7 @@ TEST(InertialAlignment, AnUntoldLeverIsOneMoreUnknown) {
   double squares = 0;
   constexpr int kSeeds = 20;
   for (int k = 0; k < kSeeds; ++k) {
-    const auto made = simulated_alignment(Pace::brisk, kPhone, 2, 4000 + k);
+    const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 2, 4000 + k);
     const InertialAlignment told = aligned(made);
     const InertialAlignment untold =
         align_inertial(made.poses, made.gyroscope, std::nullopt, made.options);
@@ -160,7 +160,7 @@ TEST(InertialAlignment, AnUntoldLeverIsOneMoreUnknown) {
 /// Why there is none, once something is done to the accelerations.
 template <class Change>
 std::string refusal(Change change) {
-  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
+  auto made = simulated_alignment(ReportTimer::brisk, kPhone, 1, 31);
   for (Vector3d& a : made.gyroscope.accelerations_m_s2) a = change(a);
   const InertialAlignment result = aligned(made);
   EXPECT_FALSE(result.ok);
@@ -180,7 +180,7 @@ TEST(InertialAlignment, SaysWhatIsWrongWithTheAccelerations) {
                 return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
               }),
               HasSubstr("no numbers"));
-  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
+  auto made = simulated_alignment(ReportTimer::brisk, kPhone, 1, 31);
   made.gyroscope.accelerations_m_s2.clear();
   EXPECT_EQ(aligned(made).reason, "the recording has no accelerometer");
   made.poses.cameras.resize(3);

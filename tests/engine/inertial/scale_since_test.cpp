@@ -15,12 +15,12 @@ bool tells(const SimulatedAlignment& made, int count) {
   return aligned.ok && aligned.scale_known;
 }
 
-std::optional<int> poses_that_tell_scale(const SimulatedAlignment& made) {
-  return gpo::poses_that_tell_scale(made.poses, made.gyroscope, made.T_body_camera, made.options);
+std::optional<int> poses_that_constrain_scale(const SimulatedAlignment& made) {
+  return gpo::poses_that_constrain_scale(made.poses, made.gyroscope, made.T_body_camera, made.options);
 }
 
 TEST(FirstPoses, HaveTheCornerOfTheCovariance) {
-  const auto made = simulated_alignment(Pace::brisk, kPhone, 2, 1);
+  const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 2, 1);
   const int count = static_cast<int>(made.poses.cameras.size());
   const UncertainPoses all = first_poses(made.poses, count);
   EXPECT_EQ(all.covariance, made.poses.covariance);
@@ -36,10 +36,10 @@ TEST(FirstPoses, HaveTheCornerOfTheCovariance) {
 
 TEST(ScaleSince, IsTheFirstLengthThatTellsTheScale) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const auto made = simulated_alignment(Pace::brisk, kPhone, 4, seed);
+    const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 4, seed);
     const int all = static_cast<int>(made.poses.cameras.size());
     ASSERT_TRUE(tells(made, all));
-    const auto count = poses_that_tell_scale(made);
+    const auto count = poses_that_constrain_scale(made);
     ASSERT_TRUE(count.has_value());
     EXPECT_LT(*count, all) << "four brisk seconds tell more than enough";
     EXPECT_TRUE(tells(made, *count));
@@ -48,8 +48,8 @@ TEST(ScaleSince, IsTheFirstLengthThatTellsTheScale) {
 }
 
 TEST(ScaleSince, IsNothingWhereTheWholeWindowDoesNotTellIt) {
-  const auto made = simulated_alignment(Pace::still, kPhone, 2, 3);
-  EXPECT_FALSE(poses_that_tell_scale(made).has_value());
+  const auto made = simulated_alignment(ReportTimer::still, kPhone, 2, 3);
+  EXPECT_FALSE(poses_that_constrain_scale(made).has_value());
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct SimulatedMotion {
 };
 
 /// How far the sensor swings, its median at most.
-enum class Pace { still, gentle, brisk };
+enum class ReportTimer { still, gentle, brisk };
 struct SimulatedSensor {
   double gyroscope_density = 0, accelerometer_density = 0;
   double accelerometer_bias_sigma = 0.1, gyroscope_bias_sigma = 0.002;
@@ -52,10 +52,10 @@ struct SimulatedAlignment {
   Eigen::VectorXd centers_and_bias;  ///< what `poses` and their covariance are about
 };
 
-SimulatedMotion simulated_motion(Pace pace, unsigned seed);
+SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed);
 /// 20 pictures and 200 samples a second. `noise` 0: exact measurements and poses, whose covariances
 /// are as of 1.
 SimulatedAlignment simulated_alignment(
-    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
+    ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
 
 }  // namespace gpo

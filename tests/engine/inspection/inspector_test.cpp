@@ -374,7 +374,7 @@ TEST(Inspector, SaysWhatARecordingLacks) {
   settings.options.rotations = RotationSource::truth;
   EXPECT_THAT(message(recording, settings),
               HasSubstr("rotations: truth: desk has no ground truth"));
-  bare.pictures.reset();
+  bare.images.reset();
   EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
               HasSubstr("no pictures and no tracks"));
 }

@@ -148,7 +148,7 @@ double camera_error(const Initialization& result, const Simulation& truth) {
 }
 
 /// Pictures that are better than the gyroscope, and a gyroscope that is better than none.
-TEST(GpoJoint, WeighsANoisyGyroscopeAgainstThePictures) {
+TEST(GpoJoint, WeighsANoisyGyroscopeAgainstTheImages) {
   std::vector<double> weighed, trusted, ignored;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,

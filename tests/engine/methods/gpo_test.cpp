@@ -152,7 +152,7 @@ TEST(Gpo, NamesTheLeastNumberOfInliers) {
   EXPECT_EQ(result.reason, "too few inliers: frame 12 has 7, at least 8 are needed");
 }
 
-TEST(Gpo, RefusesRotationsThatDoNotBelongToThePictures) {
+TEST(Gpo, RefusesRotationsThatDoNotBelongToTheImages) {
   Simulation truth = simulate({.motion = Motion::orbit});
   for (int i = 0; i < 30; ++i) truth.window.R_wc[i] = so3_exp({0, 0, 0.02 * i});
   const Initialization result = initialize_gpo(truth.window, {}, {});

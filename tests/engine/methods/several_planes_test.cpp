@@ -22,7 +22,7 @@ Room room_of(std::uint64_t seed, double noise_px) {
   return simulate_room({.noise_px = noise_px,
                         .planes = floor_and_walls(),
                         .shares = {0.45, 0.3, 0.25},
-                        .told_truly = true,
+                        .known_exactly = true,
                         .seed = seed});
 }
 

@@ -25,8 +25,8 @@ class Content : public ::testing::Test {
 
   void write(const std::string& name) const {
     folder_.write(name + "/camera.yaml", kCameraYaml);
-    for (const char* picture : {"1.png", "2.png"})
-      folder_.write(name + "/" + picture, cv::Mat(48, 64, CV_8UC3, cv::Scalar(90, 90, 90)));
+    for (const char* image : {"1.png", "2.png"})
+      folder_.write(name + "/" + image, cv::Mat(48, 64, CV_8UC3, cv::Scalar(90, 90, 90)));
     folder_.write(name + "/groundtruth.txt",
                   std::string("0 0 0 0 0 0 0 1\n0.02 1 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n"));
   }
@@ -75,7 +75,7 @@ TEST_F(Content, OfARecipeIsItsTextToo) {
   EXPECT_THAT(differing_parts(first, content_of(made)), ElementsAre("recipe"));
 }
 
-TEST_F(Content, SaysWhichPictureHasGone) {
+TEST_F(Content, SaysWhichImageHasGone) {
   const auto recording = open_recording(folder_.path() / "one");
   fs::remove(folder_.path() / "one" / "2.png");
   EXPECT_THAT(error_of([&] { content_of(*recording); }), HasSubstr("2.png: cannot be read"));

@@ -10,7 +10,7 @@ namespace {
 TEST(FileKinds, IgnoreTheCaseOfEndings) {
   EXPECT_TRUE(is_video_name("clip.MP4"));
   EXPECT_TRUE(is_bag_name("a/b.Db3"));
-  EXPECT_TRUE(is_picture_name("1.TIFF"));
+  EXPECT_TRUE(is_image_name("1.TIFF"));
   for (const char* other : {"", "mp4", ".mp4", "clip.mp", "clip.mp4.txt"})
     EXPECT_FALSE(is_video_name(other)) << other;
 }

@@ -16,9 +16,9 @@
 namespace gpo {
 namespace {
 
-constexpr std::size_t kPictureBytes = 64 * 48 * 3;
+constexpr std::size_t kImageBytes = 64 * 48 * 3;
 
-cv::Mat picture_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
+cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 
 struct Counted {
   std::shared_ptr<std::atomic<int>> decoded = std::make_shared<std::atomic<int>>(0);
@@ -28,13 +28,13 @@ struct Counted {
             100,
             [count = decoded](int index) {
               ++*count;
-              return picture_of(index);
+              return image_of(index);
             },
             limit) {}
 };
 
-TEST(FrameCache, DecodesAPictureOnce) {
-  const Counted counted(10 * kPictureBytes);
+TEST(FrameCache, DecodesAImageOnce) {
+  const Counted counted(10 * kImageBytes);
   EXPECT_EQ(counted.cache.count(), 100);
   const cv::Mat first = counted.cache.bgr(7);
   const cv::Mat again = counted.cache.bgr(7);
@@ -45,16 +45,16 @@ TEST(FrameCache, DecodesAPictureOnce) {
 }
 
 TEST(FrameCache, StaysWithinItsLimit) {
-  const Counted counted(10 * kPictureBytes + 5);
+  const Counted counted(10 * kImageBytes + 5);
   for (int i = 0; i < 100; ++i) {
     counted.cache.bgr(i);
-    EXPECT_LE(counted.cache.bytes(), 10 * kPictureBytes);
+    EXPECT_LE(counted.cache.bytes(), 10 * kImageBytes);
   }
-  EXPECT_EQ(counted.cache.bytes(), 10 * kPictureBytes);
+  EXPECT_EQ(counted.cache.bytes(), 10 * kImageBytes);
 }
 
 TEST(FrameCache, ForgetsTheLeastRecentlyUsed) {
-  const Counted counted(3 * kPictureBytes);
+  const Counted counted(3 * kImageBytes);
   for (const int i : {0, 1, 2, 0, 3}) counted.cache.bgr(i);  // 3 drives out 1
   EXPECT_EQ(*counted.decoded, 4);
   for (const int i : {0, 2, 3}) counted.cache.bgr(i);
@@ -63,17 +63,17 @@ TEST(FrameCache, ForgetsTheLeastRecentlyUsed) {
   EXPECT_EQ(*counted.decoded, 5);
 }
 
-TEST(FrameCache, HoldsTheNewestPictureWhateverTheLimit) {
+TEST(FrameCache, HoldsTheNewestImageWhateverTheLimit) {
   const Counted counted(1);
   counted.cache.bgr(4);
   counted.cache.bgr(5);
   counted.cache.bgr(5);
   EXPECT_EQ(*counted.decoded, 2);
-  EXPECT_EQ(counted.cache.bytes(), kPictureBytes);
+  EXPECT_EQ(counted.cache.bytes(), kImageBytes);
 }
 
 TEST(FrameCache, LetsGoOfAllAndDecodesAgain) {
-  const Counted counted(10 * kPictureBytes);
+  const Counted counted(10 * kImageBytes);
   for (const int i : {0, 1, 2}) counted.cache.bgr(i);
   const cv::Mat held = counted.cache.bgr(2);
   counted.cache.forget();
@@ -83,8 +83,8 @@ TEST(FrameCache, LetsGoOfAllAndDecodesAgain) {
   EXPECT_EQ(*counted.decoded, 4);
 }
 
-TEST(FrameCache, GivesManyThreadsTheRightPictures) {
-  const Counted counted(5 * kPictureBytes);
+TEST(FrameCache, GivesManyThreadsTheRightImages) {
+  const Counted counted(5 * kImageBytes);
   std::atomic<int> wrong = 0;
   {
     std::vector<std::jthread> threads;
@@ -98,7 +98,7 @@ TEST(FrameCache, GivesManyThreadsTheRightPictures) {
     }
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_LE(counted.cache.bytes(), 5 * kPictureBytes);
+  EXPECT_LE(counted.cache.bytes(), 5 * kImageBytes);
 }
 
 /// Decodes picture 1 only when it is let go; all others at once.
@@ -111,7 +111,7 @@ struct Held {
                        let_go.acquire();
                      }
                      ++decoded;
-                     return picture_of(index);
+                     return image_of(index);
                    }};
 };
 
@@ -143,11 +143,11 @@ TEST(FrameCache, DecodesOnceWhatTwoThreadsAskFor) {
 }
 
 TEST(FrameCache, FindsOnlyWhatIsKept) {
-  const Counted counted(3 * kPictureBytes);
+  const Counted counted(3 * kImageBytes);
   EXPECT_TRUE(counted.cache.find(7).empty());
   EXPECT_EQ(*counted.decoded, 0);
-  const cv::Mat picture = counted.cache.bgr(7);
-  EXPECT_EQ(counted.cache.find(7).data, picture.data);
+  const cv::Mat image = counted.cache.bgr(7);
+  EXPECT_EQ(counted.cache.find(7).data, image.data);
   EXPECT_EQ(*counted.decoded, 1);
 }
 
@@ -158,7 +158,7 @@ TEST(FrameCache, LetsTheNextOneTryWhatFailed) {
     begun.release();
     let_go.acquire();
     if (++calls == 1) throw InputError("cut");
-    return picture_of(index);
+    return image_of(index);
   });
   auto first = std::async(std::launch::async, [&] { return cache.bgr(1); });
   begun.acquire();
@@ -175,12 +175,12 @@ TEST(FrameCache, ForgetsNothingWhenDecodingFails) {
       3,
       [&calls](int index) {
         if (++calls == 2) throw InputError("cut");
-        return picture_of(index);
+        return image_of(index);
       },
-      10 * kPictureBytes);
+      10 * kImageBytes);
   cache.bgr(0);
   EXPECT_THROW(cache.bgr(1), InputError);
-  EXPECT_EQ(cache.bytes(), kPictureBytes);
+  EXPECT_EQ(cache.bytes(), kImageBytes);
   EXPECT_EQ(cache.bgr(1).at<cv::Vec3b>(0, 0)[0], 1);
 }
 

@@ -67,7 +67,7 @@ TEST_F(RealRecordings, PaintingAndPostcardOpenWithoutTruth) {
     SKIP_IF_ABSENT(recording);
     EXPECT_EQ(recording->frame_count(), frames);
     EXPECT_EQ(recording->notes.size(), 2U);
-    EXPECT_TRUE(find_board(recording->pictures->gray(30), {8, 6, 0.025}).empty());
+    EXPECT_TRUE(find_board(recording->images->gray(30), {8, 6, 0.025}).empty());
   }
 }
 
@@ -75,7 +75,7 @@ TEST_F(RealRecordings, CardsTracksHasTracksAndGyroscope) {
   const auto recording = open("cards-tracks");
   SKIP_IF_ABSENT(recording);
   EXPECT_EQ(recording->layout, "tracks");
-  EXPECT_EQ(recording->pictures, nullptr);
+  EXPECT_EQ(recording->images, nullptr);
   const auto info = describe(*recording);
   EXPECT_EQ(info.frames, 361);
   EXPECT_NEAR(info.rate_hz, 10, 1e-6);

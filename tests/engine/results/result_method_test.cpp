@@ -101,7 +101,7 @@ TEST(ResultMethod, AModelOfColmapGivesThePlaneOfItsPoints) {
   for (int i = 0; i < kFrames; ++i) {
     names.push_back(fmt::format("cam0/{}.png", i));
     names.push_back(fmt::format("cam1/{}.png", i));
-    sources.pictures.push_back(fmt::format("/somewhere/cam0/{}.png", i));
+    sources.images.push_back(fmt::format("/somewhere/cam0/{}.png", i));
   }
   std::vector<Pose> cameras;
   for (const Pose& camera : truth.cameras) {
@@ -114,12 +114,12 @@ TEST(ResultMethod, AModelOfColmapGivesThePlaneOfItsPoints) {
   const auto model = (folder.path() / "m").string();
   expect_truth(initialized(model, truth.window, sources, &told), truth);
   EXPECT_THAT(told, ElementsAre(AllOf(HasSubstr("COLMAP"), HasSubstr("plane through its points"))));
-  for (auto& picture : sources.pictures) picture = "/elsewhere" / picture.filename();
+  for (auto& image : sources.images) image = "/elsewhere" / image.filename();
   EXPECT_THAT(initialized(model, truth.window, sources).reason,
               HasSubstr("it: two of its pictures are named 0.png"));
 }
 
-TEST(ResultMethod, PicturesAreAlsoFoundByTheTimeThatTheyAreNamedBy) {
+TEST(ResultMethod, ImagesAreAlsoFoundByTheTimeThatTheyAreNamedBy) {
   const TestFolder folder;
   const auto truth = simulation();
   std::vector<std::string> names;

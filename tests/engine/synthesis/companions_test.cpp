@@ -21,7 +21,7 @@ Recipe companion(const std::string& name) {
 std::shared_ptr<const Inspection> inspect_start_of(const std::string& name, int frames) {
   Recipe recipe = companion(name);
   recipe.frame_count = frames;
-  recipe.picture.samples = 1;
+  recipe.image.samples = 1;
   const std::filesystem::path folder = test_folder("out") / name;
   synthesize(recipe, folder);
   Settings settings;

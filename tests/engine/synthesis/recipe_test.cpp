@@ -48,9 +48,9 @@ TEST(Recipe, ReadsEveryPart) {
   EXPECT_EQ(recipe.desk.prints[0].kind, "card");
   ASSERT_EQ(recipe.desk.boxes.size(), 1U);
   EXPECT_NEAR(recipe.desk.boxes[0].angle, radians(30), 1e-12);
-  EXPECT_EQ(recipe.picture.format, "png");
-  EXPECT_EQ(recipe.picture.exposure, 0.004);
-  EXPECT_EQ(recipe.picture.rolling_shutter, 0);
+  EXPECT_EQ(recipe.image.format, "png");
+  EXPECT_EQ(recipe.image.exposure, 0.004);
+  EXPECT_EQ(recipe.image.rolling_shutter, 0);
   EXPECT_EQ(recipe.gyroscope.bias, Eigen::Vector3d(0.006, -0.004, 0.003));
   ASSERT_TRUE(recipe.gyroscope.calibrated_bias);
 }
@@ -164,7 +164,7 @@ TEST(Recipe, RefusesAnExtrinsicThatIsNotRigid) {
                "row by row"));
 }
 
-TEST(Recipe, RefusesAPathWithoutAPicture) {
+TEST(Recipe, RefusesAPathWithoutAImage) {
   EXPECT_THAT(message_with("start: [-0.05, -0.35, 0.42]\n    end: [0.03, -0.35, 0.42]",
                            "start: [0, 0, -0.4]"),
               HasSubstr("key `trajectory`: found a camera below the desk in frame 0"));

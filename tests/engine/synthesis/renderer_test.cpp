@@ -29,10 +29,10 @@ Recipe board_recipe(Distortion distortion) {
 }
 
 /// The lens of a phone: on edges as sharp as a pixel cornerSubPix itself is 0.05 px off.
-PictureRecipe clean_picture() {
-  PictureRecipe picture;
-  picture.blur = 0.6;
-  return picture;
+ImageRecipe clean_image() {
+  ImageRecipe image;
+  image.blur = 0.6;
+  return image;
 }
 
 class RendererLens : public testing::TestWithParam<Distortion> {};
@@ -43,8 +43,8 @@ TEST_P(RendererLens, CornersAreWhereTheCameraProjectsThem) {
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   for (const double t : {0.0, 0.06}) {
     const Pose pose = camera_motion(recipe.trajectory, t).pose;
-    const cv::Mat picture = expose(render(scene, rays, {pose}, 2), clean_picture(), 1, 1, 2);
-    const CornerError error = corner_error(recipe, pose, picture);
+    const cv::Mat image = expose(render(scene, rays, {pose}, 2), clean_image(), 1, 1, 2);
+    const CornerError error = corner_error(recipe, pose, image);
     EXPECT_LT(error.rms, 0.05);
     EXPECT_LT(error.mean, 0.015);
   }
@@ -69,7 +69,7 @@ TEST(Renderer, MotionBlurIsCenteredAtTheTimeStamp) {
   const cv::Mat blurred = render(scene, rays, poses, 2);
   const cv::Mat sharp = render(scene, rays, {middle}, 2);
   EXPECT_GT(cv::norm(blurred, sharp, cv::NORM_INF), 20);  // The camera moves by some pixels.
-  const CornerError error = corner_error(recipe, middle, expose(blurred, clean_picture(), 1, 1, 2));
+  const CornerError error = corner_error(recipe, middle, expose(blurred, clean_image(), 1, 1, 2));
   EXPECT_LT(error.rms, 0.05);
   EXPECT_LT(error.mean, 0.015);
 }
@@ -83,9 +83,9 @@ TEST(Renderer, BoxHidesWhatIsBehindItAndStandsWhereTheRecipeSays) {
   recipe.desk.boxes = {{"cube", {0.0, 0.05}, {0.06, 0.05, 0.08}, 0.4, 0}};
   const Scene scene = make_scene(recipe.desk, 2);
   const cv::Mat with = render(scene, rays, {pose}, 2);
-  const auto at = [&](const cv::Mat& picture, const Eigen::Vector3d& point) {
+  const auto at = [&](const cv::Mat& image, const Eigen::Vector3d& point) {
     const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
-    return picture.at<cv::Vec3f>(cvRound(px.y()), cvRound(px.x()));
+    return image.at<cv::Vec3f>(cvRound(px.y()), cvRound(px.x()));
   };
   // The middle of the top face, and a desk point far from the box and its shadow.
   const auto& top = scene.boxes[0].top;
@@ -120,7 +120,7 @@ TEST(Renderer, WallsPointsAreWhereTheCameraProjectsThem) {
   scene.walls[0].texture = chessboard();
   const Pose pose = camera_motion(recipe.trajectory, 0).pose;
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
-  const cv::Mat picture = expose(render(scene, rays, {pose}, 2), clean_picture(), 1, 1, 2);
+  const cv::Mat image = expose(render(scene, rays, {pose}, 2), clean_image(), 1, 1, 2);
   std::vector<cv::Point2f> corners;
   std::vector<Eigen::Vector2d> projections;
   for (int row = 1; row < 6; ++row) {
@@ -134,7 +134,7 @@ TEST(Renderer, WallsPointsAreWhereTheCameraProjectsThem) {
     }
   }
   cv::Mat gray;
-  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
   cv::cornerSubPix(gray, corners, {5, 5}, {-1, -1}, criteria);
   // On a slanted board cornerSubPix itself is some hundredths of a pixel off, to all sides.
@@ -195,11 +195,11 @@ TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
   const Eigen::Vector3d center(0.03, 0.05, 0.1);
   const SceneRock::Cut cut{Eigen::Vector3d(1, 0.2, 0.5).normalized(), 0.4};
   const Scene scene = cut_sphere(center, 0.07, cut);
-  const cv::Mat picture = render(scene, make_ray_map(recipe.camera, 1, 2), {pose}, 2);
+  const cv::Mat image = render(scene, make_ray_map(recipe.camera, 1, 2), {pose}, 2);
   int covered = 0;
   int wrong = 0;
-  for (int row = 0; row < picture.rows; ++row) {
-    for (int col = 0; col < picture.cols; ++col) {
+  for (int row = 0; row < image.rows; ++row) {
+    for (int col = 0; col < image.cols; ++col) {
       const Eigen::Vector3d along =
           (pose.R_wc * Eigen::Vector3d((col - recipe.camera.cx) / recipe.camera.fx,
                                        (row - recipe.camera.cy) / recipe.camera.fy,
@@ -217,7 +217,7 @@ TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
       }
       covered += meets ? 1 : 0;
       // The rock is blue, the room beyond is gray.
-      const cv::Vec3f color = picture.at<cv::Vec3f>(row, col);
+      const cv::Vec3f color = image.at<cv::Vec3f>(row, col);
       wrong += meets != (color[2] < 1) ? 1 : 0;
     }
   }
@@ -227,10 +227,10 @@ TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
 
 TEST(Renderer, NoiseHasTheRecipesStrength) {
   const cv::Mat light(200, 300, CV_32FC3, cv::Scalar(120, 120, 120));
-  PictureRecipe picture;
-  const cv::Mat clean = expose(light, picture, 1, 5, 2);
-  picture.noise = 3;
-  const cv::Mat noisy = expose(light, picture, 1, 5, 2);
+  ImageRecipe image;
+  const cv::Mat clean = expose(light, image, 1, 5, 2);
+  image.noise = 3;
+  const cv::Mat noisy = expose(light, image, 1, 5, 2);
   cv::Mat difference;
   cv::subtract(noisy, clean, difference, {}, CV_32FC3);
   cv::Scalar mean;
@@ -240,7 +240,7 @@ TEST(Renderer, NoiseHasTheRecipesStrength) {
     EXPECT_NEAR(mean[k], 0, 0.06);
     EXPECT_NEAR(deviation[k], 3, 0.08);
   }
-  EXPECT_GT(cv::norm(noisy, expose(light, picture, 1, 6, 2)), 0);
+  EXPECT_GT(cv::norm(noisy, expose(light, image, 1, 6, 2)), 0);
 }
 
 }  // namespace

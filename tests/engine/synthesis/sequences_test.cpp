@@ -54,8 +54,8 @@ TEST_P(Sequence, IsAPhonesRecordingOfThreeSeconds) {
   EXPECT_EQ(recipe.camera.height, 480);
   EXPECT_EQ(recipe.camera.distortion, Distortion::radial_tangential);
   EXPECT_GT(std::abs(recipe.camera.coefficients[0]), 0.01);
-  EXPECT_GT(recipe.picture.noise, 0);
-  EXPECT_GT(recipe.picture.blur, 0);
+  EXPECT_GT(recipe.image.noise, 0);
+  EXPECT_GT(recipe.image.blur, 0);
 }
 
 TEST_P(Sequence, GyroscopeIsAPhones) {
@@ -117,8 +117,8 @@ TEST(Sequences, OneHasARollingShutterOneHasBlurAndMostHaveClutter) {
   int cluttered = 0;
   for (const std::string& name : all_nine()) {
     const Recipe recipe = sequence(name);
-    rolling += recipe.picture.rolling_shutter > 0 ? 1 : 0;
-    blurred += recipe.picture.exposure > 0.01 ? 1 : 0;
+    rolling += recipe.image.rolling_shutter > 0 ? 1 : 0;
+    blurred += recipe.image.exposure > 0.01 ? 1 : 0;
     cluttered += recipe.desk.boxes.empty() ? 0 : 1;
   }
   EXPECT_EQ(rolling, 1);

@@ -113,7 +113,7 @@ Recipe recipe_of(const std::string& text) {
   return read_recipe(file);
 }
 
-CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& picture) {
+CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& image) {
   std::vector<cv::Point2f> corners;
   std::vector<Eigen::Vector2d> projections;
   for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
@@ -122,7 +122,7 @@ CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& 
                          static_cast<float>(projections.back().y()));
   }
   cv::Mat gray;
-  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
   cv::cornerSubPix(gray, corners, {8, 8}, {-1, -1}, criteria);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

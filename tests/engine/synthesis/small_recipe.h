@@ -36,6 +36,6 @@ struct CornerError {
   double mean = 0;  ///< length of the mean vector
   double rms = 0;
 };
-CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& picture);
+CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& image);
 
 }  // namespace gpo

@@ -105,9 +105,9 @@ TEST(Synthesize, TruthTimesExtrinsicsIsTheCamera) {
 }
 
 TEST(Synthesize, SameRecipeSameBytesWhateverTheThreads) {
-  for (const std::string picture :
+  for (const std::string image :
        {"format: png", "format: jpg", "rolling_shutter: 0.02, format: png"}) {
-    const Recipe recipe = recipe_of(small_recipe_with("format: png", picture));
+    const Recipe recipe = recipe_of(small_recipe_with("format: png", image));
     const fs::path folder = test_folder("out");
     synthesize(recipe, folder / "one", {}, 1);
     synthesize(recipe, folder / "three", {}, 3);
@@ -156,25 +156,25 @@ Trajectory at_rest(const Trajectory& trajectory) {
 /// Pictures whose rows do not depend on each other, and without noise.
 Recipe rolling_recipe(double exposure, double readout) {
   Recipe recipe = recipe_of(small_recipe_text());
-  recipe.picture.noise = 0;
-  recipe.picture.blur = 0;
-  recipe.picture.gain_variation = 0;
-  recipe.picture.exposure = exposure;
-  recipe.picture.rolling_shutter = readout;
+  recipe.image.noise = 0;
+  recipe.image.blur = 0;
+  recipe.image.gain_variation = 0;
+  recipe.image.exposure = exposure;
+  recipe.image.rolling_shutter = readout;
   recipe.frame_count = 2;
   return recipe;
 }
 
-cv::Mat second_picture(const Recipe& recipe, const std::string& folder) {
+cv::Mat second_image(const Recipe& recipe, const std::string& folder) {
   const fs::path output = test_folder(folder) / "recording";
   synthesize(recipe, output);
   return cv::imread((output / "mav0/cam0/data/5033333333.png").string());
 }
 
-TEST(Synthesize, RollingShutterIsComposedOfGlobalPicturesAtTheRowsTimes) {
+TEST(Synthesize, RollingShutterIsComposedOfGlobalImagesAtTheRowsTimes) {
   for (const double exposure : {0.0, 0.006}) {
     const Recipe recipe = rolling_recipe(exposure, 0.03);
-    const cv::Mat rolling = second_picture(recipe, "rolling");
+    const cv::Mat rolling = second_image(recipe, "rolling");
     for (const int row : {0, 50, 119}) {
       // The row's time becomes the second frame's.
       Recipe global = rolling_recipe(exposure, 0);
@@ -182,9 +182,9 @@ TEST(Synthesize, RollingShutterIsComposedOfGlobalPicturesAtTheRowsTimes) {
       const double shift =
           row_seconds(recipe, timestamp, row) - trajectory_seconds(recipe, timestamp);
       global.trajectory = later(recipe.trajectory, shift);
-      const cv::Mat picture = second_picture(global, "global");
-      EXPECT_LE(cv::norm(rolling.row(row), picture.row(row), cv::NORM_INF), 1) << row;
-      EXPECT_GT(cv::norm(rolling, picture, cv::NORM_INF), 20) << row;
+      const cv::Mat image = second_image(global, "global");
+      EXPECT_LE(cv::norm(rolling.row(row), image.row(row), cv::NORM_INF), 1) << row;
+      EXPECT_GT(cv::norm(rolling, image, cv::NORM_INF), 20) << row;
     }
   }
 }
@@ -192,9 +192,9 @@ TEST(Synthesize, RollingShutterIsComposedOfGlobalPicturesAtTheRowsTimes) {
 TEST(Synthesize, RollingShutterOfACameraAtRestIsAGlobalOne) {
   Recipe recipe = rolling_recipe(0, 0.03);
   recipe.trajectory = at_rest(recipe.trajectory);
-  const cv::Mat rolling = second_picture(recipe, "rolling");
-  recipe.picture.rolling_shutter = 0;
-  EXPECT_EQ(cv::norm(rolling, second_picture(recipe, "global"), cv::NORM_INF), 0);
+  const cv::Mat rolling = second_image(recipe, "rolling");
+  recipe.image.rolling_shutter = 0;
+  EXPECT_EQ(cv::norm(rolling, second_image(recipe, "global"), cv::NORM_INF), 0);
 }
 
 TEST(Synthesize, RollingShutterLeavesTheTruthAlone) {
@@ -289,7 +289,7 @@ TEST(Synthesize, LeavesNothingBehindWhereItIsStopped) {
 }
 
 // Who closes the window does not wait for a desk to be painted.
-TEST(Synthesize, TellsOfThePartsOfItsSceneBeforeItsFirstPicture) {
+TEST(Synthesize, TellsOfThePartsOfItsSceneBeforeItsFirstImage) {
   const Recipe recipe = recipe_of(small_recipe_text());
   int parts = 0;
   synthesize(recipe, test_folder("parts") / "small", [&](int done, int) { parts += done == 0; });
@@ -326,7 +326,7 @@ TEST_F(Desk, CommittedRecordingIsWhatTheRecipeMakes) {
   }
   const Scene scene = make_scene(recipe.desk, 2);
   const RayMap rays = make_ray_map(recipe.camera, 2, 2);
-  const cv::Mat made = expose(render(scene, rays, {camera(0)}, 2), recipe.picture, 1, 1, 2);
+  const cv::Mat made = expose(render(scene, rays, {camera(0)}, 2), recipe.image, 1, 1, 2);
   const cv::Mat committed = cv::imread(
       (folder / "mav0/cam0/data" / (std::to_string(frame_timestamp_ns(recipe, 0)) + ".jpg"))
           .string());
@@ -335,15 +335,15 @@ TEST_F(Desk, CommittedRecordingIsWhatTheRecipeMakes) {
   EXPECT_LT(cv::norm(made, committed, cv::NORM_L1) / pixels, 4);
 }
 
-TEST_F(Desk, CommittedPicturesShowTheBoardWhereTheTruthSays) {
+TEST_F(Desk, CommittedImagesShowTheBoardWhereTheTruthSays) {
   const Table truth = read_table(folder / "mav0/state_groundtruth_estimate0/data.csv");
   for (const std::size_t frame : {0U, 20U, 40U, 59U}) {
     const auto& row = truth.rows[frame];
     const Pose body{Eigen::Quaterniond(row[3], row[4], row[5], row[6]).toRotationMatrix(),
                     {row[0], row[1], row[2]}};
-    const cv::Mat picture = cv::imread(
+    const cv::Mat image = cv::imread(
         (folder / "mav0/cam0/data" / (std::to_string(truth.timestamps[frame]) + ".jpg")).string());
-    const CornerError error = corner_error(recipe, body * recipe.T_body_camera, picture);
+    const CornerError error = corner_error(recipe, body * recipe.T_body_camera, image);
     EXPECT_LT(error.rms, 0.1);
     EXPECT_LT(error.mean, 0.03);
   }

@@ -4,7 +4,7 @@
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_texture.h"
 
 #include <cstdlib>
 
@@ -59,12 +59,12 @@ TEST_F(Context, ClearsToTheColorAskedForWithoutADisplay) {
   context.bind();
   glClearColor(1, 0.2F, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  const cv::Mat picture = context.read_bgr();
-  ASSERT_EQ(picture.size(), cv::Size(5, 3));
-  EXPECT_EQ(picture.at<cv::Vec3b>(2, 4), cv::Vec3b(0, 51, 255));
+  const cv::Mat image = context.read_bgr();
+  ASSERT_EQ(image.size(), cv::Size(5, 3));
+  EXPECT_EQ(image.at<cv::Vec3b>(2, 4), cv::Vec3b(0, 51, 255));
 }
 
-TEST_F(Context, ReadsPicturesWithTheFirstRowOnTop) {
+TEST_F(Context, ReadsImagesWithTheFirstRowOnTop) {
   OffscreenContext context(4, 4);
   context.bind();
   glClearColor(0, 0, 0, 1);
@@ -73,9 +73,9 @@ TEST_F(Context, ReadsPicturesWithTheFirstRowOnTop) {
   gui.begin_frame(4, 4);
   ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0, 0), ImVec2(4, 1), IM_COL32_WHITE);
   gui.end_frame();
-  const cv::Mat picture = context.read_bgr();
-  EXPECT_EQ(picture.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255));
-  EXPECT_EQ(picture.at<cv::Vec3b>(3, 0), cv::Vec3b(0, 0, 0));
+  const cv::Mat image = context.read_bgr();
+  EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255));
+  EXPECT_EQ(image.at<cv::Vec3b>(3, 0), cv::Vec3b(0, 0, 0));
 }
 
 TEST_F(Context, VtkAndImGuiShareItAndGiveTheSameBytesAgain) {

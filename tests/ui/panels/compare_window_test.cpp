@@ -10,7 +10,7 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class CompareWindow : public DrawingTest {
     auto own = std::make_shared<Inspection>(made_inspection());
     own->settings.options.method = "gpo";
     state_.document.settings = own->settings;
-    adopt(state_, own->recording);
+    apply_recording(state_, own->recording);
     state_.results.inspection = own;
     state_.document.compared = parse_configurations("gpo,ba");
     add("gpo", {});
@@ -56,11 +56,11 @@ class CompareWindow : public DrawingTest {
     return draw_workbench(input(), {kWidth, kHeight}, gui_, views_);
   }
   cv::Mat view(const std::string& name, const std::string& file = "") {
-    const cv::Mat picture = draw_view(name, cv::Size(900, 500), input(), {}, gui_, views_);
-    if (file.empty()) return picture;
+    const cv::Mat image = draw_view(name, cv::Size(900, 500), input(), {}, gui_, views_);
+    if (file.empty()) return image;
     std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-    cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + file, picture);
-    return picture;
+    cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + file, image);
+    return image;
   }
   void point_at(float x, float y) {
     ImGui::GetIO().MousePos = {x, y};
@@ -91,10 +91,10 @@ class CompareWindow : public DrawingTest {
   WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
 };
 
-int count(const cv::Mat& picture, std::uint32_t rgb) {
+int count(const cv::Mat& image, std::uint32_t rgb) {
   const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
   int pixels = 0;
-  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(picture))
+  for (const cv::Vec3b& bgr : cv::Mat_<cv::Vec3b>(image))
     pixels += cv::norm(cv::Vec3i(bgr) - wanted, cv::NORM_INF) <= 6 ? 1 : 0;
   return pixels;
 }
@@ -122,8 +122,8 @@ TEST_F(CompareWindow, TheWheelZoomsAllColumnsAroundTheSamePoint) {
   };
   // At the same place of the first and of the second column.
   const float column = std::floor((layout_.views.width - 12) / 2);
-  const PictureZoom first = zoomed_at(layout_.views.x + 100);
-  const PictureZoom second = zoomed_at(layout_.views.x + 100 + column);
+  const ImageZoom first = zoomed_at(layout_.views.x + 100);
+  const ImageZoom second = zoomed_at(layout_.views.x + 100 + column);
   EXPECT_DOUBLE_EQ(first.factor, 2.5);
   EXPECT_NEAR((first.center - second.center).norm(), 0, 1e-9);
   EXPECT_NE(first.center, Eigen::Vector2d(0.5, 0.5));
@@ -162,7 +162,7 @@ TEST_F(CompareWindow, FlipSwapsTheColumnsInPlace) {
   EXPECT_LT(10 * moved, cv::norm(before(second), after(second), cv::NORM_L1));
 }
 
-TEST_F(CompareWindow, FlipShowsTheOtherResultInThePictureAndSaysWhose) {
+TEST_F(CompareWindow, FlipShowsTheOtherResultInTheImageAndSaysWhose) {
   const cv::Mat own = view("picture");
   state_.view.flip = true;
   const cv::Mat other = view("picture", "flip.png");

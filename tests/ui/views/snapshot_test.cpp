@@ -24,27 +24,27 @@ std::filesystem::path kept(const std::string& name) {
   return std::filesystem::path(other != nullptr ? other : GPO_TEST_OUTPUT_DIR) / (name + ".png");
 }
 
-void keep_snapshot(const std::string& name, const cv::Mat& picture) {
+void keep_snapshot(const std::string& name, const cv::Mat& image) {
   std::filesystem::create_directories(kept(name).parent_path());
-  cv::imwrite(kept(name).string(), picture);
+  cv::imwrite(kept(name).string(), image);
 }
 
 TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
   const Inspection inspection = made_inspection();
-  const cv::Mat picture = snapshot_image(inspection, 34);
-  keep_snapshot("image", picture);
-  EXPECT_EQ(picture.size(), cv::Size(640, 480));
+  const cv::Mat image = snapshot_image(inspection, 34);
+  keep_snapshot("image", image);
+  EXPECT_EQ(image.size(), cv::Size(640, 480));
   if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
-  EXPECT_TRUE(same_bytes(picture, snapshot_image(inspection, 34)));
+  EXPECT_TRUE(same_bytes(image, snapshot_image(inspection, 34)));
 }
 
 TEST_F(Snapshot, SceneHasTheSameBytesAgain) {
   const Inspection inspection = made_inspection({.estimate_error = 2});
-  const cv::Mat picture = snapshot_scene(inspection, 24);
-  keep_snapshot("scene", picture);
-  EXPECT_EQ(picture.size(), cv::Size(960, 720));
+  const cv::Mat image = snapshot_scene(inspection, 24);
+  keep_snapshot("scene", image);
+  EXPECT_EQ(image.size(), cv::Size(960, 720));
   if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
-  EXPECT_TRUE(same_bytes(picture, snapshot_scene(inspection, 24)));
+  EXPECT_TRUE(same_bytes(image, snapshot_scene(inspection, 24)));
 }
 
 TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
@@ -61,7 +61,7 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
   EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
 }
 
-TEST_F(Snapshot, WithoutDistortionIsThePictureAsOpenCvUndistortsIt) {
+TEST_F(Snapshot, WithoutDistortionIsTheImageAsOpenCvUndistortsIt) {
   const Inspection inspection = made_inspection({.distorted = true});
   const Camera& camera = inspection.recording->camera;
   const cv::Mat drawn = snapshot_image(inspection,
@@ -77,7 +77,7 @@ TEST_F(Snapshot, WithoutDistortionIsThePictureAsOpenCvUndistortsIt) {
   cv::Mat expected;
   const cv::Mat K =
       (cv::Mat_<double>(3, 3) << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
-  cv::undistort(inspection.recording->pictures->bgr(20), expected, K, camera.coefficients);
+  cv::undistort(inspection.recording->images->bgr(20), expected, K, camera.coefficients);
   cv::Mat difference;
   cv::absdiff(drawn, expected, difference);
   const cv::Scalar mean = cv::mean(difference);
@@ -93,7 +93,7 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
   keep_snapshot("image_outside", snapshot_image(made_inspection(), 38));
   keep_snapshot("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
   keep_snapshot("image_tracks_only",
-                snapshot_image(made_inspection({.pictures = false, .truth = false}), 20));
+                snapshot_image(made_inspection({.images = false, .truth = false}), 20));
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
     keep_snapshot("scene_uncertain_" + std::to_string(times),

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/actions/actions.h"
 
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <set>
 
@@ -17,7 +17,7 @@ WorkbenchState with_frames(int frames) {
   auto recording = std::make_shared<Recording>();
   for (int i = 0; i < frames; ++i) recording->timestamps_ns.push_back(100'000'000LL * i);
   WorkbenchState state;
-  adopt(state, recording);
+  apply_recording(state, recording);
   return state;
 }
 

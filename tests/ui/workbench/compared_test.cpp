@@ -6,7 +6,7 @@
 #include "engine/methods/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
   if (!state.document.recording) {
     state.document.settings = inspection->settings;
-    adopt(state, inspection->recording);
+    apply_recording(state, inspection->recording);
   }
   inspection->recording = state.document.recording;
   inspection->settings = apply(parse_configuration(configuration), state.document.settings);
@@ -216,7 +216,7 @@ TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
   ASSERT_TRUE(state.view.compare_zoom);
   EXPECT_EQ(state.view.compare_zoom->factor, 4);
   EXPECT_EQ(state.view.compare_zoom->center, Eigen::Vector2d(0, 0));
-  EXPECT_EQ(state.view.picture_zoom.factor, 1);
+  EXPECT_EQ(state.view.image_zoom.factor, 1);
   run_line(state, "compare zoom");
   EXPECT_FALSE(state.view.compare_zoom);
   run_line(state, "compare zoom 2");

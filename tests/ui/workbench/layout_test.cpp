@@ -31,7 +31,7 @@ std::vector<Rectangle> parts(const WindowLayout& l) {
   return {l.menu,
           l.settings,
           l.results,
-          l.picture,
+          l.image,
           l.side_tabs,
           l.side,
           l.drawer_tabs,
@@ -79,22 +79,22 @@ TEST(WindowLayout, APixelIsLeftOfEachPart) {
   }
 }
 
-TEST(WindowLayout, PictureAndSceneAreTheLargest) {
+TEST(WindowLayout, ImageAndSceneAreTheLargest) {
   for (const Size& size : sizes()) {
     SCOPED_TRACE(name(size));
     const WindowLayout layout = window_layout(size.width, size.height, size.scale, {}, false);
     const auto area = [](const Rectangle& r) { return r.width * r.height; };
-    const float views = area(layout.picture) + area(layout.side);
+    const float views = area(layout.image) + area(layout.side);
     const float others = size.width * size.height - views;
     if (size.width >= 1280 * size.scale && size.height >= 720 * size.scale) {
       ASSERT_GT(views, others);
     }
     const float beside = area(layout.side) + area(layout.side_tabs);
-    ASSERT_GE(area(layout.picture) / beside, 0.98);
-    ASSERT_LE(area(layout.picture) / beside, 1.4);
+    ASSERT_GE(area(layout.image) / beside, 0.98);
+    ASSERT_LE(area(layout.image) / beside, 1.4);
     if (size.width < 800 * size.scale) continue;
     for (const Rectangle& part : {layout.menu, layout.timeline, layout.status}) {
-      ASSERT_GT(area(layout.picture), area(part));
+      ASSERT_GT(area(layout.image), area(part));
     }
   }
 }
@@ -106,14 +106,14 @@ TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
     EXPECT_EQ(part.width, 1280);
   }
   EXPECT_EQ(layout.status.bottom(), 720);
-  EXPECT_EQ(layout.picture.y, layout.side_tabs.y);  // side by side
-  EXPECT_LE(layout.picture.right(), layout.side.x);
+  EXPECT_EQ(layout.image.y, layout.side_tabs.y);  // side by side
+  EXPECT_LE(layout.image.right(), layout.side.x);
 }
 
 // Whatever the user drags where: parts stay inside, apart and large enough to be dragged back.
 TEST(WindowLayout, KeepsItsPartsWhereverALineIsDragged) {
   for (const Splitter splitter :
-       {Splitter::column, Splitter::settings, Splitter::picture, Splitter::drawer}) {
+       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer}) {
     for (const Size& size : {Size{1280, 720, 1}, Size{1366, 768, 1}, Size{2560, 1440, 2}}) {
       SCOPED_TRACE(name(size) + ", line " + std::to_string(static_cast<int>(splitter)));
       const WindowLayout before = window_layout(size.width, size.height, size.scale, {}, true);
@@ -148,7 +148,7 @@ TEST(WindowLayout, PutsALineWhereItIsDraggedTo) {
     };
     EXPECT_NEAR(line(Splitter::column, 500, 0).x, 500, 1);
     EXPECT_NEAR(line(Splitter::settings, 0, 400).y, 400, 2);
-    EXPECT_NEAR(line(Splitter::picture, 900, 400).x, 900, 2);
+    EXPECT_NEAR(line(Splitter::image, 900, 400).x, 900, 2);
     EXPECT_NEAR(line(Splitter::drawer, 900, 450).y, 450, 2);
   }
 }
@@ -162,11 +162,11 @@ TEST(WindowLayout, GivesOnePartAllOfItAndHidesTheOthers) {
     division.maximized = part;
     return window_layout(1280, 720, 1, division, true);
   };
-  EXPECT_EQ(with(WindowPart::picture).picture.width, 1280);
-  EXPECT_TRUE(with(WindowPart::picture).side.empty());
-  EXPECT_TRUE(with(WindowPart::picture).settings.empty());
+  EXPECT_EQ(with(WindowPart::image).image.width, 1280);
+  EXPECT_TRUE(with(WindowPart::image).side.empty());
+  EXPECT_TRUE(with(WindowPart::image).settings.empty());
   EXPECT_EQ(with(WindowPart::side).side.width, 1280);
-  EXPECT_TRUE(with(WindowPart::side).picture.empty());
+  EXPECT_TRUE(with(WindowPart::side).image.empty());
   EXPECT_EQ(with(WindowPart::drawer).drawer.width, 1280);
   EXPECT_NEAR(with(WindowPart::drawer).drawer.bottom(), below, 1);
   EXPECT_TRUE(with(WindowPart::drawer).views.empty());

@@ -6,7 +6,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/tracks_in_view.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ WorkbenchState with_inspection() {
   const auto inspection = std::make_shared<const Inspection>(made_inspection());
   WorkbenchState state;
   state.document.settings = inspection->settings;
-  adopt(state, inspection->recording);
+  apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
   return state;
 }

@@ -7,7 +7,7 @@
 #include "ui/workbench/playing.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/time_span.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ std::shared_ptr<const Recording> recording_of(int frames, double rate_hz = 10) {
 
 WorkbenchState opened(int frames = 60) {
   WorkbenchState state;
-  adopt(state, recording_of(frames));
+  apply_recording(state, recording_of(frames));
   return state;
 }
 
@@ -48,7 +48,7 @@ TEST(Workbench, ShowsTheLastFrameOfTheWindowOfANewRecording) {
 TEST(Workbench, FitsTheWindowIntoAShortRecordingAndSaysSo) {
   WorkbenchState state;
   state.document.settings.start = 500;
-  adopt(state, recording_of(12));
+  apply_recording(state, recording_of(12));
   expect_legal(state.document.settings, 12);
   EXPECT_EQ(state.view.frame, 11);
   EXPECT_EQ(state.messages.text, "start 500 does not fit: the last of 12 frames is 11");
@@ -61,19 +61,19 @@ TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
   room->path = "room";
   WorkbenchState state;
   state.document.settings.start = 5;  // the command line's
-  adopt(state, desk);
+  apply_recording(state, desk);
   EXPECT_EQ(state.document.settings.start, 5);
   Settings chosen = state.document.settings;
   chosen.start = 180;
   chosen.frames = 47;
   chosen.options.method = "ba";
   apply(state, ChangeSettings{chosen});
-  adopt(state, room);
+  apply_recording(state, room);
   EXPECT_EQ(state.document.settings.start, 0);
   EXPECT_EQ(state.document.settings.frames, 30);
   EXPECT_EQ(state.document.settings.options.method, "gpo_joint");
   EXPECT_EQ(state.view.frame, 29);
-  adopt(state, desk);
+  apply_recording(state, desk);
   EXPECT_EQ(state.document.settings, chosen);
   run(state, "reset");
   EXPECT_EQ(state.document.settings, Settings{});
@@ -260,18 +260,18 @@ TEST(Workbench, CubeSideStaysBetweenAutomaticAndTwoDistances) {
   EXPECT_DOUBLE_EQ(state.document.cube_side, 2);
 }
 
-TEST(Workbench, FitShowsAllOfPictureAndScene) {
+TEST(Workbench, FitShowsAllOfImageAndScene) {
   WorkbenchState state = opened();
-  apply(state, ZoomPicture{{.factor = 4}});
+  apply(state, ZoomImage{{.factor = 4}});
   apply(state, OrbitScene{{.yaw_deg = 50}});
-  EXPECT_EQ(state.view.picture_zoom.factor, 4);
+  EXPECT_EQ(state.view.image_zoom.factor, 4);
   ASSERT_TRUE(state.view.orbit.has_value());
   apply(state, FitScene{});
   EXPECT_FALSE(state.view.orbit.has_value());
-  EXPECT_EQ(state.view.picture_zoom.factor, 4);
+  EXPECT_EQ(state.view.image_zoom.factor, 4);
   apply(state, OrbitScene{{.yaw_deg = 50}});
   run(state, "fit");
-  EXPECT_EQ(state.view.picture_zoom.factor, 1);
+  EXPECT_EQ(state.view.image_zoom.factor, 1);
   EXPECT_FALSE(state.view.orbit.has_value());
 }
 

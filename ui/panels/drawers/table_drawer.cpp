@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   colored_text(rgb, row.status);
   ImGui::PushFont(font(Font::small));
   if (verdict) {
-    const ReadinessLook look = look_of(verdict->readiness);
+    const ReadinessStyle look = style_of(verdict->readiness);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float line = ImGui::GetTextLineHeight();
     draw_sign(*ImGui::GetWindowDrawList(), look.sign, {at.x + line / 2, at.y + line / 2}, look.rgb);

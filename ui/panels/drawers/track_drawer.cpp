@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
@@ -104,9 +104,9 @@ void draw_plot(const PanelInput& input,
 
 /// The surroundings of a place of a picture, enlarged; its middle is the place, to a part of a
 /// pixel.
-cv::Mat patch_at(const cv::Mat& picture, const Eigen::Vector2d& raw_px) {
+cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
   cv::Mat patch;
-  cv::getRectSubPix(picture,
+  cv::getRectSubPix(image,
                     {kPatch_px, kPatch_px},
                     cv::Point2f(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y())),
                     patch);
@@ -116,21 +116,21 @@ cv::Mat patch_at(const cv::Mat& picture, const Eigen::Vector2d& raw_px) {
 
 /// Brings the place into the texture, where it is not there yet. Until its picture is there the
 /// last one stays. Where there is none, the picture's own panel says why.
-void update(Patch& patch, const PanelInput& input, const TrackFrame& frame) {
+void update(TrackPatch& patch, const PanelInput& input, const TrackFrame& frame) {
   const auto& recording = input.state.document.recording;
   const bool another = patch.recording != recording;
   if (!another && patch.frame == frame.frame && patch.middle_px == frame.raw_px) return;
-  const FetchedPicture picture =
-      recording->pictures ? picture_of(input, frame.frame) : FetchedPicture{};
-  if (picture.waiting && !another) return;
-  patch.recording = picture.waiting ? nullptr : recording;
+  const FetchedImage image =
+      recording->images ? image_of(input, frame.frame) : FetchedImage{};
+  if (image.waiting && !another) return;
+  patch.recording = image.waiting ? nullptr : recording;
   patch.frame = frame.frame;
   patch.middle_px = frame.raw_px;
-  patch.empty = picture.bgr.empty();
-  if (!patch.empty) patch.texture.upload(patch_at(picture.bgr, frame.raw_px));
+  patch.empty = image.bgr.empty();
+  if (!patch.empty) patch.texture.upload(patch_at(image.bgr, frame.raw_px));
 }
 
-void draw_patch(const Patch& patch, const char* what, float scale) {
+void draw_patch(const TrackPatch& patch, const char* what, float scale) {
   ImGui::BeginGroup();
   ImGui::TextUnformatted(fmt::format("{}, frame {}", what, patch.frame).c_str());
   const float side = kPatch_px * kMagnification * scale;

@@ -12,7 +12,7 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/result_row.h"
 #include "ui/panels/facts/uncertainty_facts.h"
-#include "ui/views/picture/image_view.h"
+#include "ui/views/image/image_view.h"
 
 #include <algorithm>
 #include <optional>
@@ -29,8 +29,8 @@ void add_meters(ResultGroup& group, const Inspection& inspection, double scale, 
   group.rows.push_back(
       {"Scale",
        "\u00b1" + number_text(percent, 1) + " %",
-       inspection.scale_known_at
-           ? fmt::format("from frame {} on", inspection.window->start + *inspection.scale_known_at)
+       inspection.metric_scale_from
+           ? fmt::format("from frame {} on", inspection.window->start + *inspection.metric_scale_from)
            : "",
        "One standard deviation of all lengths in meters, from poses and "
        "accelerometer together; and from which frame on these tell them (20 %)"});

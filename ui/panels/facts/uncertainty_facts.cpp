@@ -3,7 +3,7 @@
 #include "ui/panels/facts/uncertainty_facts.h"
 
 #include "ui/look/numbers.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <cmath>
 #include <optional>

@@ -8,10 +8,10 @@
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/image_view.h"
-#include "ui/views/picture/pixel_readout.h"
-#include "ui/views/picture/track_highlight.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/image/pixel_readout.h"
+#include "ui/views/image/track_highlight.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
 
@@ -29,7 +29,7 @@ struct Pointer {
   const WorkbenchState& state;
   int frame;  ///< that is drawn
   ScreenRect rect;
-  PictureMapping mapping;
+  ImageMapping mapping;
   float scale;
   Vector2d at = {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
   Vector2d pressed_at = {ImGui::GetIO().MouseClickedPos[0].x, ImGui::GetIO().MouseClickedPos[0].y};
@@ -47,17 +47,17 @@ struct Pointer {
 
 void zoom_and_pan(const Pointer& pointer, Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
-  const PictureZoom& zoom = pointer.state.view.picture_zoom;
+  const ImageZoom& zoom = pointer.state.view.image_zoom;
   const Camera& camera = pointer.state.document.recording->camera;
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     const double by = std::pow(1.25, io.MouseWheel);
-    push(commands, ZoomPicture{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
+    push(commands, ZoomImage{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
   }
   const Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-    push(commands, ZoomPicture{});
+    push(commands, ZoomImage{});
   } else if (ImGui::IsItemActive() && !io.KeyShift && !by.isZero()) {
-    push(commands, ZoomPicture{pan(zoom, camera, pointer.rect, by)});
+    push(commands, ZoomImage{pan(zoom, camera, pointer.rect, by)});
   }
 }
 
@@ -110,7 +110,7 @@ void move_cube(const Pointer& pointer, Commands& commands) {
   const Inspection& inspection = *state.results.inspection;
   const auto ray = point_on_plane(inspection,
                                   pointer.frame - inspection.window->start,
-                                  to_picture(pointer.mapping, pointer.at),
+                                  to_image(pointer.mapping, pointer.at),
                                   inspection.initialization->plane);
   if (ray) push(commands, MoveCube{ray});
 }
@@ -119,7 +119,7 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
   const PanelScope panel("picture", place, {0, 0});
   const WorkbenchState& state = input.state;
-  const int frame = update_picture(input, views);
+  const int frame = update_image(input, views);
   hit_area("view",
            {place.width, place.height},
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
@@ -130,7 +130,7 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
       state,
       frame,
       rect,
-      map_picture(camera, rect, state.view.picture_zoom, state.view.toggles.undistorted),
+      map_image(camera, rect, state.view.image_zoom, state.view.toggles.undistorted),
       input.scale};
   zoom_and_pan(pointer, commands);
   const auto track = pointer.track();
@@ -139,19 +139,19 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
   move_cube(pointer, commands);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Inspection waiting =
-      input.inspection() ? Inspection{} : nothing_inspected(state.document.recording);
+      input.inspection() ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(state, views);
   options.show.legend &= room_for_legend(place, input.scale);
   draw_image_view(list,
                   rect,
                   input.inspection() ? *input.inspection() : waiting,
                   frame,
-                  shown_picture(views),
-                  state.view.picture_zoom,
+                  shown_image(views),
+                  state.view.image_zoom,
                   options);
   if (input.inspection()) {
     const Inspection& inspection = *input.inspection();
-    draw_highlight_in_picture(list,
+    draw_highlight_in_image(list,
                               rect,
                               inspection,
                               frame - inspection.window->start,
@@ -167,11 +167,11 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
                                frame,
                                camera,
                                views.pixels,
-                               to_picture(pointer.mapping, pointer.at),
+                               to_image(pointer.mapping, pointer.at),
                                pointer.mapping.scale / input.scale));
   if (track) track_tooltip(input, views, *track);
-  if (!views.picture_error.empty()) {
-    draw_badge(list, rect, color_of(Role::bad), "no picture", views.picture_error);
+  if (!views.image_error.empty()) {
+    draw_badge(list, rect, color_of(Role::bad), "no picture", views.image_error);
   }
 }
 

@@ -92,7 +92,7 @@ void offer(const std::string& name, const std::string& why, Commands& commands) 
 bool calibration_may_help(const PanelInput& input) {
   const Recording& recording = *input.state.document.recording;
   const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
-  return recording.camera_source == CameraSource::guess && recording.pictures && !calibrating;
+  return recording.camera_source == CameraSource::guess && recording.images && !calibrating;
 }
 
 bool another_start_may_help(const WorkbenchState& state) {

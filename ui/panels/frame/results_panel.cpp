@@ -7,7 +7,7 @@
 #include "ui/panels/facts/uncertainty_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <cmath>
 
@@ -87,7 +87,7 @@ void draw_verdict(const Initialization& result, float left, float right, float g
   const std::optional<double> sigma_deg = result.uncertainty
                                               ? std::optional(result.uncertainty->normal_sigma_deg)
                                               : verdict.normal_sigma_deg;
-  const ReadinessLook look = look_of(verdict.readiness);
+  const ReadinessStyle look = style_of(verdict.readiness);
   ImGui::SetCursorPosX(left);
   ImGui::BeginGroup();
   const ImVec2 at = ImGui::GetCursorScreenPos();

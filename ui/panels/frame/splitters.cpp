@@ -10,7 +10,7 @@ namespace gpo {
 namespace {
 
 constexpr std::array kAll = {
-    Splitter::column, Splitter::settings, Splitter::picture, Splitter::drawer};
+    Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer};
 constexpr float kGrip = 7;  // as wide as one can hit [px]
 
 /// The line's surroundings, over whatever is there.

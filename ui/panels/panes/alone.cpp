@@ -8,7 +8,7 @@
 
 namespace gpo {
 
-void picture_alone(const PanelInput& input,
+void image_alone(const PanelInput& input,
                    const Rectangle& place,
                    Views& views,
                    Commands& /*commands*/) {
@@ -16,13 +16,13 @@ void picture_alone(const PanelInput& input,
   const auto other = flipped_result(input.state);
   const Inspection* inspection = other ? other->inspection.get() : input.inspection();
   const Inspection waiting =
-      inspection ? Inspection{} : nothing_inspected(input.state.document.recording);
-  const int frame = update_picture(input, views);
+      inspection ? Inspection{} : nothing_to_show(input.state.document.recording);
+  const int frame = update_image(input, views);
   draw_image_view(list,
                   screen_rect(place),
                   inspection ? *inspection : waiting,
                   frame,
-                  shown_picture(views),
+                  shown_image(views),
                   {},
                   view_options(other ? showing(input.state, *other) : input.state, views));
   if (other) draw_flip_label(list, screen_rect(place), *other);
@@ -34,7 +34,7 @@ void compare_alone(const PanelInput& input,
                    Views& views,
                    Commands& /*commands*/) {
   const WorkbenchState& state = input.state;
-  const int frame = update_picture(input, views);
+  const int frame = update_image(input, views);
   ViewOptions options = view_options(state, views);
   options.compare_zoom = state.view.compare_zoom;
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
@@ -42,7 +42,7 @@ void compare_alone(const PanelInput& input,
                     compare_columns(compared_results(state)),
                     *state.document.recording,
                     frame,
-                    shown_picture(views),
+                    shown_image(views),
                     options);
 }
 

@@ -162,7 +162,7 @@ void button(const std::string& name, const ScreenRect& rect) {
 /// The wheel zooms in all columns around the same point of the picture, dragging moves all, a
 /// double click shows all of the picture, or again the surroundings of the cubes.
 void zoom_and_pan(const ScreenRect& rect,
-                  const PictureZoom& zoom,
+                  const ImageZoom& zoom,
                   const WorkbenchState& state,
                   Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -172,7 +172,7 @@ void zoom_and_pan(const ScreenRect& rect,
     push(commands, ZoomCompare{zoom_about(zoom, camera, rect, at, std::pow(1.25, io.MouseWheel))});
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     const bool whole = state.view.compare_zoom && state.view.compare_zoom->factor <= 1;
-    push(commands, ZoomCompare{whole ? std::nullopt : std::optional(PictureZoom{})});
+    push(commands, ZoomCompare{whole ? std::nullopt : std::optional(ImageZoom{})});
   } else if (ImGui::IsItemActive() && !by.isZero()) {
     push(commands, ZoomCompare{pan(zoom, camera, rect, by)});
   }
@@ -243,23 +243,23 @@ void draw_columns(const PanelInput& input,
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_compare_view(
-      list, rect, columns, *state.document.recording, frame, shown_picture(views), options);
+      list, rect, columns, *state.document.recording, frame, shown_image(views), options);
   const auto places =
       compare_places(rect, count, aspect_of(state.document.recording->camera), options.top_line);
-  const PictureZoom zoom =
-      compare_zoom(columns, *state.document.recording, frame, places.front().picture.size, options);
+  const ImageZoom zoom =
+      compare_zoom(columns, *state.document.recording, frame, places.front().image.size, options);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::string name = key_of(results[i].configuration);
     choose_by_heading(input, places[i], results[i], name, commands);
-    button("picture " + name, places[i].picture);
-    zoom_and_pan(places[i].picture, zoom, state, commands);
+    button("picture " + name, places[i].image);
+    zoom_and_pan(places[i].image, zoom, state, commands);
   }
   if (scrolls) {
     ImGui::SetCursorScreenPos({origin.x, origin.y + static_cast<float>(least) - 1});
     ImGui::Dummy({1, 1});
   }
-  if (!views.picture_error.empty())
-    draw_badge(list, visible, color_of(Role::bad), "no picture", views.picture_error);
+  if (!views.image_error.empty())
+    draw_badge(list, visible, color_of(Role::bad), "no picture", views.image_error);
 }
 
 }  // namespace
@@ -272,7 +272,7 @@ void compare_panel(const PanelInput& input,
   const WorkbenchState& state = input.state;
   if (!state.document.recording)
     return draw_empty(place, "Open a recording to compare methods on it");
-  const int frame = update_picture(input, views);
+  const int frame = update_image(input, views);
   const float chips = compare_chips(input, place, commands);
   const Rectangle below{place.x, place.y + chips, place.width, place.height - chips};
   const ScreenRect rest = draw_caption(input, below, *ImGui::GetWindowDrawList());

@@ -5,8 +5,8 @@
 #include "ui/panels/panes/view_options.h"
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/picture/image_view.h"
-#include "ui/views/picture/track_highlight.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/image/track_highlight.h"
 #include "ui/views/scene/scene_geometry.h"
 
 namespace gpo {

@@ -31,7 +31,7 @@ std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state, KeptTr
 }
 
 /// The state's model; read anew where it is another.
-const KeptModel& model_of(const WorkbenchState& state, KeptModel& kept) {
+const CachedModel& model_of(const WorkbenchState& state, CachedModel& kept) {
   if (kept.name == state.document.model) return kept;
   kept = {state.document.model, nullptr, {}};
   if (state.document.model.empty()) return kept;
@@ -45,7 +45,7 @@ const KeptModel& model_of(const WorkbenchState& state, KeptModel& kept) {
 
 constexpr double kTowerSides = 5;
 
-double height_sides(const WorkbenchState& state, const KeptModel& kept) {
+double height_sides(const WorkbenchState& state, const CachedModel& kept) {
   if (kept.model) return kept.model->height_sides;
   return state.view.toggles.tower ? kTowerSides : 1;
 }
@@ -53,7 +53,7 @@ double height_sides(const WorkbenchState& state, const KeptModel& kept) {
 }  // namespace
 
 ViewOptions view_options(const WorkbenchState& state, Views& views) {
-  const KeptModel& model = model_of(state, views.model);
+  const CachedModel& model = model_of(state, views.model);
   ViewOptions options{.show = state.view.toggles,
                       .cube_side = state.document.cube_side,
                       .cube_height_sides = height_sides(state, model),

@@ -4,8 +4,8 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/picture/image_view.h"
-#include "ui/views/picture/track_highlight.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/image/track_highlight.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"

@@ -7,7 +7,7 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ void draw_columns(ImDrawList& list,
     const float left = slot_begin(axis, start.start);
     const float right = std::max(left + 1, slot_begin(axis, start.start + scan.step) - 1);
     const float height = std::max(2.0F, column_height(start, error) * (place.height - 2));
-    const ImU32 color = start.ok ? imgui_color(look_of(start.readiness).rgb, 0.85)
+    const ImU32 color = start.ok ? imgui_color(style_of(start.readiness).rgb, 0.85)
                                  : imgui_color(Role::text_dim, 0.4);
     list.AddRectFilled({left, std::round(place.bottom() - height)}, {right, place.bottom()}, color);
   }

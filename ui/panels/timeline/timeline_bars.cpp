@@ -5,7 +5,7 @@
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ BarColors bar_colors(const Inspection& inspection, std::span<const Verdict> grow
     return {imgui_color(Role::text_dim, 0.75), imgui_color(Role::text_dim, 0.4)};
   const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
   const std::uint32_t rgb =
-      judged ? look_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim);
+      judged ? style_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim);
   return {imgui_color(rgb, 0.75), imgui_color(Role::text_dim, 0.4)};
 }
 
@@ -74,7 +74,7 @@ void draw_verdict_signs(
     if (width < 16 * scale) continue;
     const ImVec2 at(left + 9 * scale, y);
     list.AddCircleFilled(at, 8 * scale, imgui_color(Role::background, 0.8), 20);
-    const ReadinessLook look = look_of(run.readiness);
+    const ReadinessStyle look = style_of(run.readiness);
     draw_sign(list, look.sign, at, look.rgb);
   }
 }
@@ -126,8 +126,8 @@ void draw_scale_mark(ImDrawList& list,
                      float top,
                      float bottom,
                      float scale) {
-  if (!inspection.scale_known_at) return;
-  const int frame = inspection.window->start + *inspection.scale_known_at;
+  if (!inspection.metric_scale_from) return;
+  const int frame = inspection.window->start + *inspection.metric_scale_from;
   const float x = std::round(slot_begin(axis, frame + 1));
   const ImU32 color = imgui_color(Role::gravity);
   const float dash = std::round(3 * scale), width = std::max(1.0F, std::round(1.5F * scale));
@@ -171,7 +171,7 @@ void draw_verdict_legend(
   };
   write("window up to here:", color_of(Role::text_dim));
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
-    const ReadinessLook look = look_of(readiness);
+    const ReadinessStyle look = style_of(readiness);
     draw_sign(list, look.sign, {left + 14 * scale, top + f->FontSize / 2}, look.rgb);
     left += 23 * scale;
     write(to_string(readiness), color_of(Role::text));
@@ -188,7 +188,7 @@ void draw_verdict_legend(
   }
   left += 8 * scale;
   write("gray: outliers", color_of(Role::text_dim));
-  if (inspection.scale_known_at) {
+  if (inspection.metric_scale_from) {
     left += 16 * scale;
     write("m:", color_of(Role::gravity));
     write(" meters known from here", color_of(Role::text_dim));

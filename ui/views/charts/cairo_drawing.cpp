@@ -61,7 +61,7 @@ cairo_font_face_t* font_face(bool bold) {
 /// Cairo fails on a text that is not UTF-8.
 std::string clean(const std::string& text) { return legible(text, 4 * text.size()); }
 
-bool is_picture(cairo_t& cairo) {
+bool is_image(cairo_t& cairo) {
   return cairo_surface_get_type(cairo_get_target(&cairo)) == CAIRO_SURFACE_TYPE_IMAGE;
 }
 
@@ -93,7 +93,7 @@ void stroke_line(cairo_t& cairo, const Polyline& line, const Pen& pen) {
 }
 
 void stroke_straight(cairo_t& cairo, const Vector2d& from, const Vector2d& to, const Pen& pen) {
-  if (!is_picture(cairo)) return stroke_line(cairo, {from, to}, pen);
+  if (!is_image(cairo)) return stroke_line(cairo, {from, to}, pen);
   Polyline line = {from, to};
   double width = pen.width, unused = 0;
   cairo_user_to_device_distance(&cairo, &width, &unused);
@@ -120,7 +120,7 @@ void draw_text(cairo_t& cairo, const Text& text) {
   cairo_move_to(
       &cairo, -share * width_of(text.text, text.size, text.bold), kCapHeight / 2 * text.size);
   // Cairo 1.16 moves the glyphs of a picture to whole pixels, outlines are where they belong.
-  if (is_picture(cairo)) {
+  if (is_image(cairo)) {
     cairo_text_path(&cairo, clean(text.text).c_str());
     cairo_fill(&cairo);
   } else {
@@ -166,7 +166,7 @@ void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw) {
       throw std::runtime_error(fmt::format("Cairo: {}", cairo_status_to_string(status)));
 }
 
-cv::Mat drawn_picture(cv::Size size,
+cv::Mat drawn_image(cv::Size size,
                       double px_per_unit,
                       std::uint32_t ground,
                       const CairoDraw& draw) {

@@ -68,7 +68,7 @@ using CairoDraw = std::function<void(cairo_t& cairo)>;
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
 
 /// Returns the picture that `draw` makes, CV_8UC3, BGR; the same bytes at every call.
-cv::Mat drawn_picture(cv::Size size,
+cv::Mat drawn_image(cv::Size size,
                       double px_per_unit,
                       std::uint32_t ground,
                       const CairoDraw& draw);

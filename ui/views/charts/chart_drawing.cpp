@@ -90,7 +90,7 @@ struct Plot {
   cairo_t& cairo;
   const Chart& chart;
   const std::vector<CurveStyle>& styles;
-  const ChartLook& look;
+  const ChartStyle& look;
   ChartMapping to;
 
   const CurveStyle& style_of(const Curve& curve) const {
@@ -193,7 +193,7 @@ struct Marker {
   bool hollow = false;
 };
 
-void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const ChartLook& look) {
+void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const ChartStyle& look) {
   const double size = marker.size * look.scale;
   fill_polygon(cairo, marker_shape(marker.shape, at, size), {marker.rgb});
   if (marker.hollow)
@@ -253,7 +253,7 @@ ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& whole,
                         const std::vector<CurveStyle>& styles,
                         const cv::Rect2d& axes,
-                        const ChartLook& look) {
+                        const ChartStyle& look) {
   const Chart chart = with_quartiles_of_many(whole);
   Plot plot{cairo, chart, styles, look, {}};
   ChartMapping& to = plot.to;
@@ -282,14 +282,14 @@ ChartMapping draw_chart(cairo_t& cairo,
   return to;
 }
 
-double width_of(const std::vector<LegendKey>& keys, const LegendLook& look) {
+double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look) {
   double width = keys.empty() ? 0 : -look.between;
   for (const LegendKey& key : keys)
     width += look.sample + look.beside + width_of(key.text, look.text_size) + look.between;
   return width;
 }
 
-double place_keys(std::vector<LegendKey>& keys, const LegendLook& look, double room, double align) {
+double place_keys(std::vector<LegendKey>& keys, const LegendStyle& look, double room, double align) {
   double y = 0;
   for (auto first = keys.begin(); first != keys.end(); y += look.row) {
     std::vector<LegendKey> row = {*first};
@@ -309,7 +309,7 @@ double place_keys(std::vector<LegendKey>& keys, const LegendLook& look, double r
   return y;
 }
 
-void draw_key(cairo_t& cairo, const LegendKey& key, const ChartLook& look) {
+void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look) {
   const Vector2d end = key.at + Vector2d(look.legend.sample, 0);
   Marker marker{.rgb = look.dim, .hollow = true};
   if (key.style != nullptr) {

@@ -17,20 +17,20 @@
 namespace gpo {
 
 /// Sizes of a legend [units].
-struct LegendLook {
+struct LegendStyle {
   double sample = 40, beside = 8,
          between = 26;  ///< widths: a sample, the gaps after it and its text
   double row = 25.5, text_size = 15;
 };
 
 /// Differences between charts in the window and on paper [units].
-struct ChartLook {
+struct ChartStyle {
   std::uint32_t ground, text, tick_text, dim, axis, grid;
   double scale = 1;                       ///< of lines, markers and gaps
   double text_size = 15, tick_size = 14;  ///< of the em
   double x_spacing = 50, y_spacing = 31;  ///< at least that much between ticks
   bool dashes_coinciding = false;         ///< a curve over an equal one is dashed to show it
-  LegendLook legend = {};
+  LegendStyle legend = {};
 };
 
 /// Whether the chart has a value that can be drawn; on a logarithmic axis these are positive.
@@ -42,7 +42,7 @@ ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& chart,
                         const std::vector<CurveStyle>& styles,
                         const cv::Rect2d& axes,
-                        const ChartLook& look);
+                        const ChartStyle& look);
 
 /// An entry of a legend: a piece of a curve, or a hollow point, and its meaning.
 struct LegendKey {
@@ -52,12 +52,12 @@ struct LegendKey {
 };
 
 /// Returns the width of all entries in one row.
-double width_of(const std::vector<LegendKey>& keys, const LegendLook& look);
+double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);
 
 /// Places entries in rows no wider than `room`, the first of which begins at (0, 0). `align`: 0
 /// left, 0.5 centered, 1 right. Returns the rows' height.
-double place_keys(std::vector<LegendKey>& keys, const LegendLook& look, double room, double align);
+double place_keys(std::vector<LegendKey>& keys, const LegendStyle& look, double room, double align);
 
-void draw_key(cairo_t& cairo, const LegendKey& key, const ChartLook& look);
+void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look);
 
 }  // namespace gpo

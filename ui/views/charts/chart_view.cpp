@@ -3,7 +3,7 @@
 #include "ui/views/charts/chart_view.h"
 
 #include "ui/context/theme.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 #include "ui/views/charts/chart_drawing.h"
 #include "ui/views/overlay/overlay.h"
 
@@ -24,7 +24,7 @@ constexpr double kLeft = 54, kRight = 14, kBottom = 38, kTop = 24, kInset = 6, k
 /// Curves of fewer points show where these are.
 constexpr std::size_t kMostMarked = 40;
 
-ChartLook window_look(Theme theme, double s) {
+ChartStyle window_style(Theme theme, double s) {
   return {.ground = color_of(Role::panel, theme),
           .text = color_of(Role::text, theme),
           .tick_text = color_of(Role::text_dim, theme),
@@ -87,7 +87,7 @@ std::vector<LegendKey> keys_of(const std::vector<CurveStyle>& styles) {
 /// Places the keys beside the titles, which end at `titles`, or in rows below them. Returns where
 /// the axes may begin.
 double place_legend(std::vector<LegendKey>& keys,
-                    const ChartLook& look,
+                    const ChartStyle& look,
                     double titles,
                     double width) {
   const double s = look.scale, left = kInset * s, room = width - left - kRight * s;
@@ -100,9 +100,9 @@ double place_legend(std::vector<LegendKey>& keys,
 
 }  // namespace
 
-ChartPicture draw_window_chart(const ChartRequest& request) {
+ChartImage draw_window_chart(const ChartRequest& request) {
   const Chart& chart = request.chart;
-  const ChartLook look = window_look(request.theme, request.scale);
+  const ChartStyle look = window_style(request.theme, request.scale);
   const double s = request.scale, size = look.text_size, bold_size = 13 * s;
   const double width = request.size.width, height = request.size.height;
   const std::vector<CurveStyle> styles = window_styles(chart);
@@ -115,23 +115,23 @@ ChartPicture draw_window_chart(const ChartRequest& request) {
                         top,
                         std::max(8.0, std::round(width - (kLeft + kRight) * s)),
                         std::max(8.0, std::round(height - kBottom * s - top)));
-  ChartPicture picture;
-  picture.bgr = drawn_picture(request.size, 1, look.ground, [&](cairo_t& cairo) {
-    picture.mapping = draw_chart(cairo, chart, styles, axes, look);
+  ChartImage image;
+  image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
+    image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
     draw_text(cairo, {chart.title, {kInset * s, y}, bold_size, look.text, Anchor::begin, true});
     draw_text(cairo, {chart.y_label, {y_label, y}, size, look.dim, Anchor::begin});
     draw_text(cairo, {chart.x_label, {middle, height - 9 * s}, size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
   });
-  return picture;
+  return image;
 }
 
 void ChartView::update(const ChartRequest& request) {
   if (texture_.revision() > 0 && same(request, shown_)) return;
-  const ChartPicture picture = draw_window_chart(request);
-  texture_.upload(picture.bgr);
-  mapping_ = picture.mapping;
+  const ChartImage image = draw_window_chart(request);
+  texture_.upload(image.bgr);
+  mapping_ = image.mapping;
   shown_ = request;
 }
 

@@ -6,7 +6,7 @@
 #include "ui/look/palette.h"
 #include "ui/look/rect.h"
 #include "ui/views/charts/chart_mapping.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_texture.h"
 
 #include <cstdint>
 #include <string>
@@ -26,14 +26,14 @@ struct ChartRequest {
   Theme theme = Theme::dark;
 };
 
-struct ChartPicture {
+struct ChartImage {
   cv::Mat bgr;
   ChartMapping mapping;  ///< [px from the upper left corner, y down]
 };
 
 /// Draws axes with their ticks, grid, bands and curves, titles, and a legend where curves have
 /// different names.
-ChartPicture draw_window_chart(const ChartRequest& request);
+ChartImage draw_window_chart(const ChartRequest& request);
 
 /// A chart of the window in the graphics memory. Needs the context in which it was made to be
 /// current.
@@ -42,13 +42,13 @@ class ChartView {
   /// Draws if something has changed since the last call. The size is not empty.
   void update(const ChartRequest& request);
 
-  const PictureTexture& texture() const { return texture_; }
+  const ImageTexture& texture() const { return texture_; }
   const ChartMapping& mapping() const { return mapping_; }
 
  private:
   ChartRequest shown_;
   ChartMapping mapping_;
-  PictureTexture texture_;
+  ImageTexture texture_;
 };
 
 /// Draws the chart into the window in the current theme. Returns the places of values [screen px],

@@ -5,7 +5,7 @@
 #include "engine/pipeline/method_defaults.h"
 #include "ui/look/numbers.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& 
   const auto& verdict = inspection.initialization->verdict;
   if (!verdict) return 0;
   const double s = overlay_scale();
-  const ReadinessLook look = look_of(verdict->readiness);
+  const ReadinessStyle look = style_of(verdict->readiness);
   const std::string word = to_string(verdict->readiness);
   const double width = 16 * s + text_width(Font::small, word);
   const Vector2d at = rect.min + Vector2d(rect.size.x() - width, 12 * s);

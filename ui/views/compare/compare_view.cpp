@@ -6,8 +6,8 @@
 #include "ui/context/theme.h"
 #include "ui/views/compare/compare_caption.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/picture/image_geometry.h"
-#include "ui/views/picture/image_view.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,10 +46,10 @@ ColumnPlace column_at(
       rect.min + Vector2d(std::round(scale * kGap) + width * x, std::round(top) + height * y);
   const double inner = std::max(1.0, width - std::round(scale * kGap));
   const double heading = std::round(scale * kHeading), caption = std::round(scale * kCaption);
-  const double picture = std::max(1.0, height - heading - caption);
+  const double texture = std::max(1.0, height - heading - caption);
   return {{at, {inner, heading}},
-          {at + Vector2d(0, heading), {inner, picture}},
-          {at + Vector2d(0, heading + picture), {inner, caption}}};
+          {at + Vector2d(0, heading), {inner, texture}},
+          {at + Vector2d(0, heading + texture), {inner, caption}}};
 }
 
 /// The one whose pictures are largest; of equal ones the one with fewest rows.
@@ -58,7 +58,7 @@ Grid best_grid(const ScreenRect& rect, int count, double aspect, double top, dou
   double widest = 0;
   for (int rows = 1; rows <= count; ++rows) {
     const Grid one{(count + rows - 1) / rows, rows};
-    const Vector2d size = column_at(rect, one, 0, top, scale).picture.size;
+    const Vector2d size = column_at(rect, one, 0, top, scale).image.size;
     const double width = std::min(size.x(), size.y() * aspect);
     if (width <= widest) continue;
     widest = width;
@@ -91,14 +91,14 @@ Eigen::AlignedBox2d cubes_box(Columns columns, int frame, const ViewOptions& opt
     const double side = common_cube_side(columns, inspection, options.cube_side);
     for (const auto& cube : {estimated_cube(inspection, in_window, side, options.cube_height_sides),
                              true_cube(inspection, in_window, side, options.cube_height_sides)})
-      for (const CubeEdge& edge : cube.value_or(CubePicture{}).edges)
+      for (const CubeEdge& edge : cube.value_or(CubeImage{}).edges)
         for (const Vector2d& pixel : edge.raw_px) box.extend(pixel);
   }
   return box;
 }
 
 /// The part of the picture around the cubes that all columns show; all of it where there are none.
-PictureZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, const Vector2d& rect) {
+ImageZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, const Vector2d& rect) {
   constexpr double kSurroundings = 2.2;  // of the cubes' size
   constexpr double kMostZoom = 3;
   const Vector2d size(camera.width, camera.height);
@@ -106,7 +106,7 @@ PictureZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, cons
   if (box.isEmpty()) return {};
   const double fit = rect.cwiseQuotient(size).minCoeff();
   const Vector2d wanted = (kSurroundings * fit * box.sizes()).cwiseMax(1e-6);
-  PictureZoom zoom;
+  ImageZoom zoom;
   zoom.factor = std::clamp(rect.cwiseQuotient(wanted).minCoeff(), 1.0, kMostZoom);
   // As much of the picture as fits, none of what is beyond its border.
   const Vector2d shown = rect.cwiseQuotient(fit * zoom.factor * size);
@@ -142,18 +142,18 @@ void draw_column(ImDrawList& list,
                  const CompareColumn& column,
                  const Inspection* first,
                  int frame,
-                 PictureTexture* picture,
-                 const PictureZoom& zoom,
+                 ImageTexture* texture,
+                 const ImageZoom& zoom,
                  const ViewOptions& options) {
   const Inspection& inspection = *column.inspection;
   draw_compare_heading(list, place.heading, column);
-  draw_image_view(list, place.picture, inspection, frame, picture, zoom, options);
+  draw_image_view(list, place.image, inspection, frame, texture, zoom, options);
   const int in_window = frame - inspection.window->start;
   if (options.show.exaggeration > 1 && in_window >= 0 &&
       in_window < inspection.window->frame_count())
     draw_legend(
         list,
-        place.picture,
+        place.image,
         Corner::bottom_left,
         "",
         {{Sign::none,
@@ -170,15 +170,15 @@ void draw_missing(ImDrawList& list,
                   const CompareColumn& column,
                   const Inspection& nothing,
                   int frame,
-                  PictureTexture* picture,
-                  const PictureZoom& zoom) {
+                  ImageTexture* texture,
+                  const ImageZoom& zoom) {
   draw_compare_heading(list, place.heading, column);
   ViewOptions plain;
   plain.show.legend = false;
-  draw_image_view(list, place.picture, nothing, frame, picture, zoom, plain);
+  draw_image_view(list, place.image, nothing, frame, texture, zoom, plain);
   const bool computing = column.missing == "computing";
   draw_badge(list,
-             place.picture,
+             place.image,
              computing ? color_of(Role::accent) : color_of(Role::warning),
              computing ? "computing" : "not computed",
              computing ? "" : column.missing);
@@ -211,13 +211,13 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
   return places;
 }
 
-PictureZoom compare_zoom(std::span<const CompareColumn> columns,
+ImageZoom compare_zoom(std::span<const CompareColumn> columns,
                          const Recording& recording,
                          int frame,
-                         const Eigen::Vector2d& picture_size,
+                         const Eigen::Vector2d& image_size,
                          const ViewOptions& options) {
   if (options.compare_zoom) return *options.compare_zoom;
-  return zoom_on(cubes_box(columns, frame, options), recording.camera, picture_size);
+  return zoom_on(cubes_box(columns, frame, options), recording.camera, image_size);
 }
 
 void draw_compare_view(ImDrawList& list,
@@ -225,7 +225,7 @@ void draw_compare_view(ImDrawList& list,
                        std::span<const CompareColumn> columns,
                        const Recording& recording,
                        int frame,
-                       PictureTexture* picture,
+                       ImageTexture* texture,
                        const ViewOptions& options) {
   list.AddRectFilled(to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
   if (columns.empty()) return;
@@ -233,23 +233,23 @@ void draw_compare_view(ImDrawList& list,
   if (options.top_line) draw_top(list, rect, recording, first, frame);
   // Where there is no picture the tracks say what the cube stands on.
   ViewOptions image = options;
-  image.show.tracks = !recording.pictures;
+  image.show.tracks = !recording.images;
   image.show.tails = image.show.gravity = image.show.legend = false;
   image.colors = nullptr;
   image.reference = first;
   if (first != nullptr) image.reference_side = common_cube_side(columns, *first, options.cube_side);
   const auto places = compare_places(
       rect, static_cast<int>(columns.size()), aspect_of(recording.camera), options.top_line);
-  const PictureZoom zoom =
-      compare_zoom(columns, recording, frame, places.front().picture.size, options);
-  const Inspection nothing = nothing_inspected({std::shared_ptr<const Recording>(), &recording});
+  const ImageZoom zoom =
+      compare_zoom(columns, recording, frame, places.front().image.size, options);
+  const Inspection nothing = nothing_to_show({std::shared_ptr<const Recording>(), &recording});
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!columns[i].inspection) {
-      draw_missing(list, places[i], columns[i], nothing, frame, picture, zoom);
+      draw_missing(list, places[i], columns[i], nothing, frame, texture, zoom);
       continue;
     }
     image.cube_side = common_cube_side(columns, *columns[i].inspection, options.cube_side);
-    draw_column(list, places[i], columns[i], i > 0 ? first : nullptr, frame, picture, zoom, image);
+    draw_column(list, places[i], columns[i], i > 0 ? first : nullptr, frame, texture, zoom, image);
   }
 }
 
@@ -257,14 +257,14 @@ void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        Comparison inspections,
                        int frame,
-                       PictureTexture* picture) {
+                       ImageTexture* texture) {
   if (inspections.empty()) {
     list.AddRectFilled(
         to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
     return;
   }
   draw_compare_view(
-      list, rect, columns_of(inspections), *inspections.front()->recording, frame, picture, {});
+      list, rect, columns_of(inspections), *inspections.front()->recording, frame, texture, {});
 }
 
 double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {

@@ -16,14 +16,14 @@ struct ImDrawList;
 
 namespace gpo {
 
-class PictureTexture;
+class ImageTexture;
 
 /// Finished inspections of one window of one recording, a method or setting each.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
 /// Heading, picture and caption of one column.
 struct ColumnPlace {
-  ScreenRect heading, picture, caption;
+  ScreenRect heading, image, caption;
 };
 
 /// Width / height of its pictures, within what a column can show well; 4:3 where it is not known.
@@ -36,24 +36,24 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
                                         double aspect,
                                         bool top_line);
 
-/// The part of the picture that all columns show, whose pictures are as large as `picture_size`
+/// The part of the picture that all columns show, whose pictures are as large as `image_size`
 /// [screen px].
-PictureZoom compare_zoom(std::span<const CompareColumn> columns,
+ImageZoom compare_zoom(std::span<const CompareColumn> columns,
                          const Recording& recording,
                          int frame,
-                         const Eigen::Vector2d& picture_size,
+                         const Eigen::Vector2d& image_size,
                          const ViewOptions& options);
 
 /// One column each: heading in the method's color, the picture of frame `frame` (counts in the
 /// recording), the same part in all columns, with that method's cube and thin and gray the true
 /// one; below it what the result is worth and how it differs from the first, or why there is none.
-/// `picture` is null, or empty, where the recording has no pictures.
+/// `image` is null, or empty, where the recording has no pictures.
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        std::span<const CompareColumn> columns,
                        const Recording& recording,
                        int frame,
-                       PictureTexture* picture,
+                       ImageTexture* image,
                        const ViewOptions& options);
 
 /// The same of inspections alone.
@@ -61,7 +61,7 @@ void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        Comparison inspections,
                        int frame,
-                       PictureTexture* picture);
+                       ImageTexture* image);
 
 /// What the colors of the cubes mean, from the left. Returns how wide it is [px].
 double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);

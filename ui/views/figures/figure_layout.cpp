@@ -26,7 +26,7 @@ bool has_few_windows(const Figure& figure) {
 
 }  // namespace
 
-ChartLook paper_look(const FigureSheet& sheet) {
+ChartStyle paper_style(const FigureSheet& sheet) {
   const double s = sheet.scale;
   const FigureType& type = sheet.type;
   return {.ground = 0xFFFFFF,
@@ -59,7 +59,7 @@ FigureLayout lay_out(const Figure& figure,
   for (const CurveStyle& style : styles) layout.keys.push_back({&style, style.name});
   if (has_few_windows(figure))
     layout.keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
-  const double legend_height = place_keys(layout.keys, paper_look(sheet).legend, room, 0.5);
+  const double legend_height = place_keys(layout.keys, paper_style(sheet).legend, room, 0.5);
   const double note_height = kLineSpacing * type.note * static_cast<double>(layout.note.size());
   const double below = legend_height + note_height + (layout.note.empty() ? 1 : 1.6) * kMargin * s;
   const auto charts = static_cast<int>(figure.charts.size());

@@ -40,7 +40,7 @@ struct FigureLayout {
 constexpr double kLineSpacing = 1.35;
 
 /// Colors and sizes of charts on white paper.
-ChartLook paper_look(const FigureSheet& sheet);
+ChartStyle paper_style(const FigureSheet& sheet);
 
 /// `styles` are pointed to.
 FigureLayout lay_out(const Figure& figure,

@@ -69,7 +69,7 @@ void write_titles(cairo_t& cairo,
 }
 
 void PlacedFigure::draw(cairo_t& cairo) const {
-  const ChartLook look = paper_look(sheet);
+  const ChartStyle look = paper_style(sheet);
   const double middle = layout.width / 2;
   write_lines(cairo,
               layout.title,
@@ -134,11 +134,11 @@ FigureSheet printed_sheet(const Figure& figure, double width_mm) {
   return {width, std::nullopt, 1, columns, {16, 15, 14.5, 14, 14, 14}, kUnit_mm};
 }
 
-cv::Mat figure_picture(const Figure& figure, const FigureSheet& sheet, double px_per_unit) {
+cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit) {
   const PlacedFigure placed{figure, sheet};
   const cv::Size size(cvRound(placed.layout.width * px_per_unit),
                       cvRound(placed.layout.height * px_per_unit));
-  return drawn_picture(size, px_per_unit, kWhite, [&](cairo_t& cairo) { placed.draw(cairo); });
+  return drawn_image(size, px_per_unit, kWhite, [&](cairo_t& cairo) { placed.draw(cairo); });
 }
 
 std::string figure_svg(const Figure& figure, const FigureSheet& sheet) {
@@ -178,7 +178,7 @@ std::string figure_pdf(const Figure& figure, const FigureSheet& sheet) {
 }
 
 cv::Mat draw_figure(const Figure& figure, cv::Size size) {
-  return figure_picture(figure, screen_sheet(figure, size));
+  return figure_image(figure, screen_sheet(figure, size));
 }
 
 }  // namespace gpo

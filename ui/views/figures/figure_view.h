@@ -26,7 +26,7 @@ FigureSheet printed_sheet(const Figure& figure, double width_mm);
 // are dotted. The same figure gives the same bytes.
 
 /// Pixels, CV_8UC3, BGR.
-cv::Mat figure_picture(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
+cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
 
 /// SVG with text as outlines, so that it needs no font; the names of what is shown are in its title
 /// and description.

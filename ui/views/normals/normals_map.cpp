@@ -13,7 +13,7 @@
 namespace gpo {
 namespace {
 
-constexpr int kPicture_px = 768;
+constexpr int kImage_px = 768;
 /// So that what is drawn over the map stands out.
 constexpr double kDimmed = 0.8;
 constexpr float kLeastRange_px = 0.05F;
@@ -104,28 +104,28 @@ Contours contours_of(const LogField& field, float low, float high) {
 }
 
 /// Colors on a logarithmic scale.
-cv::Mat picture_of(const LogField& field, float low, float high) {
+cv::Mat image_of(const LogField& field, float low, float high) {
   cv::Mat1f value, known;
-  const cv::Size size(kPicture_px, kPicture_px);
+  const cv::Size size(kImage_px, kImage_px);
   cv::resize(field.value, value, size, 0, 0, cv::INTER_LINEAR);
   cv::resize(field.known, known, size, 0, 0, cv::INTER_LINEAR);
   const float from = std::log10(low), to = std::log10(high);
   cv::Mat1b levels(size);
-  for (int i = 0; i < kPicture_px * kPicture_px; ++i) {
+  for (int i = 0; i < kImage_px * kImage_px; ++i) {
     const float v = (value(i) - from) / (to - from);
     levels(i) = static_cast<uchar>(std::lround(255 * std::clamp(v, 0.0F, 1.0F)));
   }
   cv::Mat3b colors;
   cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
-  cv::Mat3b picture(size, bgr_of(color_of(Role::scene_bottom)));
-  for (int y = 0; y < kPicture_px; ++y)
-    for (int x = 0; x < kPicture_px; ++x) {
-      const double u = (2.0 * x + 1) / kPicture_px - 1, v = (2.0 * y + 1) / kPicture_px - 1;
+  cv::Mat3b image(size, bgr_of(color_of(Role::scene_bottom)));
+  for (int y = 0; y < kImage_px; ++y)
+    for (int x = 0; x < kImage_px; ++x) {
+      const double u = (2.0 * x + 1) / kImage_px - 1, v = (2.0 * y + 1) / kImage_px - 1;
       if (u * u + v * v > 1) continue;
-      picture(y, x) =
+      image(y, x) =
           known(y, x) < 0.5F ? bgr_of(color_of(Role::raised)) : shaded(colors(y, x), kDimmed);
     }
-  return picture;
+  return image;
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ void NormalsMap::update(const std::shared_ptr<const NormalStudy>& study, int fra
   frames_ = frames;
   rms_px_ = gpo::rms_px(study->landscape, frames);
   const LogField field = log_field(rms_px_, study->landscape.side);
-  texture_.upload(picture_of(field, low_px_, high_px_));
+  texture_.upload(image_of(field, low_px_, high_px_));
   contours_ = contours_of(field, low_px_, high_px_);
 }
 

@@ -6,12 +6,12 @@
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/context/window_picture.h"
+#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/normals/normals_disc.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_look.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/plane_grid.h"
 
 #include <algorithm>

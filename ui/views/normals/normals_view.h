@@ -5,7 +5,7 @@
 #include "engine/inspection/studies/normal_study.h"
 #include "ui/look/normals_zoom.h"
 #include "ui/look/palette.h"
-#include "ui/views/picture/picture_texture.h"
+#include "ui/views/image/image_texture.h"
 
 #include <cstdint>
 #include <memory>
@@ -36,7 +36,7 @@ class NormalsMap {
   /// Brings the map of the window's first frames into the texture, where it is not there yet.
   void update(const std::shared_ptr<const NormalStudy>& study, int frames);
 
-  const PictureTexture& texture() const { return texture_; }
+  const ImageTexture& texture() const { return texture_; }
   /// Lines of the same RMS: 1, 2 and 5 times powers of ten [px].
   const Contours& contours() const { return contours_; }
   /// RMS that a plane of the normal at this place of the disc leaves [px]; NaN where there is none.
@@ -52,7 +52,7 @@ class NormalsMap {
   std::vector<float> rms_px_;
   Contours contours_;
   float low_px_ = 0.1F, high_px_ = 1;
-  PictureTexture texture_;
+  ImageTexture texture_;
 };
 
 /// What is drawn; the study is of the inspection's window.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/picture_zoom.h"
+#include "ui/look/image_zoom.h"
 #include "ui/look/view_toggles.h"
 
 #include <memory>
@@ -28,7 +28,7 @@ struct ViewOptions {
   const Inspection* reference = nullptr;
   double reference_side = 0;  ///< of its cube, as `cube_side`
   bool moving = false;        ///< the scene is being dragged: coarser, so that it keeps up
-  std::optional<PictureZoom> compare_zoom = {};  ///< of all columns; nothing: around the cubes
+  std::optional<ImageZoom> compare_zoom = {};  ///< of all columns; nothing: around the cubes
   bool top_line = true;  ///< of the comparison: the frame, and what the cubes' colors mean
 
   bool operator==(const ViewOptions&) const = default;

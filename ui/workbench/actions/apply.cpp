@@ -30,7 +30,7 @@ void apply(WorkbenchState& state, const Command& command) {
     state.document.cube_side = std::clamp(c.side, 0.0, 2.0);
   };
   const auto move = [&](const MoveCube& c) { move_cube(state, c.ray); };
-  const auto zoom = [&](const ZoomPicture& c) { state.view.picture_zoom = c.zoom; };
+  const auto zoom = [&](const ZoomImage& c) { state.view.image_zoom = c.zoom; };
   const auto zoom_all = [&](const ZoomCompare& c) { state.view.compare_zoom = c.zoom; };
   const auto normals = [&](const ZoomNormals& c) { state.view.normals_zoom = c.zoom; };
   const auto orbit = [&](const OrbitScene& c) { state.view.orbit = c.camera; };

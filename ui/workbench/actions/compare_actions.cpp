@@ -105,7 +105,7 @@ void add_choice(std::vector<Action>& table) {
   }
 }
 
-void add_looks(std::vector<Action>& table) {
+void add_patches(std::vector<Action>& table) {
   Action zoom{"compare zoom",
               "Zoom the comparison",
               "View",
@@ -167,7 +167,7 @@ void add_compare_actions(std::vector<Action>& table) {
                          [](State& s) -> bool& { return s.view.panes.compare; }));
   table.back().submenu = "Open";
   add_submenu(table, "Compare", add_choice);
-  add_submenu(table, "Compare", add_looks);
+  add_submenu(table, "Compare", add_patches);
   add_submenu(table, "Compare", add_curves);
 }
 

@@ -31,7 +31,7 @@ void take_screenshot(State& state, const Arguments& arguments) {
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const bool size = std::isdigit(static_cast<unsigned char>(arguments[i].front())) != 0;
     if (size)
-      shot.size = picture_size(arguments[i], "screenshot");
+      shot.size = image_size(arguments[i], "screenshot");
     else
       shot.view = arguments[i];
   }

@@ -19,7 +19,7 @@ constexpr double kLeastZoom = 0.5, kMostZoom = 3, kZoomStep = 0.1;
 
 WindowPart part_in(const Arguments& arguments, WindowPart now) {
   expect_count("maximize", arguments, 0, 1);
-  if (arguments.empty()) return now == WindowPart::none ? WindowPart::picture : WindowPart::none;
+  if (arguments.empty()) return now == WindowPart::none ? WindowPart::image : WindowPart::none;
   return choice<WindowPart>(arguments[0] == "image" ? "picture" : arguments[0]);
 }
 

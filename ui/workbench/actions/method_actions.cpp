@@ -98,7 +98,7 @@ void add_settings(std::vector<Action>& table) {
 
 /// A camera that a file tells is not to be replaced by one that is found in the pictures.
 void request_calibration(State& s) {
-  if (!s.document.recording->pictures) throw InputError("calibrate: the recording has no pictures");
+  if (!s.document.recording->images) throw InputError("calibrate: the recording has no pictures");
   if (s.document.recording->camera_source == CameraSource::file)
     throw InputError("calibrate: the camera comes from a file and stays");
   s.requests.calibrate = true;

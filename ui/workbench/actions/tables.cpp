@@ -89,9 +89,9 @@ bool switched(const char* action, const Arguments& arguments, bool now) {
   throw InputError(fmt::format("{}: '{}', expected on or off", action, arguments[0]));
 }
 
-PictureZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera) {
+ImageZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera) {
   expect_count(action, arguments, 1, 3);
-  PictureZoom wanted;
+  ImageZoom wanted;
   wanted.factor = std::clamp(number_in(action, arguments), 1.0, 64.0);
   if (arguments.size() > 1)
     wanted.center = Eigen::Vector2d(number_in(action, arguments, 1) / camera.width,

@@ -57,7 +57,7 @@ void expect_count(const char* action,
 bool switched(const char* action, const Arguments& arguments, bool now);
 
 /// FACTOR [X Y]: enlarged around a pixel, by default the middle. Throws InputError.
-PictureZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera);
+ImageZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera);
 
 /// A switch of the state; alone it switches, "on" and "off" say how.
 Action toggle(std::string name,

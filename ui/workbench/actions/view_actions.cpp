@@ -189,7 +189,7 @@ void add_cameras(std::vector<Action>& table) {
                         {letter('F')},
                         "Shows all of the picture, of the scene and of the normals",
                         [](State& s) {
-                          s.view.picture_zoom = {};
+                          s.view.image_zoom = {};
                           s.view.compare_zoom.reset();
                           s.view.normals_zoom = {};
                           s.view.orbit.reset();
@@ -199,7 +199,7 @@ void add_cameras(std::vector<Action>& table) {
   zoom.arguments = "FACTOR [X Y]";
   zoom.run = [](State& s, const Arguments& arguments) {
     expect_count("zoom", arguments, 1, 3);
-    s.view.picture_zoom = zoom_in("zoom", arguments, s.document.recording->camera);
+    s.view.image_zoom = zoom_in("zoom", arguments, s.document.recording->camera);
   };
   table.push_back(zoom);
   Action normals{"zoom-normals",

@@ -80,9 +80,9 @@ void remember_file(const fs::path& path) {
   write_quietly(recent_list(), json_text(json, 2));
 }
 
-KeptWindow read_kept_window(WorkbenchState& state) {
+SavedWindow read_saved_window(WorkbenchState& state) {
   const Json json = read_quietly(window_file());
-  KeptWindow kept;
+  SavedWindow kept;
   if (!json.is_object()) return kept;
   try {
     constexpr int kMost = 100'000;
@@ -98,7 +98,7 @@ KeptWindow read_kept_window(WorkbenchState& state) {
   return kept;
 }
 
-void keep_window(const KeptWindow& window, const WorkbenchState& state) {
+void save_window(const SavedWindow& window, const WorkbenchState& state) {
   Json json = {{"width", window.width}, {"height", window.height}};
   for (const SessionField& field : session_fields())
     if (std::ranges::count(kWindowFields, std::string_view(field.key)) > 0)

@@ -20,13 +20,13 @@ std::vector<std::filesystem::path> recent_files();
 void remember_file(const std::filesystem::path& path);
 
 /// The window itself as it was left: theme, layout, size.
-struct KeptWindow {
+struct SavedWindow {
   int width = 0;  ///< [screen units]; 0: never kept
   int height = 0;
 };
 /// Into the state what of it belongs to the window rather than to a recording.
-KeptWindow read_kept_window(WorkbenchState& state);
-void keep_window(const KeptWindow& window, const WorkbenchState& state);
+SavedWindow read_saved_window(WorkbenchState& state);
+void save_window(const SavedWindow& window, const WorkbenchState& state);
 
 /// The program's own folders in the user's home, after the XDG base directory specification; they
 /// need not exist. What can be computed anew: $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/...

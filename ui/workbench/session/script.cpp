@@ -23,7 +23,7 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
   return lines;
 }
 
-cv::Size picture_size(const std::string& text, const std::string& asked_by) {
+cv::Size image_size(const std::string& text, const std::string& asked_by) {
   constexpr int kLeast = 16;
   constexpr int kMost = 8192;
   const auto possible = [](int side) { return side >= kLeast && side <= kMost; };

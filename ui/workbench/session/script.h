@@ -22,6 +22,6 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file);
 
 /// The size of a picture to draw from "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError
 /// that begins with who asked: an option, a command.
-cv::Size picture_size(const std::string& text, const std::string& asked_by);
+cv::Size image_size(const std::string& text, const std::string& asked_by);
 
 }  // namespace gpo

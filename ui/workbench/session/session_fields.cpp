@@ -24,7 +24,7 @@ using State = WorkbenchState;
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 template <class T>
-concept Object = Is<T, PictureZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
+concept Object = Is<T, ImageZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
     Is<T, Division> || Is<T, ViewToggles>;
 
 template <class T>
@@ -32,7 +32,7 @@ concept HasChoiceRows = requires {
   choice_rows(T{});
 };
 
-void each_part(Is<PictureZoom> auto& zoom, auto&& use) {
+void each_part(Is<ImageZoom> auto& zoom, auto&& use) {
   use("factor", zoom.factor, 1, 64);
   use("center", zoom.center);
 }
@@ -55,7 +55,7 @@ void each_part(Is<OrbitCamera> auto& orbit, auto&& use) {
 void each_part(Is<Division> auto& division, auto&& use) {
   use("column_px", division.column_px, 0, 10'000);
   use("settings_px", division.settings_px, 0, 10'000);
-  use("picture_share", division.picture_share, 0, 1);
+  use("picture_share", division.image_share, 0, 1);
   use("drawer_share", division.drawer_share, 0, 1);
   use("column", division.column);
   use("timeline", division.timeline);
@@ -247,7 +247,7 @@ std::span<const SessionField> session_fields() {
       field("cube_side", &Document::cube_side, 0.0, 2.0),
       field("cube_ray", &Document::cube_ray),
       field("model", &Document::model),
-      field("picture_zoom", &ViewState::picture_zoom),
+      field("picture_zoom", &ViewState::image_zoom),
       field("normals_zoom", &ViewState::normals_zoom),
       field("viewpoint", &ViewState::viewpoint),
       field("coloring", &ViewState::coloring),

@@ -3,7 +3,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/spelled_methods.h"
+#include "engine/external_methods/method_specs.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -25,7 +25,7 @@ constexpr const char* kKind = "gpo-inspector session";
 
 /// The user's own methods, for whoever opens the session to start them or not.
 void write_own_methods(const MethodTable& methods, Json& json) {
-  const SpelledMethods own = spelled_in(methods);
+  const MethodSpecs own = specs_in(methods);
   if (!own.commands.empty()) json["method_commands"] = own.commands;
   std::vector<std::string> results;
   for (const std::string& one : own.results) results.push_back(with_whole_paths(one));

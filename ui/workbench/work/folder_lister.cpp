@@ -48,7 +48,7 @@ std::string description_of(const fs::path& path) {
     if (path.extension() == ".json") return is_session(path) ? "session" : "";
     if (path.extension() == ".csv") return is_results(path) ? "results of evaluate" : "";
     if (path.extension() == ".yaml") return recipe_description(path);
-    const Glance seen = glance(path);
+    const PathProbe seen = probe_path(path);
     if (seen.layout.empty() || seen.frames == 0) return seen.layout;
     return fmt::format(
         "{} \u00b7 {} frames \u00b7 {:.1f} s", seen.layout, seen.frames, seen.seconds);

@@ -53,7 +53,7 @@ void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settin
   job_.wake();
 }
 
-Scan::Kept::iterator Scan::find(const Settings& settings) {
+Scan::Cached::iterator Scan::find(const Settings& settings) {
   return std::ranges::find_if(kept_, [&](const auto& one) { return one->settings == settings; });
 }
 

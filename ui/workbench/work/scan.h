@@ -28,16 +28,16 @@ class Scan {
   std::shared_ptr<const StartScan> latest() const;  ///< of what is wanted; null: nothing is
 
  private:
-  using Kept = std::vector<std::shared_ptr<const StartScan>>;
+  using Cached = std::vector<std::shared_ptr<const StartScan>>;
 
   BackgroundJob::Job next();
   void add(ScannedStart found);
-  Kept::iterator find(const Settings& settings);
+  Cached::iterator find(const Settings& settings);
 
   std::shared_ptr<const Recording> recording_;
   std::optional<Settings> wanted_;
   std::shared_ptr<const StartScan> latest_;
-  Kept kept_;  ///< the last wanted one last
+  Cached kept_;  ///< the last wanted one last
   BackgroundJob job_;
 };
 

@@ -10,7 +10,7 @@
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/undo.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <utility>
 
@@ -34,7 +34,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   const Published published = worker.latest();
   const bool opened = published.recording && published.recording != state.document.recording;
   if (opened) {
-    adopt(state, published.recording);
+    apply_recording(state, published.recording);
     survey.open(published.recording);
     if (link.remembers_files && !link.opening.empty()) {
       remember_file(link.opening);
@@ -62,7 +62,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
 /// Whether a camera is to be found, because the user wants it or wants it for all that is opened.
 bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
   const bool requested = std::exchange(state.requests.calibrate, false);
-  const bool guessed = state.document.recording && state.document.recording->pictures &&
+  const bool guessed = state.document.recording && state.document.recording->images &&
                        state.document.recording->camera_source == CameraSource::guess;
   return requested || (opened && link.calibrates && guessed);
 }

@@ -153,7 +153,7 @@ Decompressed ChunkReader::contents(std::uint32_t number) const {
 
 std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const {
   const std::scoped_lock lock(mutex_);  // also while it decompresses: others want the same one
-  const auto found = std::ranges::find(recent_, number, &Kept::first);
+  const auto found = std::ranges::find(recent_, number, &Cached::first);
   if (found != recent_.end()) {
     recent_.splice(recent_.begin(), recent_, found);
     return found->second;

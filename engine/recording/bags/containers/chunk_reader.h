@@ -89,14 +89,14 @@ class ChunkReader {
   void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
 
  private:
-  using Kept = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
+  using Cached = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
 
   std::shared_ptr<const std::string> kept(std::uint32_t chunk) const;
 
   std::shared_ptr<const FileBytes> file_;
   std::vector<Chunk> chunks_;
   mutable std::mutex mutex_;
-  mutable std::list<Kept> recent_;  ///< most recently used first
+  mutable std::list<Cached> recent_;  ///< most recently used first
 };
 
 }  // namespace gpo

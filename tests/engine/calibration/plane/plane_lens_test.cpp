@@ -3,7 +3,7 @@
 #include "engine/calibration/plane/plane_lens.h"
 
 #include "engine/calibration/plane/plane_selection.h"
-#include "tests/engine/calibration/plane/simulated_sights.h"
+#include "tests/engine/calibration/plane/simulated_views.h"
 
 #include <cmath>
 #include <numbers>
@@ -36,13 +36,13 @@ LensVector normalized_errors(const PlaneLens& found, const Camera& truth) {
 }
 
 /// How a gyroscope with a bias that nobody knows saw the pictures' cameras turn.
-GyroTurns turns_of(const SimulatedScene& scene, const Eigen::Vector3d& bias_rad_s) {
-  GyroTurns gyro;
+GyroRotations turns_of(const SimulatedScene& scene, const Eigen::Vector3d& bias_rad_s) {
+  GyroRotations gyro;
   constexpr double kStep_s = 4.0 / 30;
   for (std::size_t i = 1; i < scene.poses.size(); ++i) {
     const Eigen::Matrix3d R = scene.poses[i - 1].R_wc.transpose() * scene.poses[i].R_wc;
-    gyro.turns.push_back({scene.plane.sights[i - 1].frame,
-                          scene.plane.sights[i].frame,
+    gyro.rotations.push_back({scene.plane.views[i - 1].frame,
+                          scene.plane.views[i].frame,
                           R * so3_exp(kStep_s * -bias_rad_s),
                           kStep_s * Eigen::Matrix3d::Identity(),
                           2e-4});
@@ -84,15 +84,15 @@ struct Calibrated {
 Calibrated calibrated(const UnlikeLens& lens) {
   Calibrated all;
   for (std::uint64_t seed = 1; seed <= kSeedsALens; ++seed) {
-    const SimulatedSights options{.camera = camera_of(lens),
+    const SimulatedViews options{.camera = camera_of(lens),
                                   .points = 80,
-                                  .pictures = 20,
+                                  .images = 20,
                                   .half_m = 0.75 / lens.focal,
                                   .moves_m = 0.25 / lens.focal,
                                   .unevenness_m = 0.002,
                                   .outliers = 0.02};
     const auto found = lens_from_planes(
-        {simulate_sights(options, seed).plane}, {}, guess_of(options.camera, lens.k1_of_guess));
+        {simulate_views(options, seed).plane}, {}, guess_of(options.camera, lens.k1_of_guess));
     EXPECT_TRUE(found.ok) << lens.name << " " << seed << ": " << found.reason;
     if (!found.ok) continue;
     const LensVector errors = normalized_errors(found, options.camera);
@@ -128,8 +128,8 @@ TEST(PlaneLens, ARollingShutterIsNoBendOfTheLens) {
   double unknown_squares = 0;
   constexpr int kSeeds = 3;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const SimulatedSights options{.points = 120, .pictures = 24, .half_m = 0.9, .readout = 0.7};
-    auto scene = simulate_sights(options, seed);
+    const SimulatedViews options{.points = 120, .images = 24, .half_m = 0.9, .readout = 0.7};
+    auto scene = simulate_views(options, seed);
     LensVector truth = lens_of(options.camera);
     truth[kReadout] = options.readout;
     const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
@@ -138,7 +138,7 @@ TEST(PlaneLens, ARollingShutterIsNoBendOfTheLens) {
     EXPECT_LT(errors.cwiseQuotient(found.sigma).cwiseAbs().maxCoeff(), 4) << seed;
     EXPECT_NEAR(found.lens[kReadout], options.readout, 0.02) << seed;
     squares += errors[0] * errors[0];
-    for (PlaneSight& sight : scene.plane.sights) sight.flow_px.setZero();
+    for (PlaneView& view : scene.plane.views) view.flow_px.setZero();
     const auto unknown = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
     unknown_squares += std::pow(unknown.lens[0] - truth[0], 2);
     EXPECT_TRUE(unknown.prior_only[kReadout]);
@@ -148,10 +148,10 @@ TEST(PlaneLens, ARollingShutterIsNoBendOfTheLens) {
 
 TEST(PlaneLens, AnUnevenPlaneIsNoNoiseOfItsPoints) {
   // Waves of 4 mm, seen from 1 m, move points by a pixel as the camera goes around them.
-  const SimulatedSights options{
-      .points = 150, .pictures = 24, .half_m = 0.9, .unevenness_m = 0.004};
+  const SimulatedViews options{
+      .points = 150, .images = 24, .half_m = 0.9, .unevenness_m = 0.004};
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto scene = simulate_sights(options, seed);
+    const auto scene = simulate_views(options, seed);
     const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
     ASSERT_TRUE(found.ok) << found.reason;
     EXPECT_LT(found.rms_px, 1.2 * std::numbers::sqrt2 * options.noise_px) << seed;
@@ -160,7 +160,7 @@ TEST(PlaneLens, AnUnevenPlaneIsNoNoiseOfItsPoints) {
 }
 
 TEST(PlaneLens, NothingLeftIsNotLookedAtAnyFarther) {
-  const std::vector<SightedPlane> planes{{3, {{0, {}, Eigen::Matrix2Xd(2, 0)}}}};
+  const std::vector<ObservedPlane> planes{{3, {{0, {}, Eigen::Matrix2Xd(2, 0)}}}};
   std::vector<int> left_out;
   const auto kept = without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out);
   EXPECT_EQ(observation_count(kept), 0);
@@ -173,9 +173,9 @@ TEST(PlaneLens, CountsWhatIsWrongWithAPointOnce) {
   double own_squares = 0;
   constexpr int kSeeds = 6;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const SimulatedSights options{
-        .points = 150, .pictures = 30, .noise_px = 0.1, .track_noise_px = 0.6};
-    const auto scene = simulate_sights(options, seed);
+    const SimulatedViews options{
+        .points = 150, .images = 30, .noise_px = 0.1, .track_noise_px = 0.6};
+    const auto scene = simulate_views(options, seed);
     const auto found = lens_from_planes({scene.plane}, {}, guess_of(options.camera));
     ASSERT_TRUE(found.ok) << found.reason;
     squares += std::pow(normalized_errors(found, options.camera)[0], 2) / kSeeds;
@@ -186,24 +186,24 @@ TEST(PlaneLens, CountsWhatIsWrongWithAPointOnce) {
 }
 
 TEST(PlaneLens, RefusesACameraThatKeepsItsTiltAndSaysWhy) {
-  const auto scene = simulate_sights({.points = 150, .pictures = 30, .slant_deg = 2}, 1);
-  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+  const auto scene = simulate_views({.points = 150, .images = 30, .slant_deg = 2}, 1);
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedViews{}.camera));
   EXPECT_FALSE(found.ok);
   EXPECT_THAT(found.reason, HasSubstr("keeps its tilt to the plane"));
   EXPECT_LT(found.tilt_deg, 8);
 }
 
-TEST(PlaneLens, RefusesPicturesThatAreTooFew) {
-  const auto scene = simulate_sights({.pictures = 4}, 1);
-  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+TEST(PlaneLens, RefusesImagesThatAreTooFew) {
+  const auto scene = simulate_views({.images = 4}, 1);
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedViews{}.camera));
   EXPECT_FALSE(found.ok);
   EXPECT_EQ(found.reason, "a plane is seen in 4 pictures; at least 6 are needed");
 }
 
 TEST(PlaneLens, SaysWhatOnlyThePriorTells) {
-  const auto upright = simulate_sights({.points = 150, .pictures = 30, .slant_deg = 1}, 2);
-  const auto slanted = simulate_sights({.points = 150, .pictures = 30}, 2);
-  const Camera guess = guess_of(SimulatedSights{}.camera);
+  const auto upright = simulate_views({.points = 150, .images = 30, .slant_deg = 1}, 2);
+  const auto slanted = simulate_views({.points = 150, .images = 30}, 2);
+  const Camera guess = guess_of(SimulatedViews{}.camera);
   const auto vague = lens_from_planes({upright.plane}, {}, guess);
   const auto sure = lens_from_planes({slanted.plane}, {}, guess);
   EXPECT_TRUE(vague.prior_only[0]) << vague.sigma.transpose();
@@ -212,11 +212,11 @@ TEST(PlaneLens, SaysWhatOnlyThePriorTells) {
 }
 
 TEST(PlaneLens, AGyroscopeOfUnknownBiasMakesTheFocalLengthSurer) {
-  const SimulatedSights options{.points = 150, .pictures = 30, .slant_deg = 3, .kept_tilt_deg = 30};
+  const SimulatedViews options{.points = 150, .images = 30, .slant_deg = 3, .kept_tilt_deg = 30};
   double sigma_without = 0;
   double sigma_with = 0;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto scene = simulate_sights(options, seed);
+    const auto scene = simulate_views(options, seed);
     const Camera guess = guess_of(options.camera);
     const auto without = lens_from_planes({scene.plane}, {}, guess);
     const auto with = lens_from_planes({scene.plane}, turns_of(scene, {0.05, -0.03, 0.02}), guess);
@@ -229,22 +229,22 @@ TEST(PlaneLens, AGyroscopeOfUnknownBiasMakesTheFocalLengthSurer) {
 }
 
 TEST(PlaneLens, SeveralPlanesShareTheLens) {
-  const SimulatedSights options{.points = 150, .pictures = 12};
-  std::vector<SightedPlane> planes;
-  for (const std::uint64_t seed : {1, 2, 3}) planes.push_back(simulate_sights(options, seed).plane);
+  const SimulatedViews options{.points = 150, .images = 12};
+  std::vector<ObservedPlane> planes;
+  for (const std::uint64_t seed : {1, 2, 3}) planes.push_back(simulate_views(options, seed).plane);
   const auto found = lens_from_planes(planes, {}, guess_of(options.camera));
   ASSERT_TRUE(found.ok) << found.reason;
-  EXPECT_EQ(found.sights, 36);
+  EXPECT_EQ(found.views, 36);
   EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
 }
 
-TEST(PlaneLens, LeavesOutPicturesThatDisagreeAndNamesThem) {
-  auto scene = simulate_sights({.points = 150, .pictures = 30}, 1);
-  PlaneSight& bad = scene.plane.sights[11];
+TEST(PlaneLens, LeavesOutImagesThatDisagreeAndNamesThem) {
+  auto scene = simulate_views({.points = 150, .images = 30}, 1);
+  PlaneView& bad = scene.plane.views[11];
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 4);
   for (auto column : bad.raw_px.colwise()) column += Eigen::Vector2d(noise(random), noise(random));
-  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedSights{}.camera));
+  const auto found = lens_from_planes({scene.plane}, {}, guess_of(SimulatedViews{}.camera));
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_THAT(found.left_out, testing::ElementsAre(bad.frame));
 }
@@ -252,9 +252,9 @@ TEST(PlaneLens, LeavesOutPicturesThatDisagreeAndNamesThem) {
 TEST(PlaneLens, EndsWhereItIsStopped) {
   std::stop_source stop;
   stop.request_stop();
-  const auto scene = simulate_sights({}, 1);
+  const auto scene = simulate_views({}, 1);
   const auto found = lens_from_planes(
-      {scene.plane}, {}, guess_of(SimulatedSights{}.camera), {}, {}, stop.get_token());
+      {scene.plane}, {}, guess_of(SimulatedViews{}.camera), {}, {}, stop.get_token());
   EXPECT_TRUE(found.stopped);
   EXPECT_FALSE(found.ok);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/anchors.h"
 
-#include "engine/frontend/tracking/soft_picture.h"
+#include "engine/frontend/tracking/smoothed_image.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/statistics.h"
@@ -28,18 +28,18 @@ constexpr int kLast = kFrames - 1;
 
 using test::desk;
 
-Tracks tracked(const Recording& recording, const FrameCache& pictures, Tracking tracking) {
+Tracks tracked(const Recording& recording, const FrameCache& images, Tracking tracking) {
   TrackerOptions options;
   options.tracking = tracking;
   return *track_window(
-      [&](int frame) { return pictures.gray(frame); }, recording.camera, 0, kFrames, options);
+      [&](int frame) { return images.gray(frame); }, recording.camera, 0, kFrames, options);
 }
 
 /// The recording's pictures, each changed in place.
 FrameCache changed(const std::shared_ptr<const Recording>& recording,
                    const std::function<void(int frame, cv::Mat& bgr)>& change) {
   return FrameCache(kFrames, [recording, change](int i) {
-    cv::Mat bgr = recording->pictures->bgr(i).clone();
+    cv::Mat bgr = recording->images->bgr(i).clone();
     change(i, bgr);
     return bgr;
   });
@@ -75,8 +75,8 @@ int living(const Tracks& tracks, int frame) {
 
 TEST(Anchors, TakeTheDriftFromTracks) {
   const auto recording = desk();
-  const Tracks drifting = tracked(*recording, *recording->pictures, Tracking::frame_to_frame);
-  const Tracks held = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks drifting = tracked(*recording, *recording->images, Tracking::frame_to_frame);
+  const Tracks held = tracked(*recording, *recording->images, Tracking::anchored);
   EXPECT_EQ(held.raw_px[0], drifting.raw_px[0]);
   EXPECT_GT(median_error_px(*recording, drifting, kLast), 0.5);
   for (int i = 1; i < kFrames; ++i) EXPECT_LT(median_error_px(*recording, held, i), 0.05) << i;
@@ -85,25 +85,25 @@ TEST(Anchors, TakeTheDriftFromTracks) {
 
 TEST(Anchors, SurviveExposureAndBlur) {
   const auto recording = desk();
-  const FrameCache pictures = changed(recording, [](int i, cv::Mat& bgr) {
+  const FrameCache images = changed(recording, [](int i, cv::Mat& bgr) {
     bgr.convertTo(bgr, -1, 1 - 0.012 * i, 0.5 * i);
     if (i >= 10 && i < 15) cv::GaussianBlur(bgr, bgr, {}, 1.5);
   });
-  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  const Tracks held = tracked(*recording, images, Tracking::anchored);
   EXPECT_LT(median_error_px(*recording, held, 12), 0.15);
   EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
-  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks undisturbed = tracked(*recording, *recording->images, Tracking::anchored);
   EXPECT_GT(living(held, kLast), 0.85 * living(undisturbed, kLast));
 }
 
 TEST(Anchors, SurviveAJumpOfTheExposure) {
   const auto recording = desk();
-  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks undisturbed = tracked(*recording, *recording->images, Tracking::anchored);
   for (const double gain : {0.7, 0.85, 1.2}) {
-    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+    const FrameCache images = changed(recording, [&](int i, cv::Mat& bgr) {
       if (i >= 10 && i < 20) bgr.convertTo(bgr, -1, gain);
     });
-    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    const Tracks held = tracked(*recording, images, Tracking::anchored);
     EXPECT_LT(median_error_px(*recording, held, kLast), 0.05) << gain;
     EXPECT_GE(living(held, 10), 0.95 * living(undisturbed, 10)) << gain;
     EXPECT_GE(living(held, kLast), 0.9 * living(undisturbed, kLast)) << gain;
@@ -113,10 +113,10 @@ TEST(Anchors, SurviveAJumpOfTheExposure) {
 TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
   const auto recording = desk();
   const cv::Rect hidden(200, 140, 200, 180);
-  const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+  const FrameCache images = changed(recording, [&](int i, cv::Mat& bgr) {
     if (i >= 10 && i < 20) bgr(hidden).setTo(cv::Scalar(40, 60, 90));
   });
-  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  const Tracks held = tracked(*recording, images, Tracking::anchored);
   for (int j = 0; j < held.track_count(); ++j) {
     for (int i = 1; i < kFrames; ++i) EXPECT_LE(held.seen(i, j), held.seen(i - 1, j)) << i;
     const cv::Rect inner(hidden.x + 15, hidden.y + 15, hidden.width - 30, hidden.height - 30);
@@ -129,7 +129,7 @@ TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
   EXPECT_LT(living(held, kLast), living(held, 9) - 20);
   EXPECT_LT(median_error_px(*recording, held, kLast), 0.05);
   // Nothing that lives took hold of what hid it: where it is, it also is without.
-  const Tracks undisturbed = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks undisturbed = tracked(*recording, *recording->images, Tracking::anchored);
   for (int j = 0; j < held.track_count(); ++j) {
     if (!held.seen(kLast, j) || !undisturbed.seen(kLast, j)) continue;
     EXPECT_LT((held.raw_px[kLast].col(j) - undisturbed.raw_px[kLast].col(j)).norm(), 1) << j;
@@ -137,25 +137,25 @@ TEST(Anchors, LoseWhatIsHiddenForGoodAndKeepTheRest) {
 }
 
 // At rest, so that all that is in the picture is found where it was.
-TEST(Anchors, WhatIsNotInThePictureIsNotFoundThere) {
+TEST(Anchors, WhatIsNotInTheImageIsNotFoundThere) {
   const auto recording = desk();
-  const cv::Mat soft = soften(recording->pictures->gray(0));
+  const cv::Mat smoothed = smoothed(recording->images->gray(0));
   Camera camera = recording->camera;
   camera.distortion = Distortion::none;
   camera.coefficients = {};
   Eigen::Matrix2Xd corners(2, 44);
   for (int k = 0; k < 40; ++k) corners.col(k) << 60 + 60 * (k % 8), 60 + 70 * (k / 8);
-  corners.rightCols<4>() << -40, 300, soft.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
-      100, soft.rows + 60, 50, 20;
-  Anchors anchors = make_anchors(soft, corners, camera);
-  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 44));
+  corners.rightCols<4>() << -40, 300, smoothed.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
+      100, smoothed.rows + 60, 50, 20;
+  Anchors anchors = make_anchors(smoothed, corners, camera);
+  const Held held = hold(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
   int found = 0;
   for (int k = 0; k < 40; ++k) found += held.raw_px.col(k).allFinite() ? 1 : 0;
   EXPECT_GT(found, 20);
   for (int k = 40; k < 43; ++k) {
     EXPECT_FALSE(held.raw_px.col(k).allFinite()) << k;
     ASSERT_TRUE(held.ends[k]) << k;
-    EXPECT_EQ(held.ends[k]->reason, LossReason::left_picture) << k;
+    EXPECT_EQ(held.ends[k]->reason, LossReason::left_image) << k;
   }
   EXPECT_FALSE(held.raw_px.col(43).allFinite());
   EXPECT_FALSE(held.ends[43]);
@@ -163,8 +163,8 @@ TEST(Anchors, WhatIsNotInThePictureIsNotFoundThere) {
 
 TEST(Anchors, AreTheSameInEveryRun) {
   const auto recording = desk();
-  const Tracks once = tracked(*recording, *recording->pictures, Tracking::anchored);
-  const Tracks again = tracked(*recording, *recording->pictures, Tracking::anchored);
+  const Tracks once = tracked(*recording, *recording->images, Tracking::anchored);
+  const Tracks again = tracked(*recording, *recording->images, Tracking::anchored);
   for (int i = 0; i < kFrames; ++i) {
     for (int j = 0; j < once.track_count(); ++j) {
       ASSERT_EQ(once.seen(i, j), again.seen(i, j));
@@ -176,14 +176,14 @@ TEST(Anchors, AreTheSameInEveryRun) {
 
 TEST(Anchors, LeaveTheLostLostAndFindTheOthersFromARoughGuess) {
   const auto recording = desk();
-  const cv::Mat gray = recording->pictures->gray(0);
+  const cv::Mat gray = recording->images->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray);
   Eigen::Matrix2Xd before = corners;
   before.col(0).setConstant(std::nan(""));
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
   for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
-  Anchors anchors = make_anchors(soften(gray), corners, recording->camera);
-  const Held held = hold(anchors, soften(gray), before, flow);
+  Anchors anchors = make_anchors(smoothed(gray), corners, recording->camera);
+  const Held held = hold(anchors, smoothed(gray), before, flow);
   EXPECT_FALSE(held.raw_px.col(0).allFinite());
   EXPECT_FALSE(held.ends[0]);
   int found = 0;
@@ -207,13 +207,13 @@ TEST(Anchors, OfATrackThatJumpsToALookAlikeFollowItsNeighbors) {
   for (int k = 0; k < 30; ++k) corners.col(k) << 40 + 48 * (k % 6), 40 + 40 * (k / 6);
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, 30);
   flow.col(14) << 16, 0;
-  Anchors anchors = make_anchors(soften(gray), corners, camera);
-  EXPECT_LT((hold(anchors, soften(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
+  Anchors anchors = make_anchors(smoothed(gray), corners, camera);
+  EXPECT_LT((hold(anchors, smoothed(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
             0.01);
   AnchorOptions alone;
   alone.least_alike = 30;
-  Anchors others = make_anchors(soften(gray), corners, camera, alone);
-  const Held jumped = hold(others, soften(gray), corners, flow, alone);
+  Anchors others = make_anchors(smoothed(gray), corners, camera, alone);
+  const Held jumped = hold(others, smoothed(gray), corners, flow, alone);
   EXPECT_NEAR(jumped.raw_px(0, 14) - corners(0, 14), 16, 0.1);
 }
 
@@ -246,9 +246,9 @@ TEST(Anchors, HoldTracksOnEverySurface) {
 
 TEST(Anchors, SurviveAnyExposureGammaAndVignette) {
   const auto recording = desk();
-  const int before = living(tracked(*recording, *recording->pictures, Tracking::anchored), kLast);
+  const int before = living(tracked(*recording, *recording->images, Tracking::anchored), kLast);
   for (const double gamma : {1.0, 1.4}) {
-    const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+    const FrameCache images = changed(recording, [&](int i, cv::Mat& bgr) {
       if (i < 10) return;
       for (int v = 0; v < bgr.rows; ++v) {
         for (int u = 0; u < bgr.cols; ++u) {
@@ -261,7 +261,7 @@ TEST(Anchors, SurviveAnyExposureGammaAndVignette) {
         }
       }
     });
-    const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+    const Tracks held = tracked(*recording, images, Tracking::anchored);
     EXPECT_GE(living(held, kLast), 0.95 * before) << gamma;
     EXPECT_LT(median_error_px(*recording, held, kLast), 0.06) << gamma;
   }
@@ -270,10 +270,10 @@ TEST(Anchors, SurviveAnyExposureGammaAndVignette) {
 TEST(Anchors, TellWhyALookIsNotFound) {
   const auto recording = desk();
   const cv::Rect hidden(200, 140, 200, 180);
-  const FrameCache pictures = changed(recording, [&](int i, cv::Mat& bgr) {
+  const FrameCache images = changed(recording, [&](int i, cv::Mat& bgr) {
     if (i >= 10) bgr(hidden).setTo(cv::Scalar(40, 60, 90));
   });
-  const Tracks held = tracked(*recording, pictures, Tracking::anchored);
+  const Tracks held = tracked(*recording, images, Tracking::anchored);
   std::map<LossReason, int> ended;
   for (int j = 0; j < held.track_count(); ++j) {
     const std::optional<TrackEnd>& end = held.ends[j];
@@ -281,28 +281,28 @@ TEST(Anchors, TellWhyALookIsNotFound) {
     if (!end) continue;
     EXPECT_TRUE(held.seen(end->frame - 1, j) && !held.seen(end->frame, j));
     ++ended[end->reason];
-    if (end->reason == LossReason::look_far) {
+    if (end->reason == LossReason::far_from_prediction) {
       EXPECT_GT(end->value, end->limit);
     }
-    if (end->reason == LossReason::look_unlike) {
+    if (end->reason == LossReason::low_correlation) {
       EXPECT_LT(end->value, end->limit);
     }
   }
-  EXPECT_GT(ended[LossReason::look_unlike] + ended[LossReason::look_far] +
+  EXPECT_GT(ended[LossReason::low_correlation] + ended[LossReason::far_from_prediction] +
                 ended[LossReason::look_not_found],
             0);
 }
 
 TEST(Anchors, NeedNoNeighbors) {
   const auto recording = desk();
-  const cv::Mat soft = soften(recording->pictures->gray(0));
-  const Eigen::Matrix2Xd corners = detect_corners(recording->pictures->gray(0)).leftCols(3);
-  Anchors anchors = make_anchors(soft, corners, recording->camera);
-  const Held held = hold(anchors, soft, corners, Eigen::Matrix2Xd::Zero(2, 3));
+  const cv::Mat smoothed = smoothed(recording->images->gray(0));
+  const Eigen::Matrix2Xd corners = detect_corners(recording->images->gray(0)).leftCols(3);
+  Anchors anchors = make_anchors(smoothed, corners, recording->camera);
+  const Held held = hold(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
   EXPECT_LT((held.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
   const Eigen::Matrix2Xd none(2, 0);
-  Anchors empty = make_anchors(soft, none, recording->camera);
-  EXPECT_EQ(hold(empty, soft, none, none).raw_px.cols(), 0);
+  Anchors empty = make_anchors(smoothed, none, recording->camera);
+  EXPECT_EQ(hold(empty, smoothed, none, none).raw_px.cols(), 0);
 }
 
 }  // namespace

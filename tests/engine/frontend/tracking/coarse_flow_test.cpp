@@ -23,7 +23,7 @@ cv::Mat moved(const cv::Mat& gray, double dx, double dy, double gain) {
 }
 
 TEST(CoarseFlow, FollowsFarAndWhateverTheExposure) {
-  const cv::Mat gray = open_recording(GPO_SOURCE_DIR "/sequences/desk")->pictures->gray(0);
+  const cv::Mat gray = open_recording(GPO_SOURCE_DIR "/sequences/desk")->images->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray);
   for (const Eigen::Vector2d& by :
        {Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(43.5, -28.25), Eigen::Vector2d(-62, 39.5)}) {

@@ -59,7 +59,7 @@ double worst_px(const Warp& warp, const Matrix3d& H, const Vector2d& middle) {
   return worst;
 }
 
-bool in_picture(const Vector2d& raw_px) {
+bool in_image(const Vector2d& raw_px) {
   return raw_px.minCoeff() > kHalf && raw_px.x() < kCamera.width - kHalf &&
          raw_px.y() < kCamera.height - kHalf;
 }
@@ -81,7 +81,7 @@ TEST(LocalShape, OfAPlaneIsThatOfItsHomographyAndTheLens) {
   for (int j = 0; j < places.cols(); ++j) {
     const Vector2d middle = places.col(j);
     const Warp affine = affine_warp(H, middle);
-    if (!now.col(j).allFinite() || !in_picture(affine.center)) continue;
+    if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
     const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
     EXPECT_EQ(shape.center, affine.center);
     EXPECT_LT(worst_px(shape, H, middle), 0.02) << middle.transpose();
@@ -107,7 +107,7 @@ TEST(LocalShape, TakesOnlyNeighborsOnTheLooksOwnSurface) {
       const Matrix3d& own = H[j % 3 == 0 ? 1 : 0];
       const Vector2d middle = places.col(j);
       const Warp affine = affine_warp(own, middle);
-      if (!now.col(j).allFinite() || !in_picture(affine.center)) continue;
+      if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
       const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
       EXPECT_LT(worst_px(shape, own, middle), 0.05 + 0.5 * worst_px(affine, own, middle))
           << frame << ": " << j;

@@ -20,7 +20,7 @@ const Camera kSmallCamera{kWidth, kHeight, 300, 300, 160, 120, Distortion::none,
 
 /// A picture in closed form, so that a shift is exact: smooth blobs on a jittered grid.
 cv::Mat blobs(double shift_x, double shift_y) {
-  cv::Mat picture(kHeight, kWidth, CV_64F, cv::Scalar(90));
+  cv::Mat image(kHeight, kWidth, CV_64F, cv::Scalar(90));
   for (int row = -1; row <= 12; ++row) {
     for (int column = -1; column <= 16; ++column) {
       const double x = 20 * column + 5 * std::sin(7.0 * row + 3 * column) + shift_x;
@@ -29,19 +29,19 @@ cv::Mat blobs(double shift_x, double shift_y) {
       for (int v = std::max(0, int(y) - 10); v < std::min(kHeight, int(y) + 11); ++v) {
         for (int u = std::max(0, int(x) - 10); u < std::min(kWidth, int(x) + 11); ++u) {
           const double r2 = (u - x) * (u - x) + (v - y) * (v - y);
-          picture.at<double>(v, u) += height * std::exp(-r2 / (2 * 2.5 * 2.5));
+          image.at<double>(v, u) += height * std::exp(-r2 / (2 * 2.5 * 2.5));
         }
       }
     }
   }
   cv::Mat gray;
-  picture.convertTo(gray, CV_8U);
+  image.convertTo(gray, CV_8U);
   return gray;
 }
 
-const GrayPictures moving_picture = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
+const GrayImages moving_image = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
 
-TEST(Detector, SpreadsCornersOverThePictureAndKeepsThemApart) {
+TEST(Detector, SpreadsCornersOverTheImageAndKeepsThemApart) {
   const cv::Mat gray = blobs(0, 0);
   const DetectorOptions options;
   const Eigen::Matrix2Xd corners = detect_corners(gray, options);
@@ -55,12 +55,12 @@ TEST(Detector, SpreadsCornersOverThePictureAndKeepsThemApart) {
   }
 }
 
-TEST(Detector, FindsNothingInAnEmptyPicture) {
+TEST(Detector, FindsNothingInAnEmptyImage) {
   EXPECT_EQ(detect_corners(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(128))).cols(), 0);
 }
 
 TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
-  const auto tracks = track_window(moving_picture, kSmallCamera, 0, 10);
+  const auto tracks = track_window(moving_image, kSmallCamera, 0, 10);
   ASSERT_TRUE(tracks);
   EXPECT_EQ(tracks->frame_count(), 10);
   double squares = 0;
@@ -75,8 +75,8 @@ TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
   EXPECT_LT(std::sqrt(squares / alive), 0.1);
 }
 
-TEST(Tracker, DropsWhatLeavesThePictureForGood) {
-  const auto tracks = track_window(moving_picture, kSmallCamera, 0, 30);
+TEST(Tracker, DropsWhatLeavesTheImageForGood) {
+  const auto tracks = track_window(moving_image, kSmallCamera, 0, 30);
   for (int j = 0; j < tracks->track_count(); ++j) {
     bool lost = false;
     for (int i = 0; i < 30; ++i) {
@@ -92,7 +92,7 @@ TEST(Tracker, DropsWhatLeavesThePictureForGood) {
 }
 
 TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
-  const auto tracks = track_window(moving_picture, kSmallCamera, 0, 30);
+  const auto tracks = track_window(moving_image, kSmallCamera, 0, 30);
   ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
   std::map<LossReason, int> ended;
   for (int j = 0; j < tracks->track_count(); ++j) {
@@ -110,11 +110,11 @@ TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
       EXPECT_TRUE(std::isnan(end->value));
     }
   }
-  EXPECT_GT(ended[LossReason::left_picture], 10);  // it moves by 38 px to the right
+  EXPECT_GT(ended[LossReason::left_image], 10);  // it moves by 38 px to the right
 }
 
 TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
-  const auto tracks = track_window(moving_picture, kSmallCamera, 0, 10);
+  const auto tracks = track_window(moving_image, kSmallCamera, 0, 10);
   ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
   EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
   for (int i = 1; i < 10; ++i) {
@@ -129,12 +129,12 @@ TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
 TEST(Tracker, StopsWhenAsked) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(moving_picture, kSmallCamera, 0, 3, {}, source.get_token()));
+  EXPECT_FALSE(track_window(moving_image, kSmallCamera, 0, 3, {}, source.get_token()));
 }
 
 TEST(Tracker, TellsItsProgress) {
   std::vector<int> told;
-  track_window(moving_picture, kSmallCamera, 0, 3, {}, {}, [&](int done, int of) {
+  track_window(moving_image, kSmallCamera, 0, 3, {}, {}, [&](int done, int of) {
     EXPECT_EQ(of, 3);
     told.push_back(done);
   });
@@ -158,7 +158,7 @@ TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
 }
 
 TEST(MakeWindow, UndistortsAndMarksInliers) {
-  const auto tracks = track_window(moving_picture, kSmallCamera, 0, 6);
+  const auto tracks = track_window(moving_image, kSmallCamera, 0, 6);
   const Camera camera{
       kWidth, kHeight, 300, 300, 160, 120, Distortion::radial_tangential, {0.1, 0, 0, 0}};
   const std::vector<std::int64_t> times{0, 1, 2, 3, 4, 5};

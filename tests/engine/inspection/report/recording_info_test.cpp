@@ -44,7 +44,7 @@ Recording tracks_recording() {
 TEST(RecordingInfo, CountsAndFindsGaps) {
   const auto info = describe(tracks_recording());
   EXPECT_EQ(info.layout, "tracks");
-  EXPECT_FALSE(info.pictures);
+  EXPECT_FALSE(info.images);
   EXPECT_EQ(info.frames, 6);
   EXPECT_DOUBLE_EQ(info.rate_hz, 10);
   EXPECT_DOUBLE_EQ(info.duration_s, 0.6);
@@ -100,13 +100,13 @@ TEST(RecordingInfo, LooksForTheBoardInASampleOfALongRecording) {
   const auto with_board = test::render_board(
       *recording.board, recording.camera, test::looking_at(*recording.board, 0.35, 10, 5));
   const auto decode = [with_board](int index) {
-    cv::Mat picture(120, 160, CV_8UC3, cv::Scalar::all(99));
-    if (index >= 200) cv::cvtColor(with_board, picture, cv::COLOR_GRAY2BGR);
-    return picture;
+    cv::Mat image(120, 160, CV_8UC3, cv::Scalar::all(99));
+    if (index >= 200) cv::cvtColor(with_board, image, cv::COLOR_GRAY2BGR);
+    return image;
   };
   recording.timestamps_ns.clear();
   for (int i = 0; i < 400; ++i) recording.timestamps_ns.push_back(i * 10'000'000LL);
-  recording.pictures = std::make_shared<const FrameCache>(400, decode);
+  recording.images = std::make_shared<const FrameCache>(400, decode);
   const auto info = describe(recording);
   ASSERT_TRUE(info.truth);
   EXPECT_EQ(info.truth->examined, 60);

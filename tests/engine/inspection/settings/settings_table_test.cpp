@@ -186,7 +186,7 @@ TEST(RotationSources, WhatTheRecordingLacksIsExplained) {
   EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("no ground truth"));
 }
 
-TEST(RotationSources, ABoardWithoutPicturesIsNoTruth) {
+TEST(RotationSources, ABoardWithoutImagesIsNoTruth) {
   Recording recording;
   recording.board = Board{};
   EXPECT_NE(why_no_rotations(recording, RotationSource::truth), "");

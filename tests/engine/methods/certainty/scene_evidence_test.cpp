@@ -47,8 +47,8 @@ TEST(SceneEvidence, TellsSharesAndStability) {
   ASSERT_EQ(evidence.size(), 2U);
   for (const PlaneEvidence& plane : evidence) {
     EXPECT_GT(plane.track_share, 0.25);
-    EXPECT_GT(plane.picture_share, 0.3);  // tracks are all over the picture
-    EXPECT_LE(plane.picture_share, 1);
+    EXPECT_GT(plane.image_share, 0.3);  // tracks are all over the picture
+    EXPECT_LE(plane.image_share, 1);
     EXPECT_GT(plane.stability, 0.9);
   }
 }

@@ -234,7 +234,7 @@ TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
 
 /// Moves what every frame sees by a smooth field over the picture, of up to about `most_px`, as a
 /// lens does that is not quite its model; what the reference frame sees is moved too.
-void bend_pictures(Window& window, double most_px, std::uint64_t seed) {
+void bend_images(Window& window, double most_px, std::uint64_t seed) {
   std::mt19937_64 random(seed + 1234);
   std::normal_distribution<double> gauss;
   const Eigen::Matrix<double, 2, 6> field =
@@ -263,7 +263,7 @@ Honesty honesty_of_windows(double bent_by_px) {
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
     Simulation truth = simulate({.motion = motion, .noise_px = 0.1, .seed = seed});
-    bend_pictures(truth.window, bent_by_px, seed);
+    bend_images(truth.window, bent_by_px, seed);
     truth = with_fitted_homographies(truth);
     truth.window.rotations = RotationModel::free;
     const Initialization result = method.initialize(truth.window, {}, {});

@@ -53,7 +53,7 @@ double brute_force_rms_px(const Window& window, const Eigen::Vector3d& normal) {
   return root_mean_square(reprojection_errors_px(window, {normal, 1}, cameras));
 }
 
-TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndPictureAxes) {
+TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndImageAxes) {
   EXPECT_EQ(disc_from_normal({0, 0, -1}), Eigen::Vector2d(0, 0));
   EXPECT_LT((disc_from_normal({1, 0, 0}) - Eigen::Vector2d(1, 0)).norm(), 1e-12);
   EXPECT_LT(

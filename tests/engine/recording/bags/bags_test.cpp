@@ -27,8 +27,8 @@ struct Container {
 class Bags : public testing::TestWithParam<Container> {
  protected:
   std::string name() const { return std::string("small") + GetParam().ending; }
-  fs::path write(int pictures = 20) const {
-    return test::write_small_bag(folder_.path() / name(), GetParam().open, pictures);
+  fs::path write(int images = 20) const {
+    return test::write_small_bag(folder_.path() / name(), GetParam().open, images);
   }
   /// The same bag, changed.
   Bag changed(const std::function<std::string(std::string)>& change) const {
@@ -61,16 +61,16 @@ TEST_P(Bags, AreReadAsTheyWereWritten) {
                           "/tf_static tf2_msgs/TFMessage",
                           "/truth geometry_msgs/TransformStamped"));
   EXPECT_EQ(count_of(bag, "/cam0/image_raw"), 20);
-  int picture = 0;
+  int k = 0;
   for (const BagMessage& message : bag.messages) {
     if (bag.topics[message.topic].name != "/cam0/image_raw") continue;
-    EXPECT_EQ(message.recorded_ns, test::kStart_ns + picture * test::kPeriod_ns + 3'000'000);
+    EXPECT_EQ(message.recorded_ns, test::kStart_ns + k * test::kPeriod_ns + 3'000'000);
     const std::string bytes = bag.read(message, kWholeMessage);
     const auto image = read_image(bytes, bag.topics[message.topic].encoding);
     ASSERT_TRUE(image);
-    EXPECT_EQ(image->data, test::pixels_of(picture, 64, 48));
+    EXPECT_EQ(image->data, test::pixels_of(k, 64, 48));
     EXPECT_EQ(bag.read(message, 10), bytes.substr(0, 10));
-    ++picture;
+    ++k;
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/recording/bags/bag_picture.h"
+#include "engine/recording/bags/bag_image.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 
@@ -129,14 +129,14 @@ cv::Vec<double, 3> middle_pixel(const std::string& encoding,
   const auto step = static_cast<std::uint32_t>(kSide * channels * depth);
   const std::string bytes =
       image_bytes({{1, "c"}, kSide, kSide, encoding, false, step, pixels}, MessageEncoding::ros1);
-  const cv::Mat picture =
-      bag_picture(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "c");
-  if (picture.depth() == CV_16U) return picture.at<cv::Vec<std::uint16_t, 3>>(4, 4);
-  return picture.at<cv::Vec3b>(4, 4);
+  const cv::Mat image =
+      bag_image(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "c");
+  if (image.depth() == CV_16U) return image.at<cv::Vec<std::uint16_t, 3>>(4, 4);
+  return image.at<cv::Vec3b>(4, 4);
 }
 
 /// `pattern`: the bytes of two rows, each repeated.
-TEST(BagPicture, KnowsRosEncodings) {
+TEST(BagImage, KnowsRosEncodings) {
   const cv::Vec<double, 3> red(10, 20, 200);  // blue, green, red
   const std::string r = "\xC8", g = "\x14", b = "\x0A";
   EXPECT_EQ(middle_pixel("bgr8", b + g + r + b + g + r, 3, 1), red);
@@ -151,11 +151,11 @@ TEST(BagPicture, KnowsRosEncodings) {
   EXPECT_EQ(middle_pixel("mono16", gray16 + gray16, 1, 2), cv::Vec3d(276, 276, 276));
 }
 
-TEST(BagPicture, RefusesWhatIsNone) {
+TEST(BagImage, RefusesWhatIsNone) {
   const auto error = [](ImageMessage image) {
     const std::string bytes = image_bytes(image, MessageEncoding::ros1);
     return test::error_of([&] {
-      bag_picture(
+      bag_image(
           bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "bag: /c: picture 3");
     });
   };

@@ -17,9 +17,9 @@ inline constexpr std::int64_t kStart_ns = 1'403'715'286'762'142'976;
 inline constexpr std::int64_t kPeriod_ns = 50'000'000;
 
 /// Pixels that differ from picture to picture, and that nothing compresses.
-inline std::string pixels_of(int picture, int width, int height, int channels = 1) {
+inline std::string pixels_of(int image, int width, int height, int channels = 1) {
   std::string pixels;
-  auto noise = static_cast<std::uint32_t>(picture);
+  auto noise = static_cast<std::uint32_t>(image);
   for (int i = 0; i < width * height * channels; ++i) {
     noise = noise * 1'664'525 + 1'013'904'223;
     pixels += static_cast<char>(noise >> 24);
@@ -27,8 +27,8 @@ inline std::string pixels_of(int picture, int width, int height, int channels = 
   return pixels;
 }
 
-inline ImageMessage image_of(int picture, const std::string& pixels, int width, int height) {
-  return {{kStart_ns + picture * kPeriod_ns, "cam0"},
+inline ImageMessage image_of(int image, const std::string& pixels, int width, int height) {
+  return {{kStart_ns + image * kPeriod_ns, "cam0"},
           static_cast<std::uint32_t>(height),
           static_cast<std::uint32_t>(width),
           "mono8",
@@ -63,7 +63,7 @@ using OpenWriter =
 /// as it would be recorded, 3 ms after each message's own time.
 inline std::filesystem::path write_small_bag(const std::filesystem::path& file,
                                              const OpenWriter& open,
-                                             int pictures = 20) {
+                                             int images = 20) {
   const BagWriter writer = open(file,
                                 {{"/cam0/image_raw", "sensor_msgs/Image"},
                                  {"/cam0/camera_info", "sensor_msgs/CameraInfo"},
@@ -81,7 +81,7 @@ inline std::filesystem::path write_small_bag(const std::filesystem::path& file,
         transforms_bytes({{{kStart_ns, "imu0"}, "cam0", {0.1, 0.2, 0.3}, turned},
                           {{kStart_ns, "marker"}, "imu0", {1, 0, 0}, {0, 0, 0, 1}}},
                          encoding));
-  for (int i = 0; i < pictures; ++i) {
+  for (int i = 0; i < images; ++i) {
     const std::int64_t time = kStart_ns + i * kPeriod_ns;
     write(0, time, image_bytes(image_of(i, pixels_of(i, 64, 48), 64, 48), encoding));
     write(2, time, imu_bytes({{time, "imu0"}, {0.1 * i, 0.2, 0.3}, {0, 0, 9.81}}, encoding));

@@ -31,7 +31,7 @@ Pose looking_at_tags(const Board& board, double distance, double tilt_deg, doubl
   return {R, middle - distance * R.col(2)};
 }
 
-cv::Mat tag_picture(const Board& board, const Pose& pose, bool squares = true) {
+cv::Mat tag_image(const Board& board, const Pose& pose, bool squares = true) {
   cv::Mat gray = test::render_plane(
       tag_camera(), pose, [&](double x, double y) { return test::tag_gray(board, x, y, squares); });
   cv::GaussianBlur(gray, gray, {}, 0.7);
@@ -65,7 +65,7 @@ TEST(AprilGrid, CornersAreThoseOfKalibrsBoardFromAllSides) {
   for (const int roll : {0, 45, 100, 190, 280}) {
     const Pose truth = looking_at_tags(kGrid, 0.55, 25, roll);
     const auto [seen, rms_px, largest_px] =
-        tag_errors(find_board(tag_picture(kGrid, truth), kGrid), kGrid, truth);
+        tag_errors(find_board(tag_image(kGrid, truth), kGrid), kGrid, truth);
     EXPECT_EQ(seen, 48) << roll;
     EXPECT_LT(rms_px, 0.1) << roll;
     EXPECT_LT(largest_px, 0.25) << roll;
@@ -75,7 +75,7 @@ TEST(AprilGrid, CornersAreThoseOfKalibrsBoardFromAllSides) {
 
 TEST(AprilGrid, PartOfTheBoardGivesAPose) {
   const Pose truth = looking_at_tags(kGrid, 0.55, 20, 10);
-  cv::Mat covered = tag_picture(kGrid, truth);
+  cv::Mat covered = tag_image(kGrid, truth);
   cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
   const auto corners = find_board(covered, kGrid);
   const auto [seen, rms_px, largest_px] = tag_errors(corners, kGrid, truth);
@@ -92,22 +92,22 @@ TEST(AprilGrid, NarrowBordersWithoutSquaresAreFoundToo) {
   board.tags->border = 1;
   const Pose truth = looking_at_tags(board, 0.55, 25, 15);
   const auto [seen, rms_px, largest_px] =
-      tag_errors(find_board(tag_picture(board, truth, false), board), board, truth);
+      tag_errors(find_board(tag_image(board, truth, false), board), board, truth);
   EXPECT_EQ(seen, 48);
   EXPECT_LT(rms_px, 0.3);
-  EXPECT_TRUE(find_board(tag_picture(board, truth, false), kGrid).empty()) << "borders of two bits";
+  EXPECT_TRUE(find_board(tag_image(board, truth, false), kGrid).empty()) << "borders of two bits";
 }
 
-TEST(AprilGrid, IsNotFoundInOtherPictures) {
+TEST(AprilGrid, IsNotFoundInOtherImages) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kGrid).empty());
   const Pose truth = looking_at_tags(kTag, 0.5, 10, 0);
-  EXPECT_TRUE(find_board(tag_picture(kTag, truth), kGrid).empty());
+  EXPECT_TRUE(find_board(tag_image(kTag, truth), kGrid).empty());
 }
 
 TEST(AprilTag, OneTagGivesAPoseAndItsNumberCounts) {
   for (const int roll : {0, 90, 200}) {
     const Pose truth = looking_at_tags(kTag, 0.5, 30, roll);
-    const cv::Mat gray = tag_picture(kTag, truth);
+    const cv::Mat gray = tag_image(kTag, truth);
     const auto corners = find_board(gray, kTag);
     ASSERT_EQ(corners.size(), 4U);
     EXPECT_LT(tag_errors(corners, kTag, truth).largest_px, 0.3) << roll;

@@ -31,19 +31,19 @@ class BoardCache : public testing::Test {
     recording.camera = {160, 120, 150, 151, 79.5, 60, Distortion::none, {}};
     recording.board = kTwin;
     recording.cache_folder = folder_.path() / "cache";
-    recording.picture_files = {folder_.path() / "1.png", folder_.path() / "2.png"};
+    recording.image_files = {folder_.path() / "1.png", folder_.path() / "2.png"};
     for (int i = 0; i < frames; ++i) recording.timestamps_ns.push_back(i);
-    static const cv::Mat kPicture = [camera = recording.camera] {
+    static const cv::Mat kImage = [camera = recording.camera] {
       const Pose pose = test::looking_at(kTwin, 0.42, 15, 8);
-      cv::Mat picture = test::render_board(kTwin, camera, pose);
-      cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
-      return picture;
+      cv::Mat image = test::render_board(kTwin, camera, pose);
+      cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+      return image;
     }();
     const auto decode = [this](int) {
       ++decoded_;
-      return kPicture;
+      return kImage;
     };
-    recording.pictures = std::make_shared<const FrameCache>(frames, decode);
+    recording.images = std::make_shared<const FrameCache>(frames, decode);
     return recording;
   }
 
@@ -76,7 +76,7 @@ TEST_F(BoardCache, GivesWhatLookingGave) {
   }
 }
 
-TEST_F(BoardCache, IsOfThesePicturesThisCameraAndThisBoard) {
+TEST_F(BoardCache, IsOfTheseImagesThisCameraAndThisBoard) {
   const Recording one = recording();
   const auto file = board_cache_file(one);
   EXPECT_EQ(board_cache_file(one), file);
@@ -91,7 +91,7 @@ TEST_F(BoardCache, IsOfThesePicturesThisCameraAndThisBoard) {
   EXPECT_NE(board_cache_file(other), file);
   folder_.write("2.png", "another picture");
   EXPECT_NE(board_cache_file(one), file);
-  other.picture_files.clear();
+  other.image_files.clear();
   EXPECT_FALSE(board_cache_file(other));
   fs::remove(folder_.path() / "2.png");
   EXPECT_FALSE(board_cache_file(one));

@@ -62,7 +62,7 @@ TEST(BoardCorners, OfATwinBeginWhereRowsRunToTheRight) {
   }
 }
 
-TEST(BoardCorners, AreNotFoundInOtherPictures) {
+TEST(BoardCorners, AreNotFoundInOtherImages) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kChessboard).empty());
   cv::Mat noise(240, 320, CV_8UC1);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);

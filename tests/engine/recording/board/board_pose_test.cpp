@@ -24,7 +24,7 @@ Camera fisheye() {
   return {640, 480, 190, 191, 320, 240, Distortion::equidistant, {0.003, 0.0007, -0.002, 0.0002}};
 }
 
-TEST(BoardPose, IsThatOfThePictureThroughALens) {
+TEST(BoardPose, IsThatOfTheImageThroughALens) {
   for (const double tilt : {-35.0, 10.0, 40.0}) {
     const Pose truth = looking_at(kChessboard, 0.35, tilt, 20);
     const auto corners =

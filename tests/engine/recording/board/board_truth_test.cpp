@@ -31,15 +31,15 @@ Recording rolling_recording(const Board& board, int frames) {
   recording.camera = small_pinhole();
   recording.board = board;
   const auto decode = [board](int index) {
-    cv::Mat picture(240, 320, CV_8UC1, cv::Scalar(90));
+    cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
     if (index != 2) {
-      picture =
+      image =
           test::render_board(board, small_pinhole(), looking_at(board, 0.4, 15, 20.0 * index));
     }
-    cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
-    return picture;
+    cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+    return image;
   };
-  recording.pictures = std::make_shared<const FrameCache>(frames, decode);
+  recording.images = std::make_shared<const FrameCache>(frames, decode);
   for (int i = 0; i < frames; ++i) recording.timestamps_ns.push_back(i);
   return recording;
 }
@@ -95,7 +95,7 @@ TEST(BoardTruth, StopsAfterTheFramesAtWork) {
 
 TEST(BoardTruth, PassesOnWhatDecodingThrows) {
   Recording recording = rolling_recording(kTwin, 6);
-  recording.pictures = std::make_shared<const FrameCache>(6, [](int index) -> cv::Mat {
+  recording.images = std::make_shared<const FrameCache>(6, [](int index) -> cv::Mat {
     if (index == 3) throw InputError("video.mp4: frame 3: found nothing to decode");
     return cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(90));
   });
@@ -105,19 +105,19 @@ TEST(BoardTruth, PassesOnWhatDecodingThrows) {
 
 TEST(BoardTruth, LeavesOutFramesThatFitMuchWorseThanTheOthers) {
   Recording recording = rolling_recording(kTwin, 8);
-  recording.pictures = std::make_shared<const FrameCache>(8, [](int index) {
+  recording.images = std::make_shared<const FrameCache>(8, [](int index) {
     const Pose pose = looking_at(kTwin, 0.4, 15, 0);
     // In frame 5 the lower rows of the picture are 4 px to the right, as a shutter may leave them.
-    cv::Mat picture = test::render_board(kTwin, small_pinhole(), pose);
+    cv::Mat image = test::render_board(kTwin, small_pinhole(), pose);
     if (index == 5) {
-      const cv::Mat below = picture.rowRange(120, 240);
+      const cv::Mat below = image.rowRange(120, 240);
       const cv::Matx23d shift(1, 0, 4, 0, 1, 0);
       cv::Mat shifted;
       cv::warpAffine(below, shifted, shift, below.size(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
       shifted.copyTo(below);
     }
-    cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
-    return picture;
+    cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+    return image;
   });
   const auto truth = board_truth(recording, 0, 8);
   EXPECT_FALSE(truth.poses[5]);

@@ -40,7 +40,7 @@ Compared compare(const std::vector<Eigen::Vector2d>& corners, const Pose& pose) 
   return result;
 }
 
-cv::Mat picture(const Pose& pose, const cv::Mat& print) {
+cv::Mat image(const Pose& pose, const cv::Mat& print) {
   return render_print(print, kCharuco, camera(), pose);
 }
 
@@ -48,7 +48,7 @@ TEST(Charuco, CornersAreThoseOfOpenCvsBoardFromAllSides) {
   const cv::Mat print = opencv_charuco(kCharuco, cv::aruco::DICT_5X5_100);
   for (const int roll : {0, 100, 190, 280}) {
     const Pose truth = looking_at(kCharuco, 0.45, 25, roll);
-    const auto [seen, largest_px] = compare(find_board(picture(truth, print), kCharuco), truth);
+    const auto [seen, largest_px] = compare(find_board(image(truth, print), kCharuco), truth);
     EXPECT_GE(seen, 30) << roll;
     EXPECT_LT(largest_px, 0.25) << roll;
   }
@@ -56,7 +56,7 @@ TEST(Charuco, CornersAreThoseOfOpenCvsBoardFromAllSides) {
 
 TEST(Charuco, PartOfTheBoardGivesAPose) {
   const Pose truth = looking_at(kCharuco, 0.45, 20, 10);
-  cv::Mat covered = picture(truth, opencv_charuco(kCharuco, cv::aruco::DICT_5X5_100));
+  cv::Mat covered = image(truth, opencv_charuco(kCharuco, cv::aruco::DICT_5X5_100));
   cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
   const auto corners = find_board(covered, kCharuco);
   const auto [seen, largest_px] = compare(corners, truth);
@@ -90,12 +90,12 @@ cv::Mat older_print() {
 TEST(Charuco, OlderBoardsWithAnEvenNumberOfRowsAreFoundToo) {
   const Pose truth = looking_at(kCharuco, 0.45, 25, 5);
   const auto [seen, largest_px] =
-      compare(find_board(picture(truth, older_print()), kCharuco), truth);
+      compare(find_board(image(truth, older_print()), kCharuco), truth);
   EXPECT_GE(seen, 30);
   EXPECT_LT(largest_px, 0.25);
 }
 
-TEST(Charuco, IsNotFoundInOtherPictures) {
+TEST(Charuco, IsNotFoundInOtherImages) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kCharuco).empty());
   const Board plain{9, 6, 0.025};
   EXPECT_TRUE(

@@ -38,7 +38,7 @@ template <class Gray>
 cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   constexpr int kSamples = 4;
   const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
-  cv::Mat picture(camera.height, camera.width, CV_8UC1);
+  cv::Mat image(camera.height, camera.width, CV_8UC1);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       double sum = 0;
@@ -53,11 +53,11 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
         const auto point = intersect(plane, pose, ray);
         sum += point ? gray(point->x(), point->y()) : 110;
       }
-      picture.at<std::uint8_t>(v, u) =
+      image.at<std::uint8_t>(v, u) =
           static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
     }
   }
-  return picture;
+  return image;
 }
 
 /// A picture of a chessboard (its frame as in board_points).

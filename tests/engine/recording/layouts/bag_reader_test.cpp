@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A bag of pictures on some topics, of which each has its own pixels.
-fs::path pictures_on(const TestFolder& folder, const std::vector<std::string>& names) {
+fs::path images_on(const TestFolder& folder, const std::vector<std::string>& names) {
   std::vector<WrittenTopic> topics;
   for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
   const fs::path file = folder.path() / "pictures.mcap";
@@ -49,7 +49,7 @@ TEST(BagReader, ReadsAllThatARecordingHas) {
   EXPECT_EQ(recording->timestamps_ns[7], kStart_ns + 7 * kPeriod_ns);
   EXPECT_EQ(recording->camera, test::small_camera());
   const std::string pixels = test::pixels_of(7, 64, 48);
-  EXPECT_EQ(recording->pictures->bgr(7).at<cv::Vec3b>(0, 1)[0], static_cast<uchar>(pixels[1]));
+  EXPECT_EQ(recording->images->bgr(7).at<cv::Vec3b>(0, 1)[0], static_cast<uchar>(pixels[1]));
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_EQ(recording->gyroscope->rates_rad_s[7], Eigen::Vector3d(0.1 * 7, 0.2, 0.3));
   // The camera is turned by 2 atan(0.6 / 0.8) about z.
@@ -65,15 +65,15 @@ TEST(BagReader, ReadsAllThatARecordingHas) {
 TEST(BagReader, OfSeveralCamerasTheChosenOneIsRead) {
   const TestFolder folder;
   folder.write("camera.yaml", test::kCameraYaml);
-  const fs::path file = pictures_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
+  const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
   const auto first = open_recording(file);
-  EXPECT_EQ(int(first->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
+  EXPECT_EQ(int(first->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
   EXPECT_THAT(first->notes,
               Contains("3 topics with pictures: /cam0/image is read; --topic image=/cam1/depth "
                        "reads another"));
   const auto second =
       open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam1/image"}}});
-  EXPECT_EQ(int(second->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
+  EXPECT_EQ(int(second->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
   EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with pictures"))));
   EXPECT_THAT(error_of([&] {
                 open_recording(file, {.tracks = {}, .topics = {{TopicRole::imu, "/cam1/image"}}});
@@ -98,23 +98,23 @@ TEST(BagReader, TopicChoicesHaveARoleAndAName) {
   EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
 }
 
-TEST(BagReader, PicturesAreInTheOrderOfTheirOwnTimes) {
+TEST(BagReader, ImagesAreInTheOrderOfTheirOwnTimes) {
   const TestFolder folder;
   folder.write("camera.yaml", test::kCameraYaml);
-  const auto recording = open_recording(pictures_on(folder, {"/image"}));
+  const auto recording = open_recording(images_on(folder, {"/image"}));
   EXPECT_THAT(recording->timestamps_ns,
               ElementsAre(kStart_ns, kStart_ns + kPeriod_ns, kStart_ns + 2 * kPeriod_ns));
-  EXPECT_EQ(int(recording->pictures->bgr(0).at<cv::Vec3b>(0, 0)[0]), 2);
-  EXPECT_EQ(int(recording->pictures->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
+  EXPECT_EQ(int(recording->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 2);
+  EXPECT_EQ(int(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
 }
 
 TEST(BagReader, WithoutCalibrationTheCameraIsAGuess) {
   const TestFolder folder;
-  const fs::path file = pictures_on(folder, {"/image"});
+  const fs::path file = images_on(folder, {"/image"});
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
   EXPECT_GT(recording->camera.fx, 0);
-  EXPECT_EQ(open_bag_pictures(file, 1 << 20, {})->count(), 3);
+  EXPECT_EQ(open_bag_images(file, 1 << 20, {})->count(), 3);
 }
 
 TEST(BagReader, ACameraYamlBesideItIsPreferred) {
@@ -166,7 +166,7 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
   EXPECT_EQ(written->timestamps_ns, changed.timestamps_ns);
   EXPECT_EQ(written->camera, changed.camera);
   EXPECT_EQ(written->plane->distance, 0.5);
-  EXPECT_EQ(cv::norm(written->pictures->bgr(5), changed.pictures->bgr(5), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(written->images->bgr(5), changed.images->bgr(5), cv::NORM_INF), 0);
   const Gyroscope& gyroscope = *written->gyroscope;
   EXPECT_EQ(gyroscope.rates_rad_s, changed.gyroscope->rates_rad_s);
   EXPECT_EQ(gyroscope.accelerations_m_s2, changed.gyroscope->accelerations_m_s2);

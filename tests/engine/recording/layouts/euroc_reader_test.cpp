@@ -64,7 +64,7 @@ TEST_F(EurocReader, FindsItWithAndWithoutMav0) {
     EXPECT_EQ(recording->layout, "EuRoC");
     EXPECT_EQ(recording->frame_count(), 4);
     EXPECT_EQ(recording->timestamps_ns[1], 1403636579100000001);
-    EXPECT_EQ(recording->pictures->bgr(2).at<cv::Vec3b>(0, 0)[0], 2);
+    EXPECT_EQ(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0], 2);
     EXPECT_EQ(recording->path, path);
   }
   EXPECT_EQ(open_recording(folder.path() / "")->name, folder.path().filename());
@@ -189,7 +189,7 @@ TEST_F(EurocReader, NamesBadBoardsAndPlanes) {
   EXPECT_THAT(plane("normal: [0, 1]\ndistance: 1\n"), HasSubstr("found 2 numbers, expected 3"));
 }
 
-TEST_F(EurocReader, NamesAMissingPictureAndItsLine) {
+TEST_F(EurocReader, NamesAMissingImageAndItsLine) {
   std::filesystem::remove(folder.path() / "mav0/cam0/data/2.png");
   EXPECT_EQ(error(),
             file("mav0/cam0/data.csv") +
@@ -209,7 +209,7 @@ TEST_F(EurocReader, NamesMissingFiles) {
   EXPECT_EQ(error_of([] { open_recording("nowhere"); }), "nowhere: no such file or folder");
 }
 
-TEST_F(EurocReader, NamesBackwardTimesOfPicturesAndSamples) {
+TEST_F(EurocReader, NamesBackwardTimesOfImagesAndSamples) {
   folder.write("mav0/imu0/data.csv", "20,0,0,0\n30,0,0,0\n25,0,0,0\n");
   EXPECT_THAT(error(), HasSubstr("imu0/data.csv:3: found time stamp 25, earlier than"));
   folder.write("mav0/cam0/data.csv", "20,0.png\n20,1.png\n");
@@ -225,7 +225,7 @@ TEST_F(EurocReader, NamesBadTruth) {
   EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
 }
 
-TEST_F(EurocReader, NamesAPictureOfAnotherSize) {
+TEST_F(EurocReader, NamesAImageOfAnotherSize) {
   folder.write("mav0/cam0/data/0.png", cv::Mat(40, 64, CV_8UC1, cv::Scalar(0)));
   EXPECT_EQ(error(),
             file("mav0/cam0/data/0.png") +
@@ -268,24 +268,24 @@ TEST_F(EurocReader, ReadsTheGyroscopesNoise) {
 
 /// Textured, so that every part of the file carries picture.
 cv::Mat noise() {
-  cv::Mat picture(48, 64, CV_8UC3);
-  cv::RNG(7).fill(picture, cv::RNG::UNIFORM, 0, 256);
-  return picture;
+  cv::Mat image(48, 64, CV_8UC3);
+  cv::RNG(7).fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
 }
 
-class CutPictures : public EurocReader, public testing::WithParamInterface<const char*> {};
+class CutImages : public EurocReader, public testing::WithParamInterface<const char*> {};
 
-TEST_P(CutPictures, AreErrorsAndNeverHalfPictures) {
+TEST_P(CutImages, AreErrorsAndNeverHalfImages) {
   const std::string name = std::string("mav0/cam0/data/p") + GetParam();
   folder.write("mav0/cam0/data.csv", "10,0.png\n20,p" + std::string(GetParam()) + "\n");
   folder.write(name, noise());
-  EXPECT_EQ(open()->pictures->bgr(1).size(), cv::Size(64, 48));
+  EXPECT_EQ(open()->images->bgr(1).size(), cv::Size(64, 48));
   for (const double part : {0.0, 0.1, 0.5, 0.9, 0.995}) {
     folder.write(name, noise());
     folder.cut(name, part);
     const auto recording = open();
     testing::internal::CaptureStderr();
-    EXPECT_THAT(error_of([&] { recording->pictures->bgr(1); }),
+    EXPECT_THAT(error_of([&] { recording->images->bgr(1); }),
                 testing::StartsWith(file(name.c_str()) + ": found"))
         << part;
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -293,17 +293,17 @@ TEST_P(CutPictures, AreErrorsAndNeverHalfPictures) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats,
-                         CutPictures,
+                         CutImages,
                          testing::Values(".png", ".jpg", ".ppm", ".bmp", ".webp"));
 
 TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
   folder.write("mav0/cam0/data.csv", "10,0.jpg\n");
   folder.write("mav0/cam0/data/0.jpg", noise());
   folder.write("mav0/cam0/data/0.jpg", folder.read("mav0/cam0/data/0.jpg") + "trailer");
-  EXPECT_EQ(open()->pictures->bgr(0).size(), cv::Size(64, 48));
+  EXPECT_EQ(open()->images->bgr(0).size(), cv::Size(64, 48));
 }
 
-TEST_F(EurocReader, UsesTracksOnlyWhenAskedWherePicturesExist) {
+TEST_F(EurocReader, UsesTracksOnlyWhenAskedWhereImagesExist) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
   EXPECT_TRUE(open()->tracks.empty());
   OpenOptions options;
@@ -311,20 +311,20 @@ TEST_F(EurocReader, UsesTracksOnlyWhenAskedWherePicturesExist) {
   const auto recording = open_recording(folder.path(), options);
   EXPECT_EQ(recording->tracks.size(), 1U);
   EXPECT_EQ(recording->layout, "EuRoC");
-  EXPECT_TRUE(recording->pictures);
+  EXPECT_TRUE(recording->images);
   // The file itself stands for its folder with these tracks.
   const auto by_file = open_recording(folder.path() / "tracks.csv");
   EXPECT_EQ(by_file->tracks.size(), 1U);
-  EXPECT_TRUE(by_file->pictures);
+  EXPECT_TRUE(by_file->images);
   EXPECT_EQ(by_file->name, recording->name);
 }
 
-TEST_F(EurocReader, TakesTracksWhereThereAreNoPictures) {
+TEST_F(EurocReader, TakesTracksWhereThereAreNoImages) {
   folder.write("tracks.csv", "frame,track,x,y\n3,1,2,3\n0,5,1.5,2\n0,1,2.25,3\n");
   std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
   const auto recording = open();
   EXPECT_EQ(recording->layout, "tracks");
-  EXPECT_EQ(recording->pictures, nullptr);
+  EXPECT_EQ(recording->images, nullptr);
   ASSERT_EQ(recording->tracks.size(), 3U);
   EXPECT_EQ(recording->tracks[0].track, 1);
   EXPECT_EQ(recording->tracks[0].raw_px, Eigen::Vector2d(2.25, 3));

@@ -28,10 +28,10 @@ Recording everything() {
            {0.1, -0.2, 1.0 / 3}};
   recording.timestamps_ns = {
       1403636579000000001, 1403636579033333334, 1403636579066666668, 1403636579100000001};
-  recording.pictures = std::make_shared<const FrameCache>(4, [](int i) {
-    cv::Mat picture(48, 64, CV_8UC3, cv::Scalar(10 * i, 20, i == 2 ? 20 : 70));
-    if (i == 3) picture.setTo(cv::Scalar::all(99));
-    return picture;
+  recording.images = std::make_shared<const FrameCache>(4, [](int i) {
+    cv::Mat image(48, 64, CV_8UC3, cv::Scalar(10 * i, 20, i == 2 ? 20 : 70));
+    if (i == 3) image.setTo(cv::Scalar::all(99));
+    return image;
   });
   Gyroscope gyroscope;
   for (int i = 0; i < 30; ++i) {
@@ -70,7 +70,7 @@ TEST(EurocWriter, WritesWhatOpensAsTheSame) {
   EXPECT_EQ(read->timestamps_ns, recording.timestamps_ns);
   EXPECT_TRUE(read->T_body_camera->R_wc.isApprox(recording.T_body_camera->R_wc, 1e-14));
   for (int i = 0; i < 4; ++i)
-    EXPECT_EQ(cv::norm(read->pictures->bgr(i), recording.pictures->bgr(i), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(read->images->bgr(i), recording.images->bgr(i), cv::NORM_INF), 0);
   ASSERT_TRUE(read->gyroscope);
   EXPECT_EQ(read->gyroscope->timestamps_ns, recording.gyroscope->timestamps_ns);
   EXPECT_EQ(read->gyroscope->rates_rad_s, recording.gyroscope->rates_rad_s);
@@ -91,10 +91,10 @@ TEST(EurocWriter, WritesWhatOpensAsTheSame) {
   EXPECT_EQ(read->board->columns, 9);
 }
 
-TEST(EurocWriter, KeepsTracksWithoutPictures) {
+TEST(EurocWriter, KeepsTracksWithoutImages) {
   const TestFolder folder;
   Recording recording = everything();
-  recording.pictures = nullptr;
+  recording.images = nullptr;
   recording.tracks = {{0, 7, {1.0 / 3, 2}}, {2, 7, {4, 5}}, {3, 9, {6, 7}}};
   write_euroc(recording, std::nullopt, folder.path() / "out");
   const auto read = open_recording(folder.path() / "out");
@@ -108,7 +108,7 @@ TEST(EurocWriter, KeepsTracksWithoutPictures) {
 TEST(EurocWriter, LeavesNothingWhereItFails) {
   const TestFolder folder;
   Recording recording = everything();
-  recording.pictures = std::make_shared<const FrameCache>(4, [](int i) -> cv::Mat {
+  recording.images = std::make_shared<const FrameCache>(4, [](int i) -> cv::Mat {
     if (i == 2) throw InputError("frame 2 is broken");
     return {48, 64, CV_8UC3, cv::Scalar::all(i)};
   });

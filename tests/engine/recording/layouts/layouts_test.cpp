@@ -28,7 +28,7 @@ TEST(Layouts, AreCompleteAndDifferent) {
   std::set<std::string> titles;
   for (const Layout& layout : layouts()) {
     EXPECT_TRUE(titles.insert(layout.title).second) << layout.title;
-    EXPECT_TRUE(layout.find != nullptr && layout.has_pictures != nullptr);
+    EXPECT_TRUE(layout.find != nullptr && layout.has_images != nullptr);
     EXPECT_NE(layout.read, nullptr) << layout.title;
   }
 }

@@ -4,7 +4,7 @@
 #include "engine/recording/loggers/logs.h"
 
 #include "engine/recording/layouts/open_recording.h"
-#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <vector>

@@ -7,7 +7,7 @@
 #include "engine/recording/loggers/telemetry_track.h"
 #include "engine/window/timestamps.h"
 #include "tests/engine/recording/loggers/telemetry_video.h"
-#include "tests/engine/recording/pictures/made_video.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <cstdint>
@@ -206,8 +206,8 @@ class VideoWithTelemetry : public testing::Test {
                                         const std::vector<test::TelemetryPiece>& pieces,
                                         int clockwise_degrees = 0) const {
     folder.write("camera.yaml", test::kCameraYaml);
-    const std::vector<cv::Mat> pictures(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(file, pictures, {.clockwise_degrees = clockwise_degrees});
+    const std::vector<cv::Mat> images(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
+    test::make_video(file, images, {.clockwise_degrees = clockwise_degrees});
     test::add_telemetry(file, format, pieces);
     return open_recording(folder.path());
   }

@@ -60,11 +60,11 @@ void add_telemetry(const fs::path& video,
   const fs::path made = video.string() + ".mp4";
   AVFormatContext* to = nullptr;
   demand(avformat_alloc_output_context2(&to, nullptr, "mp4", made.c_str()), "no container");
-  AVStream* pictures = avformat_new_stream(to, nullptr);
-  demand(avcodec_parameters_copy(pictures->codecpar, from->streams[0]->codecpar), "no copy");
-  pictures->codecpar->codec_tag = 0;
-  copy_side_data(*from->streams[0], *pictures);
-  pictures->time_base = from->streams[0]->time_base;
+  AVStream* images = avformat_new_stream(to, nullptr);
+  demand(avcodec_parameters_copy(images->codecpar, from->streams[0]->codecpar), "no copy");
+  images->codecpar->codec_tag = 0;
+  copy_side_data(*from->streams[0], *images);
+  images->time_base = from->streams[0]->time_base;
   AVStream* telemetry = avformat_new_stream(to, nullptr);
   telemetry->codecpar->codec_type = AVMEDIA_TYPE_DATA;
   telemetry->codecpar->codec_id = AV_CODEC_ID_BIN_DATA;
@@ -74,7 +74,7 @@ void add_telemetry(const fs::path& video,
   demand(avformat_write_header(to, nullptr), "no header");
   AVPacket* packet = av_packet_alloc();
   while (av_read_frame(from, packet) >= 0) {
-    av_packet_rescale_ts(packet, from->streams[0]->time_base, pictures->time_base);
+    av_packet_rescale_ts(packet, from->streams[0]->time_base, images->time_base);
     packet->stream_index = 0;
     demand(av_interleaved_write_frame(to, packet), "cannot write");
   }

@@ -7,7 +7,7 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& op
   const Inspection made = made_inspection(options);
   WorkbenchState state;
   state.document.settings = made.settings;
-  adopt(state, made.recording);
+  apply_recording(state, made.recording);
   state.document.compared = parse_configurations("gpo,ba");
   SurveyResults results;
   for (const int length : lengths)

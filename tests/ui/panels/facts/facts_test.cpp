@@ -164,7 +164,7 @@ TEST(Results, FailureShowsItsReason) {
   EXPECT_THAT(rows.at("ATE").tooltip, HasSubstr("initialization failed"));
 }
 
-TEST(Results, PicturesLeaveTimingsOutAndSayWhy) {
+TEST(Results, ImagesLeaveTimingsOutAndSayWhy) {
   const Inspection inspection = inspected();
   const auto rows = rows_of(&inspection, false);
   for (const char* label : {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"}) {

@@ -25,7 +25,7 @@ std::map<std::string, ResultRow> uncertainty_rows(const Inspection* inspection) 
 }
 
 TEST(UncertaintyFacts, UncertaintyIsToldWithUnitsAndModel) {
-  const Inspection inspection = made_inspection({.pictures = false, .normal_sigma_deg = 0.31});
+  const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
   const auto rows = uncertainty_rows(&inspection);
   EXPECT_EQ(rows.at("Rotation alone").value, "8.80 px");
   EXPECT_EQ(rows.at("Rotation alone").note, "noise 0.40 px");
@@ -42,7 +42,7 @@ TEST(UncertaintyFacts, UncertaintyIsToldWithUnitsAndModel) {
 }
 
 TEST(UncertaintyFacts, WithoutUncertaintyAreDashesThatSayWhy) {
-  const Inspection inspection = made_inspection({.pictures = false});
+  const Inspection inspection = made_inspection({.images = false});
   const auto rows = uncertainty_rows(&inspection);
   for (const char* label : {"Rotation alone", "Moved", "Normal", "Distance ratio"}) {
     EXPECT_EQ(rows.at(label).value, "\u2013");
@@ -52,7 +52,7 @@ TEST(UncertaintyFacts, WithoutUncertaintyAreDashesThatSayWhy) {
 }
 
 TEST(TimeLine, BarTellsTheVerdictOfTheWindowThatEndsThere) {
-  const Inspection inspection = made_inspection({.pictures = false, .normal_sigma_deg = 0.31});
+  const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
   EXPECT_EQ(bar_text(inspection, 4), "frame 4");
   EXPECT_THAT(bar_text(inspection, 5), HasSubstr("inliers. The window starts here"));
   EXPECT_THAT(bar_text(inspection, 5), Not(HasSubstr("ready")));

@@ -10,10 +10,10 @@ namespace {
 
 /// The rectangle that a text covers [px].
 cv::Rect covered(const Text& text) {
-  const cv::Mat picture =
-      drawn_picture({1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text); });
+  const cv::Mat image =
+      drawn_image({1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text); });
   cv::Mat gray;
-  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   return cv::boundingRect(gray < 250);
 }
 
@@ -55,16 +55,16 @@ TEST(CairoDrawing, WordsWrapIntoTheRoom) {
 
 TEST(CairoDrawing, StraightLinesAreSharpAnywhere) {
   for (const double y : {4.0, 4.3, 4.5, 4.9}) {
-    const cv::Mat picture = drawn_picture({8, 8}, 1, 0xFFFFFF, [&](cairo_t& cairo) {
+    const cv::Mat image = drawn_image({8, 8}, 1, 0xFFFFFF, [&](cairo_t& cairo) {
       stroke_straight(cairo, {0, y}, {8, y}, {1, {0x000000}});
     });
-    EXPECT_EQ(cv::countNonZero(picture.reshape(1) == 0), 3 * 8) << y;
-    EXPECT_EQ(cv::countNonZero(picture.reshape(1) == 255), 3 * 7 * 8) << y;
+    EXPECT_EQ(cv::countNonZero(image.reshape(1) == 0), 3 * 8) << y;
+    EXPECT_EQ(cv::countNonZero(image.reshape(1) == 255), 3 * 7 * 8) << y;
   }
 }
 
 TEST(CairoDrawing, ReportsFailure) {
-  EXPECT_THROW(drawn_picture({8, 8}, 0, 0, [](cairo_t&) {}), std::runtime_error);
+  EXPECT_THROW(drawn_image({8, 8}, 0, 0, [](cairo_t&) {}), std::runtime_error);
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ Chart chart_of(std::vector<double> x, std::vector<double> y, bool logarithmic = 
 
 /// The middle of what is as red as the curve [px], the corner of a pixel being its origin. Not of
 /// the edge, which is smoothed on one side of a point only.
-Eigen::Vector2d middle_of_red(const cv::Mat& picture) {
+Eigen::Vector2d middle_of_red(const cv::Mat& image) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
-  for (int y = 0; y < picture.rows; ++y)
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto& bgr = picture.at<cv::Vec3b>(y, x);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      const auto& bgr = image.at<cv::Vec3b>(y, x);
       if (bgr[2] < 240 || bgr[1] > 15) continue;
       sum += Eigen::Vector2d(x + 0.5, y + 0.5);
       ++count;
@@ -46,7 +46,7 @@ ChartRequest request_of(const Chart& chart) { return {chart, {kWidth, kHeight}, 
 TEST(WindowChart, APointIsDrawnWhereTheMappingSays) {
   for (const bool logarithmic : {false, true}) {
     // The gaps stretch the x axis, and the y axis is known from the first point alone.
-    const ChartPicture drawn =
+    const ChartImage drawn =
         draw_window_chart(request_of(chart_of({2, 7, 9}, {NAN, 30, NAN}, logarithmic)));
     keep(logarithmic ? "chart-log" : "chart", drawn.bgr);
     EXPECT_LT((middle_of_red(drawn.bgr) - drawn.mapping.px(7, 30)).norm(), 0.8);
@@ -75,10 +75,10 @@ TEST(WindowChart, EqualCurvesAreToldApart) {
   chart.curves.push_back({"pnp", kYellow, false, {1, 5}, {5, 1}, {}, {}});
   ChartRequest request = request_of(chart);
   request.legend = false;
-  const auto [picture, to] = draw_window_chart(request);
-  keep("chart-equal", picture);
+  const auto [image, to] = draw_window_chart(request);
+  keep("chart-equal", image);
   // Half of the line is the lowest one's, a quarter is each of the others'.
-  const cv::Mat right = picture.colRange(static_cast<int>(to.px(3, 3).x()), kWidth);
+  const cv::Mat right = image.colRange(static_cast<int>(to.px(3, 3).x()), kWidth);
   const double alone = count_pixels(right, kYellow, 40);
   for (const std::uint32_t rgb : {kRed, kGreen, kBlue})
     EXPECT_GT(count_pixels(right, rgb, 40), 0.2 * alone) << std::hex << rgb;
@@ -88,10 +88,10 @@ TEST(WindowChart, PointsOfFewWindowsAreHollow) {
   Chart chart = chart_of({1, 2, 3}, {3, 3, 3});
   for (const int count : {9, 1}) {
     chart.curves[0].counts = {9, count, 9};
-    const auto [picture, to] = draw_window_chart(request_of(chart));
+    const auto [image, to] = draw_window_chart(request_of(chart));
     const Eigen::Vector2d at = to.px(2, 3);
     const cv::Vec3b middle =
-        picture.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x()));
+        image.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x()));
     EXPECT_EQ(middle == cv::Vec3b(0, 0, 255), count == 9);
   }
 }
@@ -100,9 +100,9 @@ TEST(WindowChart, IsDrawnInBothThemesAndAnyScale) {
   ChartRequest request = request_of(chart_of({1, 2, 3}, {1, 3, 2}));
   for (const Theme theme : {Theme::dark, Theme::light}) {
     request.theme = theme;
-    const cv::Mat picture = draw_window_chart(request).bgr;
-    EXPECT_GT(count_pixels(picture, color_of(Role::panel, theme), 0), kWidth * kHeight / 2);
-    EXPECT_GT(count_pixels(picture, color_of(Role::text, theme), 20), 20);
+    const cv::Mat image = draw_window_chart(request).bgr;
+    EXPECT_GT(count_pixels(image, color_of(Role::panel, theme), 0), kWidth * kHeight / 2);
+    EXPECT_GT(count_pixels(image, color_of(Role::text, theme), 20), 20);
   }
   const double left = draw_window_chart(request).mapping.left;
   request.scale = 2;
@@ -132,7 +132,7 @@ TEST_F(ChartViewTest, DrawsOnlyWhatHasChanged) {
 
 /// With Dear ImGui around it: titles, legend, and where the values are on the screen.
 struct Drawn {
-  cv::Mat picture;
+  cv::Mat image;
   ChartMapping to;
 };
 Drawn draw(const Chart& chart, float scale) {
@@ -149,7 +149,7 @@ Drawn draw(const Chart& chart, float scale) {
                              chart);
   draw_chart_cursor(*ImGui::GetBackgroundDrawList(), drawn.to, 7, color_of(Role::accent));
   gui.end_frame();
-  drawn.picture = context.read_bgr();
+  drawn.image = context.read_bgr();
   return drawn;
 }
 
@@ -157,8 +157,8 @@ TEST_F(ChartViewTest, TheMappingOfTheScreenKnowsWhereTheChartStands) {
   for (const float scale : {1.0F, 2.0F}) {
     Chart chart = chart_of({2, 7, 9}, {NAN, 30, NAN});
     const Drawn drawn = draw(chart, scale);
-    keep("chart-drawn", drawn.picture);
-    EXPECT_LT((middle_of_red(drawn.picture) - drawn.to.px(7, 30)).norm(), 1.2 * scale);
+    keep("chart-drawn", drawn.image);
+    EXPECT_LT((middle_of_red(drawn.image) - drawn.to.px(7, 30)).norm(), 1.2 * scale);
   }
 }
 
@@ -168,9 +168,9 @@ TEST_F(ChartViewTest, LegendAndEmptyChartHaveTheirPlace) {
   for (const char* name : {"bound of what is possible", "another long name", "a third one"})
     chart.curves.push_back({name, 0x00FF00, true, {1, 9}, {6, 6}, {}, {}});
   const Drawn drawn = draw(chart, 1);
-  keep("chart-legend", drawn.picture);
+  keep("chart-legend", drawn.image);
   EXPECT_GT(drawn.to.height, low) << "the legend is above the axes, which are lower then";
-  keep("chart-empty", draw(chart_of({}, {}), 1).picture);
+  keep("chart-empty", draw(chart_of({}, {}), 1).image);
 }
 
 TEST(ChartValues, AreThoseOfTheNearestPoint) {

@@ -48,22 +48,22 @@ Inspections three() {
 }
 
 /// The part of a picture of `three()` that belongs to one of them.
-cv::Mat column(const cv::Mat& picture, int index) {
-  const int width = picture.cols / 3;
-  return picture.colRange(index * width, (index + 1) * width);
+cv::Mat column(const cv::Mat& image, int index) {
+  const int width = image.cols / 3;
+  return image.colRange(index * width, (index + 1) * width);
 }
 
 /// How many are side by side, and how many one below the other.
 std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspect) {
   std::set<double> xs, ys;
   for (const ColumnPlace& place : compare_places({{0, 0}, size}, count, aspect, true)) {
-    xs.insert(place.picture.min.x());
-    ys.insert(place.picture.min.y());
+    xs.insert(place.image.min.x());
+    ys.insert(place.image.min.y());
   }
   return {static_cast<int>(xs.size()), static_cast<int>(ys.size())};
 }
 
-TEST_F(CompareView, RowsAndColumnsMakeThePicturesLargest) {
+TEST_F(CompareView, RowsAndColumnsMakeTheImagesLargest) {
   const OffscreenContext context(64, 64);
   Gui gui;  // sizes are those of its font
   gui.begin_frame(64, 64);
@@ -77,27 +77,27 @@ TEST_F(CompareView, RowsAndColumnsMakeThePicturesLargest) {
 
 TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
   const Inspections inspections = three();
-  const cv::Mat picture = snapshot_compare(inspections, kFrame);
-  keep("compare", picture);
-  ASSERT_EQ(picture.size(), default_compare_size(inspections));
+  const cv::Mat image = snapshot_compare(inspections, kFrame);
+  keep("compare", image);
+  ASSERT_EQ(image.size(), default_compare_size(inspections));
   for (int i = 0; i < 3; ++i) {
     const Configuration configuration = configuration_of(inspections[i]->settings);
-    const cv::Mat heading = column(picture, i).rowRange(38, 92);
+    const cv::Mat heading = column(image, i).rowRange(38, 92);
     EXPECT_GT(count_pixels(heading, color_of(configuration)), 150) << "column " << i;
     const bool ok = inspections[i]->initialization->ok;
-    const cv::Mat shown = column(picture, i).rowRange(92, picture.rows - 58);
+    const cv::Mat shown = column(image, i).rowRange(92, image.rows - 58);
     EXPECT_EQ(count_pixels(shown, color_of(Role::cube_base)) > 200, ok) << "column " << i;
     EXPECT_EQ(count_pixels(shown, color_of(Role::warning)) > 50, !ok) << "column " << i;
   }
 }
 
-TEST_F(CompareView, AllColumnsShowTheSamePartOfThePicture) {
-  const cv::Mat picture = snapshot_compare(three(), kFrame);
-  const int width = picture.cols / 3;
+TEST_F(CompareView, AllColumnsShowTheSamePartOfTheImage) {
+  const cv::Mat image = snapshot_compare(three(), kFrame);
+  const int width = image.cols / 3;
   // The upper left corner of the floor, without a cube.
   const cv::Rect corner(20, 100, 60, 60);
   for (int i = 1; i < 3; ++i)
-    EXPECT_TRUE(same_bytes(picture(corner), picture(corner + cv::Point(i * 492, 0))))
+    EXPECT_TRUE(same_bytes(image(corner), image(corner + cv::Point(i * 492, 0))))
         << "column " << i << " of " << width << " pixels";
 }
 
@@ -121,10 +121,10 @@ TEST_F(CompareView, MoreThanFourWrapIntoRows) {
   const cv::Size size = default_compare_size(seven);
   EXPECT_EQ(size.width, 4 * 492 + 12);
   EXPECT_EQ(size.height, default_compare_size({seven.data(), 4}).height * 2 - 38);
-  const cv::Mat picture = snapshot_compare(seven, kFrame);
-  keep("compare_seven", picture);
+  const cv::Mat image = snapshot_compare(seven, kFrame);
+  keep("compare_seven", image);
   // The eighth place is empty.
-  EXPECT_EQ(count_pixels(picture(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)),
+  EXPECT_EQ(count_pixels(image(cv::Rect(3 * 492 + 12, size.height / 2 + 20, 490, 400)),
                          color_of(Role::panel)),
             490 * 400);
 }
@@ -135,17 +135,17 @@ TEST_F(CompareView, NineStandInThreeRows) {
   for (int i = 0; i < 9; ++i)
     nine.push_back(made({.ok = i != 8, .estimate_error = 0.4 * i, .normal_sigma_deg = 0.3}));
   EXPECT_EQ(default_compare_size(nine).width, 3 * 492 + 12);
-  const cv::Mat picture = snapshot_compare(nine, kFrame);
-  keep("compare_nine", picture);
-  const cv::Mat first = picture(cv::Rect(12, 38, 480, 54));
-  const cv::Mat last = picture(cv::Rect(12 + 2 * 492, 38 + 2 * (picture.rows - 38) / 3, 480, 54));
+  const cv::Mat image = snapshot_compare(nine, kFrame);
+  keep("compare_nine", image);
+  const cv::Mat first = image(cv::Rect(12, 38, 480, 54));
+  const cv::Mat last = image(cv::Rect(12 + 2 * 492, 38 + 2 * (image.rows - 38) / 3, 480, 54));
   EXPECT_GT(count_pixels(first, color_of(Role::good)), 30);  // ready
   EXPECT_GT(count_pixels(last, color_of(Role::bad)), 8);     // degenerate
 }
 
 TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {
   keep("compare_blind",
-       snapshot_compare(Inspections{made({.pictures = false, .truth = false})}, kFrame));
+       snapshot_compare(Inspections{made({.images = false, .truth = false})}, kFrame));
   keep("compare_outside", snapshot_compare(three(), 38));
   keep("compare_failed",
        snapshot_compare(Inspections{made({.ok = false, .truth = false})}, kFrame));

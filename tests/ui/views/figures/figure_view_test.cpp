@@ -84,17 +84,17 @@ Figure small_figure(std::vector<double> y, bool band = false, bool dotted = fals
 }
 
 /// Anti-aliased curves are thin.
-int colored(const cv::Mat& picture, std::uint32_t rgb) { return count_pixels(picture, rgb, 12); }
+int colored(const cv::Mat& image, std::uint32_t rgb) { return count_pixels(image, rgb, 12); }
 
 /// Within the axes of a figure with one chart, above the legend.
-cv::Mat plot_area(const cv::Mat& picture) {
-  return picture(cv::Rect(93, 48, picture.cols - 93 - 20, picture.rows - 48 - 100));
+cv::Mat plot_area(const cv::Mat& image) {
+  return image(cv::Rect(93, 48, image.cols - 93 - 20, image.rows - 48 - 100));
 }
 
 /// Of the method's green in each of `columns` equal parts of the plot.
-std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
+std::vector<int> green_by_column(const cv::Mat& image, int columns) {
   std::vector<int> pixels;
-  const cv::Mat area = plot_area(picture);
+  const cv::Mat area = plot_area(image);
   for (int i = 0; i < columns; ++i)
     pixels.push_back(
         colored(area.colRange(i * area.cols / columns, (i + 1) * area.cols / columns), kGreen));
@@ -103,13 +103,13 @@ std::vector<int> green_by_column(const cv::Mat& picture, int columns) {
 
 TEST(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
   const Figure figure = paper_figure();
-  const cv::Mat picture = draw_figure(figure, {1500, 480});
-  cv::imwrite(figure_file("figure.png").string(), picture);
-  ASSERT_EQ(picture.size(), cv::Size(1500, 480));
-  EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
+  const cv::Mat image = draw_figure(figure, {1500, 480});
+  cv::imwrite(figure_file("figure.png").string(), image);
+  ASSERT_EQ(image.size(), cv::Size(1500, 480));
+  EXPECT_EQ(image.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
   for (int chart = 0; chart < 3; ++chart)
     for (const CurveStyle& style : curve_styles(figure)) {
-      const cv::Mat column = picture(cv::Rect(500 * chart, 40, 500, 340));
+      const cv::Mat column = image(cv::Rect(500 * chart, 40, 500, 340));
       if (style.name.starts_with("bound") && chart != 1) continue;
       EXPECT_GT(colored(column, style.rgb), 30) << style.name << " in chart " << chart;
     }
@@ -124,9 +124,9 @@ TEST(FigureView, SameFigureGivesTheSameBytes) {
 }
 
 TEST(FigureView, BandLiesBetweenTheQuartiles) {
-  const cv::Mat picture = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
-  cv::imwrite(figure_file("figure_band.png").string(), picture);
-  const cv::Mat area = plot_area(picture);
+  const cv::Mat image = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
+  cv::imwrite(figure_file("figure_band.png").string(), image);
+  const cv::Mat area = plot_area(image);
   // From 0 to 3.15 up the plot; between two points, beside the grid.
   const int column = area.cols / 2 + 18;
   const auto at = [&](double y) {
@@ -142,23 +142,23 @@ TEST(FigureView, BandLiesBetweenTheQuartiles) {
 
 TEST(FigureView, NanLeavesAGap) {
   const double nan = std::nan("");
-  const cv::Mat picture =
+  const cv::Mat image =
       draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
-  cv::imwrite(figure_file("figure_gap.png").string(), picture);
-  const std::vector<int> green = green_by_column(picture, 11);
+  cv::imwrite(figure_file("figure_gap.png").string(), image);
+  const std::vector<int> green = green_by_column(image, 11);
   EXPECT_GT(green[1], 20);
   EXPECT_EQ(green[5], 0);
   EXPECT_GT(green[9], 20);
-  const cv::Mat area = plot_area(picture);
+  const cv::Mat area = plot_area(image);
   const cv::Mat middle = area.colRange(5 * area.cols / 11, 6 * area.cols / 11);
   EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
 }
 
 TEST(FigureView, OnePointBetweenGapsIsDrawn) {
   const double nan = std::nan("");
-  const cv::Mat picture = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
-  cv::imwrite(figure_file("figure_points.png").string(), picture);
-  EXPECT_GT(green_by_column(picture, 5)[2], 20);
+  const cv::Mat image = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
+  cv::imwrite(figure_file("figure_points.png").string(), image);
+  EXPECT_GT(green_by_column(image, 5)[2], 20);
 }
 
 TEST(FigureView, BoundIsDotted) {
@@ -173,8 +173,8 @@ TEST(FigureView, BoundIsDotted) {
 TEST(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
   Figure figure = small_figure({1, 0, -1, 10, 100});
   figure.charts[0].logarithmic = true;
-  const cv::Mat picture = draw_figure(figure, kSmall);
-  EXPECT_GT(colored(plot_area(picture), kGreen), 30);
+  const cv::Mat image = draw_figure(figure, kSmall);
+  EXPECT_GT(colored(plot_area(image), kGreen), 30);
 }
 
 TEST(FigureView, EmptyFiguresSaySo) {
@@ -231,11 +231,11 @@ TEST(FigureView, PrintedTypeHasSevenPointsAndStaysOnThePage) {
          {type.title, type.chart_title, type.axis_title, type.tick, type.legend, type.note})
       EXPECT_GE(size * sheet.unit_mm / 25.4 * 72, 7 - 1e-9);
     const std::string name = width_mm < 100 ? "figure_85mm" : "figure_175mm";
-    const cv::Mat picture = figure_picture(figure, sheet, sheet.unit_mm / 25.4 * 300);
-    cv::imwrite(figure_file(name + ".png").string(), picture);
+    const cv::Mat image = figure_image(figure, sheet, sheet.unit_mm / 25.4 * 300);
+    cv::imwrite(figure_file(name + ".png").string(), image);
     std::ofstream(figure_file(name + ".pdf")) << figure_pdf(figure, sheet);
-    const cv::Rect inside(2, 2, picture.cols - 4, picture.rows - 4);
-    cv::Mat edge = picture.clone();
+    const cv::Rect inside(2, 2, image.cols - 4, image.rows - 4);
+    cv::Mat edge = image.clone();
     edge(inside).setTo(cv::Scalar::all(255));
     EXPECT_EQ(cv::countNonZero(edge.reshape(1) != 255), 0) << "nothing is cut off at " << width_mm;
   }
@@ -267,8 +267,8 @@ TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
   // Two on the curve, one in the legend, which explains them.
   EXPECT_EQ(styles_of(svg_of(), white), sheets + 3);
   EXPECT_EQ(keys_of().back().text, "fewer than 4 windows");
-  const cv::Mat picture = draw_figure(figure, kSmall);
-  const cv::Mat area = plot_area(picture);
+  const cv::Mat image = draw_figure(figure, kSmall);
+  const cv::Mat area = plot_area(image);
   constexpr std::uint32_t kBand = 0xD1ECE3;
   EXPECT_GT(colored(area.colRange(0, area.cols / 2), kBand), 1000);
   EXPECT_LT(colored(area.colRange(area.cols / 2 + 5, area.cols), kBand), 50)

@@ -79,7 +79,7 @@ TEST(SceneGeometry, GridContainsTheCubeAndLiesOnThePlane) {
   }
 }
 
-TEST(SceneGeometry, FrustumsCornersAreThePicturesCorners) {
+TEST(SceneGeometry, FrustumsCornersAreTheImagesCorners) {
   const Camera camera{640, 480, 500, 505, 322, 236, Distortion::none, {}};
   const auto corners = frustum(camera, Pose(), 0.3);
   EXPECT_LT((project(camera, corners[1]) - Vector2d(-0.5, -0.5)).norm(), 1e-9);

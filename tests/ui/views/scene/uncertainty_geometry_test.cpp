@@ -80,7 +80,7 @@ TEST(UncertaintyGeometry, RimGoesNoFartherThanARightAngle) {
 }
 
 TEST(UncertaintyGeometry, ArrowStandsOnThePlaneInView) {
-  const Inspection inspection = made_inspection({.pictures = false, .normal_sigma_deg = 0.3});
+  const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.3});
   const NormalArrow arrow = normal_arrow(inspection, plane_grid(inspection, 0.2));
   const Plane& plane = inspection.initialization->plane;
   EXPECT_NEAR(plane.normal.dot(arrow.base) + plane.distance, 0, 1e-9);

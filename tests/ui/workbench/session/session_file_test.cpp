@@ -6,7 +6,7 @@
 #include "engine/files/output_file.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/recent_files.h"
-#include "ui/workbench/work/adopt.h"
+#include "ui/workbench/work/apply_recording.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -36,7 +36,7 @@ class SessionFile : public testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "desk");
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
-    adopt(state_, recording_at(folder_ / "desk"));
+    apply_recording(state_, recording_at(folder_ / "desk"));
   }
   fs::path write(const std::string& text) {
     write_file(folder_ / "a.json", text);
@@ -92,7 +92,7 @@ TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
   EXPECT_EQ(session.recording, folder_ / "desk");
   WorkbenchState other;
   other.files.waiting_session = session;
-  adopt(other, state_.document.recording);
+  apply_recording(other, state_.document.recording);
   EXPECT_EQ(session_text(other), text);
   EXPECT_EQ(other.document.settings, state_.document.settings);
   EXPECT_EQ(other.selection.focus, 2);
@@ -136,7 +136,7 @@ constexpr const char* kOldSession = R"({
 TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
   WorkbenchState other;
   other.files.waiting_session = read_session(write(kOldSession));
-  adopt(other, state_.document.recording);
+  apply_recording(other, state_.document.recording);
   const auto before = nlohmann::ordered_json::parse(kOldSession);
   const auto after = nlohmann::ordered_json::parse(session_text(other));
   std::vector<std::string> keys_before, keys_after;

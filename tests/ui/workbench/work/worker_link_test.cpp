@@ -37,7 +37,7 @@ class WorkerLinkTest : public testing::Test {
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
     if (path == "bare.mp4") {
       recording->camera_source = CameraSource::guess;
-      recording->pictures = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
+      recording->images = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
     }
     return opened(recording);
   }

@@ -1,0 +1,224 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/calibration/plane_views/linked_views.h"
+
+#include "engine/base/parallel.h"
+#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/tracking/local_shape.h"
+#include "engine/frontend/tracking/patch.h"
+#include "engine/frontend/tracking/patch_alignment.h"
+#include "engine/frontend/tracking/smoothed_image.h"
+#include "engine/geometry/homography.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <thread>
+
+#include <Eigen/LU>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLeastFound = 12;  // that refine a homography
+constexpr int kPasses = 2;
+
+/// At most so many of all, spread evenly, the first and the last among them.
+template <typename T>
+std::vector<T> spread(const std::vector<T>& all, int most) {
+  const auto count = std::ssize(all);
+  if (count <= most) return all;
+  std::vector<T> some;
+  for (std::ptrdiff_t k = 0; k < most; ++k) some.push_back(all[k * (count - 1) / (most - 1)]);
+  return some;
+}
+
+struct Sample {
+  int frame;
+  Matrix3d H_i_first;
+  cv::Mat soft;
+};
+
+/// A reference's points, ready to be looked for.
+struct Patches {
+  std::vector<PatchTemplate> patches;
+  std::vector<Nodes> nodes_px;
+  Matrix2Xd undistorted_px;
+  Matrix2Xd corners_px;  ///< from the looks' middles
+};
+
+Patches patches_of(const PlaneReference& reference,
+               const cv::Mat& soft,
+               const Camera& camera,
+               int half) {
+  Patches all;
+  all.undistorted_px = all.corners_px = reference.raw_px;
+  for (Eigen::Index j = 0; j < reference.raw_px.cols(); ++j) {
+    const Vector2d middle = reference.raw_px.col(j).array().round();
+    all.patches.push_back(make_patch_template(make_patch(
+        soft, cv::Point(static_cast<int>(middle.x()), static_cast<int>(middle.y())), half)));
+    all.nodes_px.push_back(look_nodes(camera, middle, half));
+    all.undistorted_px.col(j) = undistort(camera, reference.raw_px.col(j));
+    all.corners_px.col(j) -= middle;
+  }
+  return all;
+}
+
+/// Where the looks are in a picture, raw pixels; NaN: not found.
+Matrix2Xd found_by(const Patches& patches,
+                   const Matrix3d& H,
+                   const cv::Mat& soft,
+                   const Camera& camera,
+                   const LinkOptions& options) {
+  Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNaN);
+  for (Eigen::Index j = 0; j < found.cols(); ++j) {
+    const auto warp = warp_by(camera, H, patches.nodes_px[j], options.anchor.half_patch_px);
+    if (!warp) continue;
+    const double area = warp->linear.determinant();
+    if (area < options.least_area || area > options.most_area) continue;
+    if (!is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
+    const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, options.anchor.search);
+    if (!hit.end) found.col(j) = hit.warp(patches.corners_px.col(j));
+  }
+  return found;
+}
+
+/// The homography by what was found; what disagrees with it is NaN afterwards. Nothing where too
+/// little agrees.
+std::optional<Matrix3d> refined(const Patches& patches,
+                                Matrix2Xd& found,
+                                const Camera& camera,
+                                double gate_px) {
+  std::vector<int> columns;
+  Matrix2Xd undistorted_px(2, found.cols());
+  for (int j = 0; j < found.cols(); ++j) {
+    if (!found.col(j).allFinite()) continue;
+    undistorted_px.col(j) = undistort(camera, found.col(j));
+    if (undistorted_px.col(j).allFinite()) columns.push_back(j);
+  }
+  if (std::ssize(columns) < kLeastFound) return std::nullopt;
+  const auto robust = homography_ransac(patches.undistorted_px(Eigen::all, columns),
+                                        undistorted_px(Eigen::all, columns),
+                                        {.threshold_px = gate_px});
+  if (!robust || std::ranges::count(robust->inlier, true) < kLeastFound) return std::nullopt;
+  const Matrix2Xd all = found;
+  found.setConstant(kNaN);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (robust->inlier[k]) found.col(columns[k]) = all.col(columns[k]);
+  return robust->H;
+}
+
+/// A reference's points in all samples, from its own on forth and back.
+std::vector<Matrix2Xd> in_all_samples(const PlaneReference& reference,
+                                      const Matrix3d& H_r_first,
+                                      const std::vector<Sample>& samples,
+                                      const Patches& patches,
+                                      const Camera& camera,
+                                      const LinkOptions& options,
+                                      const std::stop_token& stop) {
+  std::vector<Matrix2Xd> all(samples.size(), Matrix2Xd::Constant(2, reference.raw_px.cols(), kNaN));
+  const auto count = std::ssize(samples);
+  const auto first =
+      std::ranges::find_if(samples, [&](const Sample& s) { return s.frame >= reference.frame; }) -
+      samples.begin();
+  const auto walk = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t step) {
+    // What the homography to the sample before was found to be, and the chain's.
+    Matrix3d known = Matrix3d::Identity();
+    Matrix3d chained = H_r_first;
+    for (std::ptrdiff_t i = begin; i != end && !stop.stop_requested(); i += step) {
+      Matrix3d H = samples[i].H_i_first * chained.inverse() * known;
+      for (int pass = 0; pass < kPasses; ++pass) {
+        Matrix2Xd found = found_by(patches, H, samples[i].soft, camera, options);
+        const auto better = refined(patches, found, camera, options.gate_px);
+        if (!better) break;
+        H = *better;
+        all[i] = std::move(found);
+      }
+      known = H / H.norm();
+      chained = samples[i].H_i_first;
+    }
+  };
+  walk(first, count, 1);
+  walk(first - 1, -1, -1);
+  return all;
+}
+
+void append(const std::vector<Matrix2Xd>& found,
+            const std::vector<Sample>& samples,
+            ObservedPlane& plane) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    PlaneView& view = plane.views[i];
+    std::vector<int> columns;
+    for (int j = 0; j < found[i].cols(); ++j)
+      if (found[i].col(j).allFinite()) columns.push_back(j);
+    const Eigen::Index before = view.raw_px.cols();
+    view.raw_px.conservativeResize(2, before + std::ssize(columns));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      view.raw_px.col(before + static_cast<Eigen::Index>(k)) = found[i].col(columns[k]);
+      view.points.push_back(plane.points + columns[k]);
+    }
+  }
+  plane.points += static_cast<int>(found.front().cols());
+}
+
+/// How far a sight's points go from frame to frame, by the chain's homographies to the frames
+/// before and after it.
+Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& camera) {
+  Matrix2Xd flow_px = Matrix2Xd::Zero(2, view.raw_px.cols());
+  const auto here = chain.H_i_first.find(view.frame);
+  const auto before = here == chain.H_i_first.begin() ? here : std::prev(here);
+  const auto after = std::next(here) == chain.H_i_first.end() ? here : std::next(here);
+  const Matrix3d H_before = before->second * here->second.inverse();
+  const Matrix3d H_after = after->second * here->second.inverse();
+  for (Eigen::Index k = 0; k < flow_px.cols(); ++k) {
+    const Eigen::Vector3d p = undistort(camera, view.raw_px.col(k)).homogeneous();
+    const Vector2d distance_px = distort(camera, (H_after * p).hnormalized()) -
+                            distort(camera, (H_before * p).hnormalized());
+    if (distance_px.allFinite()) flow_px.col(k) = distance_px / std::max(1, after->first - before->first);
+  }
+  return flow_px;
+}
+
+}  // namespace
+
+ObservedPlane linked_views(const ChainImages& images,
+                           const PlaneChain& chain,
+                           const Camera& camera,
+                           const LinkOptions& options) {
+  std::vector<std::pair<int, Matrix3d>> frames(chain.H_i_first.begin(), chain.H_i_first.end());
+  std::vector<Sample> samples;
+  ObservedPlane plane;
+  for (const auto& [frame, H] : spread(frames, options.most_images)) {
+    if (images.stop.stop_requested()) return plane;
+    samples.push_back({frame, H, smoothed(images.gray(frame))});
+    plane.views.push_back({frame, {}, Matrix2Xd(2, 0)});
+  }
+  const std::vector<PlaneReference> references = spread(chain.references, options.most_references);
+  std::vector<Patches> patches;
+  patches.reserve(references.size());
+  for (const PlaneReference& reference : references)
+    patches.push_back(patches_of(
+        reference, smoothed(images.gray(reference.frame)), camera, options.anchor.half_patch_px));
+  std::vector<std::vector<Matrix2Xd>> found(references.size());
+  in_parallel(static_cast<int>(references.size()),
+              static_cast<int>(std::thread::hardware_concurrency()),
+              [&](int r) {
+                found[r] = in_all_samples(references[r],
+                                          chain.H_i_first.at(references[r].frame),
+                                          samples,
+                                          patches[r],
+                                          camera,
+                                          options,
+                                          images.stop);
+              });
+  for (const auto& of_reference : found) append(of_reference, samples, plane);
+  for (PlaneView& view : plane.views) view.flow_px = flow_of(view, chain, camera);
+  return plane;
+}
+
+}  // namespace gpo

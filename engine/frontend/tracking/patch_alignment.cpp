@@ -1,0 +1,159 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/patch_alignment.h"
+
+#include "engine/frontend/tracking/patch_kernel.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix4d;
+using Eigen::Vector2d;
+using Eigen::Vector4d;
+using Vector8d = Eigen::Matrix<double, 8, 1>;
+
+constexpr int kMostCorrections = 20;  // of Gauss-Newton
+/// What its last step moves a look's pixels by; the next one would be a tenth of it.
+constexpr double kConverged_px[] = {0.01, 0.1};  // by `Unknown`: a shift follows on what is affine
+constexpr double kNear_px = 0.2;                 // the last step before all unknowns are solved for
+
+/// The columns of a look that a search without dx and dy has.
+constexpr std::array kShiftColumns{0, 1, 6, 7};
+constexpr int kBrightness = 6;
+constexpr int kOne = 7;
+
+/// Least squares of (15a) over t, B, gain and offset; linear in gain times t and B.
+struct Correction {
+  Vector2d t = Vector2d::Zero();
+  Matrix2d B = Matrix2d::Zero();
+  double gain = 0;
+  double correlation = 0;
+};
+
+Correction solved(const PatchSums& sums, const PatchTemplate& patch_template, MotionModel unknown) {
+  const Vector8d b = sums.products.cast<double>();
+  Correction step;
+  if (unknown == MotionModel::shift) {
+    const Vector4d solution = patch_template.shift.solve(Vector4d(b(kShiftColumns)));
+    step.gain = solution(2);
+    step.t = solution.head<2>() / step.gain;
+  } else {
+    const Vector8d solution = patch_template.affine.solve(b);
+    step.gain = solution(kBrightness);
+    step.t = solution.head<2>() / step.gain;
+    step.B << solution(2), solution(3), solution(4), solution(5);
+    step.B /= step.gain;
+  }
+  const PatchNormalMatrix& A = patch_template.normal;
+  const double n = A(kOne, kOne);
+  const double covariance = b(kBrightness) - A(kBrightness, kOne) * b(kOne) / n;
+  const double variances =
+      (sums.squares - b(kOne) * b(kOne) / n) *
+      (A(kBrightness, kBrightness) - A(kBrightness, kOne) * A(kBrightness, kOne) / n);
+  step.correlation = variances > 0 ? covariance / std::sqrt(variances) : 0;
+  return step;
+}
+
+bool holds(const cv::Size& image, const Vector2d& px) {
+  return px.x() > 1 && px.y() > 1 && px.x() < image.width - 2 && px.y() < image.height - 2;
+}
+
+/// What shrinks or grows by more from a picture to the next has slid into something else.
+bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
+  const double share = now.determinant() / before.determinant();
+  return share > 0.5 && share < 2;
+}
+
+/// Nothing where less than half of the look's pixels are in the picture, or where it is darker
+/// where it should be brighter.
+std::optional<Correction> step_from(const cv::Mat& smoothed,
+                                    const PatchTemplate& patch_template,
+                                    const Warp& warp,
+                                    MotionModel unknown) {
+  Correction step;
+  if (is_inside(smoothed.size(), patch_template.patch, warp)) {
+    step = solved(patch_sums(smoothed, patch_template.patch, warp), patch_template, unknown);
+  } else {
+    const PatchTemplate part = make_patch_template(inside_part(smoothed.size(), patch_template.patch, warp));
+    if (2 * part.normal(kOne, kOne) < (2 * part.patch.half + 1) * (2 * part.patch.half + 1))
+      return std::nullopt;
+    step = solved(patch_sums(smoothed, part.patch, warp), part, unknown);
+  }
+  if (!(step.gain > 0)) return std::nullopt;
+  return step;
+}
+
+}  // namespace
+
+PatchTemplate make_patch_template(Patch patch) {
+  PatchTemplate patch_template{std::move(patch), {}, {}, {}, {}, 0};
+  patch_template.normal = patch_normal_matrix(patch_template.patch);
+  patch_template.affine.compute(patch_template.normal);
+  patch_template.shift.compute(Matrix4d(patch_template.normal(kShiftColumns, kShiftColumns)));
+  Eigen::SelfAdjointEigenSolver<Matrix2d> slopes;
+  slopes.computeDirect(patch_template.normal.topLeftCorner<2, 2>());
+  patch_template.along_edge = slopes.eigenvectors().col(0);
+  patch_template.edge = slopes.eigenvalues()[0] / slopes.eigenvalues()[1];
+  return patch_template;
+}
+
+Found search(const cv::Mat& smoothed,
+             const PatchTemplate& patch_template,
+             const Warp& start,
+             MotionModel unknown,
+             const SearchOptions& options) {
+  const double converged_px = kConverged_px[static_cast<std::size_t>(unknown)];
+  Warp warp = start;
+  MotionModel now = MotionModel::shift;  // near enough, then all of it
+  for (int k = 0; k < kMostCorrections; ++k) {
+    if (!holds(smoothed.size(), warp.center))
+      return {.end = TrackEnd{.reason = LossReason::left_image}};
+    const auto step = step_from(smoothed, patch_template, warp, now);
+    if (!step) break;
+    // (15a): w o (d + t + B d)^-1, so that the look's slopes stay where they were.
+    warp.linear *= (Matrix2d::Identity() + step->B).inverse();
+    const Vector2d moved_px = -warp.linear * step->t;
+    warp.center += moved_px;
+    if (!keeps_its_size(start.linear, warp.linear)) break;
+    const double far_px = (warp.center - start.center).norm();
+    if (!(far_px <= options.farthest_px))
+      return {.end = TrackEnd{0, LossReason::far_from_prediction, far_px, options.farthest_px}};
+    if (now != unknown) {
+      if (moved_px.norm() < kNear_px) now = unknown;
+      continue;
+    }
+    if (moved_px.norm() + patch_template.patch.half * step->B.norm() > converged_px) continue;
+    if (step->correlation >= options.least_correlation) return {warp};
+    return {.end =
+                TrackEnd{0, LossReason::low_correlation, step->correlation, options.least_correlation}};
+  }
+  return {.end = TrackEnd{.reason = LossReason::look_not_found}};
+}
+
+std::optional<double> detail_along_edge(const cv::Mat& smoothed,
+                                        const PatchTemplate& patch_template,
+                                        const Warp& warp) {
+  Vector8d slopes = Vector8d::Zero();
+  double gain = 0;
+  for (const int side : {-1, 0, 1}) {
+    Warp beside = warp;
+    beside.center += side * warp.linear * patch_template.along_edge;
+    if (!is_inside(smoothed.size(), patch_template.patch, beside)) return std::nullopt;
+    const PatchSums sums = patch_sums(smoothed, patch_template.patch, beside);
+    slopes += side * sums.products.cast<double>() / 2;
+    if (side == 0) gain = solved(sums, patch_template, MotionModel::shift).gain;
+  }
+  const auto squares = patch_template.normal.topLeftCorner<2, 2>();
+  return patch_template.along_edge.dot(slopes.head<2>()) /
+         (gain * patch_template.along_edge.dot(squares * patch_template.along_edge));
+}
+
+}  // namespace gpo

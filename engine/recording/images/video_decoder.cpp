@@ -1,0 +1,317 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/images/video_decoder.h"
+
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/recording/images/libav.h"
+#include "engine/recording/images/image_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+extern "C" {
+#include <libavutil/display.h>
+}
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMostPixels = 100'000'000;
+constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
+constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
+
+using libav::Codec;
+using libav::Format;
+using libav::Frame;
+using libav::Packet;
+using libav::Scaler;
+
+[[noreturn]] void fail_to_open(const fs::path& file) {
+  throw InputError(file.string() +
+                   ": found something that cannot be decoded (cut, or no video), expected a video");
+}
+
+/// How often the shown picture is turned clockwise by 90 degrees: phones store what the sensor saw.
+int quarter_turns(const AVStream& stream) {
+  const std::int32_t* matrix = libav::display_matrix(stream);
+  if (matrix == nullptr) return 0;
+  const double turns = -av_display_rotation_get(matrix) / 90;
+  return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
+}
+
+/// Whether the container promises clearly more than it holds. With a variable frame rate it may
+/// declare a count made up from the duration, so the time must be short as well.
+bool is_cut(const VideoIndex& index) {
+  const double missing = index.declared_count - static_cast<double>(index.times.size());
+  if (missing <= std::max(2.0, index.declared_count / 100)) return false;
+  if (index.times.empty() || index.rate_hz <= 0) return true;
+  const double duration_s =
+      static_cast<double>(index.times.back() - index.times.front()) * index.unit_s;
+  return index.declared_count - (duration_s * index.rate_hz + 1) > missing / 2;
+}
+
+/// From the first frame on.
+std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
+  std::vector<std::int64_t> times;
+  times.reserve(index.times.size());
+  for (const std::int64_t time : index.times) {
+    times.push_back(
+        std::llround(static_cast<double>(time - index.times.front()) * index.unit_s * 1e9));
+  }
+  return times;
+}
+
+}  // namespace
+
+/// A container that is being read, its video stream and its decoder.
+struct VideoDecoder::Input {
+  Format format;
+  AVStream* stream = nullptr;
+  Codec codec;
+  Packet packet{av_packet_alloc()};
+  Frame frame{av_frame_alloc()};
+  Scaler scaler;
+
+  explicit Input(const fs::path& file) : format(libav::open_input(file, kContainers)) {
+    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);
+    const AVCodec* decoder = nullptr;
+    const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    if (best < 0 || decoder == nullptr) fail_to_open(file);
+    stream = format->streams[best];
+    for (unsigned i = 0; i < format->nb_streams; ++i) {
+      if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
+    }
+    codec.reset(avcodec_alloc_context3(decoder));
+    codec->thread_count = 0;
+    codec->max_pixels = kMostPixels;
+    if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
+        avcodec_open2(codec.get(), decoder, nullptr) < 0) {
+      fail_to_open(file);
+    }
+  }
+
+  /// The next packet of the stream; false at the end, and where the file is cut.
+  bool read_packet() {
+    for (;;) {
+      av_packet_unref(packet.get());
+      if (av_read_frame(format.get(), packet.get()) < 0) return false;
+      if (packet->stream_index == stream->index) return true;
+    }
+  }
+
+  /// The next frame in the order of time; false at the end.
+  bool decode_frame() {
+    for (;;) {
+      const int received = avcodec_receive_frame(codec.get(), frame.get());
+      if (received == 0) return true;
+      if (received != AVERROR(EAGAIN)) return false;
+      // A packet that cannot be decoded is passed over, as players do.
+      avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
+    }
+  }
+
+  /// Whether it stands at a key frame, at or before that time.
+  bool seek(std::int64_t time) {
+    if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
+    avcodec_flush_buffers(codec.get());
+    return true;
+  }
+
+  cv::Mat image(const fs::path& file) {
+    const AVFrame& from = *frame;
+    scaler.reset(sws_getCachedContext(scaler.release(),
+                                      from.width,
+                                      from.height,
+                                      static_cast<AVPixelFormat>(from.format),
+                                      from.width,
+                                      from.height,
+                                      AV_PIX_FMT_BGR24,
+                                      SWS_BICUBIC,  // as OpenCV's reader does
+                                      nullptr,
+                                      nullptr,
+                                      nullptr));
+    if (!scaler) fail_to_open(file);
+    cv::Mat bgr(from.height, from.width, CV_8UC3);
+    std::uint8_t* const planes[] = {bgr.data};
+    const int strides[] = {static_cast<int>(bgr.step)};
+    sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
+    const int turns = quarter_turns(*stream);
+    if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
+    return bgr;
+  }
+};
+
+namespace {
+
+/// Times of all packets; nothing where one has none, or two the same.
+struct PacketTimes {
+  std::vector<std::int64_t> all;
+  std::vector<std::int64_t> keys;
+  bool exact = true;
+
+  void add(const AVPacket& packet, bool reordered) {
+    if ((packet.flags & (AV_PKT_FLAG_DISCARD | AV_PKT_FLAG_CORRUPT)) != 0) return;
+    const bool timed = packet.pts != AV_NOPTS_VALUE;
+    exact = exact && (timed || (!reordered && packet.dts != AV_NOPTS_VALUE));
+    const std::int64_t time = timed ? packet.pts : packet.dts;
+    all.push_back(time);
+    if ((packet.flags & AV_PKT_FLAG_KEY) != 0) keys.push_back(time);
+  }
+  void finish() {
+    std::ranges::sort(all);
+    std::ranges::sort(keys);
+    exact = exact && std::ranges::adjacent_find(all) == all.end();
+  }
+};
+
+double declared_count(const AVFormatContext& format, const AVStream& stream) {
+  if (stream.nb_frames > 0) return static_cast<double>(stream.nb_frames);
+  const double rate = av_q2d(stream.avg_frame_rate);
+  return format.duration > 0 && rate > 0
+             ? static_cast<double>(format.duration) / AV_TIME_BASE * rate
+             : 0;
+}
+
+}  // namespace
+
+VideoDecoder::VideoDecoder(fs::path file)
+    : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
+  const AVStream& stream = *input_->stream;
+  const AVCodecParameters& parameters = *stream.codecpar;
+  index_.unit_s = av_q2d(stream.time_base);
+  index_.size = {parameters.width, parameters.height};
+  index_.quarter_turns = quarter_turns(stream);
+  if (index_.quarter_turns % 2 == 1) std::swap(index_.size.width, index_.size.height);
+  const double rate = av_q2d(stream.avg_frame_rate);
+  if (std::isfinite(rate)) index_.rate_hz = rate;
+  index_.declared_count = declared_count(*input_->format, stream);
+  PacketTimes times;
+  while (input_->read_packet()) times.add(*input_->packet, parameters.video_delay > 0);
+  times.finish();
+  index_.times = std::move(times.all);
+  index_.key_times = std::move(times.keys);
+  restart();
+  if (times.exact) return;
+  numbering_ = Numbering::by_count;
+  index_.times.clear();
+  const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
+  for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
+    index_.times.push_back(std::llround(frame * period));
+  }
+  restart();
+}
+
+VideoDecoder::~VideoDecoder() = default;
+
+void VideoDecoder::restart() {
+  input_.reset();
+  state_ = State::begin;
+}
+
+/// Decodes the next frame; its number, or -1 at the end.
+int VideoDecoder::next_frame() {
+  if (!input_) input_ = std::make_unique<Input>(file_);
+  while (input_->decode_frame()) {
+    if (numbering_ == Numbering::by_count) {
+      last_ = state_ == State::begin ? 0 : last_ + 1;
+    } else {
+      const auto& times = index_.times;
+      const auto at = std::ranges::lower_bound(times, input_->frame->best_effort_timestamp);
+      if (at == times.end() || *at != input_->frame->best_effort_timestamp) continue;
+      last_ = static_cast<int>(at - times.begin());
+    }
+    state_ = State::decoding;
+    return last_;
+  }
+  return -1;
+}
+
+/// Goes where decoding on leads to the frame; returns the first that is whole from there on: what a
+/// decoder gives out between a key frame and the frames shown before it may lack its references.
+int VideoDecoder::go_to(int frame) {
+  const auto& keys = index_.key_times;
+  const std::int64_t time = index_.times[frame];
+  const bool timed = numbering_ == Numbering::by_time;
+  auto key = std::ranges::upper_bound(keys, time);
+  if (key != keys.begin()) --key;
+  if (state_ == State::decoding && frame > last_) {
+    const bool key_between = timed && key != keys.end() && *key > index_.times[last_];
+    if (!key_between || frame - last_ <= kStepsWorthDecoding) return last_ + 1;
+  }
+  kept_.clear();
+  const bool seekable = timed && key != keys.end() && *key <= time;
+  if (seekable && input_ && input_->seek(*key)) {
+    state_ = State::sought;
+  } else {
+    restart();
+  }
+  if (!seekable) return 0;
+  return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
+}
+
+cv::Mat VideoDecoder::decode(int frame) {
+  if (const auto kept = kept_.find(frame); kept != kept_.end()) return kept->second;
+  const bool backward = state_ == State::decoding && last_ > frame;
+  const int whole = go_to(frame);
+  const int first_kept = backward ? std::max(whole, frame - kKept) : frame;
+  while (true) {
+    const bool sought = state_ == State::sought;
+    const int decoded = next_frame();
+    if (sought && decoded > frame) {
+      restart();  // it led too far
+      continue;
+    }
+    if (decoded < 0 || decoded > frame) {
+      restart();
+      throw InputError(fmt::format(
+          "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+    }
+    if (decoded < first_kept) continue;
+    cv::Mat image = input_->image(file_);
+    if (decoded == frame) return image;
+    kept_[decoded] = std::move(image);
+  }
+}
+
+VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
+  if (!is_file(file)) throw InputError(file.string() + ": no such file");
+  const auto decoder = std::make_shared<VideoDecoder>(file);
+  const VideoIndex& index = decoder->index();
+  if (index.times.empty() || is_cut(index)) {
+    throw InputError(file.string() + ": found " + std::to_string(index.times.size()) +
+                     " frames that can be decoded (the file seems cut), expected " +
+                     std::to_string(std::max(1L, std::lround(index.declared_count))));
+  }
+  check_size(file, index.size, camera);
+  camera.width = index.size.width;
+  camera.height = index.size.height;
+  const auto one_at_a_time = std::make_shared<std::mutex>();
+  const auto decode = [decoder, one_at_a_time, file, camera](int frame) {
+    cv::Mat image;
+    {
+      const std::scoped_lock lock(*one_at_a_time);
+      image = decoder->decode(frame);
+    }
+    check_size(file, image.size(), camera);
+    return image;
+  };
+  // What the decoder keeps is part of the limit.
+  const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
+  const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
+  const int count = static_cast<int>(index.times.size());
+  return {timestamps_ns(index),
+          std::make_shared<const FrameCache>(count, decode, left),
+          static_cast<double>(index.times.front()) * index.unit_s,
+          index.quarter_turns};
+}
+
+}  // namespace gpo

@@ -1,0 +1,255 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "engine/files/folder.h"
+#include "engine/recording/camera_source.h"
+#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/gyroscope_file.h"
+#include "engine/recording/companions/truth_file.h"
+#include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/metadata_field_of_view.h"
+#include "engine/recording/loggers/logs.h"
+#include "engine/recording/images/image_files.h"
+#include "engine/recording/images/video_decoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kAssumedRateHz = 30;
+
+std::vector<fs::path> videos_in(const fs::path& folder) {
+  std::vector<fs::path> videos = files_in(folder);
+  std::erase_if(videos, [](const fs::path& file) { return !is_video_name(file); });
+  std::ranges::sort(videos);
+  return videos;
+}
+
+/// Numbered pictures of the folder itself, or of the folder in it where people keep them.
+std::vector<fs::path> images_in(const fs::path& folder) {
+  for (const char* name : {"", "images", "frames", "rgb", "data"}) {
+    if (!is_folder(folder / name)) continue;
+    if (auto files = numbered_images(folder / name); !files.empty()) return files;
+  }
+  return {};
+}
+
+/// The one video to open, or nothing.
+std::optional<fs::path> video_at(const fs::path& path) {
+  if (!is_folder(path)) return path;
+  auto videos = videos_in(path);
+  const auto is_other = [](const fs::path& file) { return file.stem() != "data"; };
+  if (is_file(path / "data.jsonl") && !std::ranges::all_of(videos, is_other))
+    std::erase_if(videos, is_other);  // of a second camera
+  if (videos.size() > 1) {
+    throw InputError(path.string() + ": found " + std::to_string(videos.size()) + " videos (" +
+                     videos[0].filename().string() + ", " + videos[1].filename().string() +
+                     "), expected one; name the file to open");
+  }
+  return videos.empty() ? std::nullopt : std::optional(videos[0]);
+}
+
+/// A phone's logger may add further clocks in further columns.
+std::optional<std::vector<std::int64_t>> stored_times(const fs::path& file) {
+  if (!is_file(file)) return std::nullopt;
+  return csv_time_stamps(read_csv(file, {"timestamp"}, CsvColumns::at_least),
+                         TimeUnit::by_frame_rate);
+}
+
+std::vector<std::int64_t> regular_times(int count, double rate_hz) {
+  std::vector<std::int64_t> times;
+  times.reserve(count);
+  for (int i = 0; i < count; ++i) times.push_back(std::llround(i * 1e9 / rate_hz));
+  return times;
+}
+
+/// What else may tell the frames' times.
+struct OtherTimes {
+  const std::optional<Log>& log;
+  const std::vector<std::int64_t>& video_ns;
+  const Calibration& calibration;
+  const std::string& calibration_name;
+};
+
+void check_count(const fs::path& file,
+                 std::size_t found,
+                 const char* things,
+                 std::optional<int> count) {
+  if (!count || static_cast<int>(found) == *count) return;
+  throw InputError(fmt::format(
+      "{}: found {} {}, expected {}, one a picture", file.string(), found, things, *count));
+}
+
+/// Times of the frames: the file's, else the log's, else the video's, else regular ones.
+std::vector<std::int64_t> frame_times(Recording& recording,
+                                      const fs::path& folder,
+                                      std::optional<int> count,
+                                      const OtherTimes& other) {
+  const fs::path file = folder / "frame_timestamps.txt";
+  if (auto stored = stored_times(file)) {
+    check_count(file, stored->size(), "time stamps", count);
+    return *std::move(stored);
+  }
+  if (other.log && !other.log->frame_times_ns.empty()) {
+    check_count(other.log->frames_file, other.log->frame_times_ns.size(), "frames", count);
+    return other.log->frame_times_ns;
+  }
+  if (!other.video_ns.empty()) return other.video_ns;
+  const auto& rate_hz = other.calibration.rate_hz;
+  if (!rate_hz) {
+    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " +
+                              other.calibration_name + ": 30 frames a second are assumed");
+  }
+  const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
+  return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
+}
+
+/// A gyroscope's table, where its maker knows nothing of the camera.
+std::optional<Gyroscope> plain_gyroscope(const fs::path& folder) {
+  for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"})
+    if (const auto file = if_file(folder / name))
+      return read_gyroscope(*file, TimeUnit::by_sample_rate);
+  return std::nullopt;
+}
+
+void add_gyroscope(Recording& recording,
+                   Gyroscope gyroscope,
+                   std::int64_t time_offset_ns,
+                   const std::string& calibration_name) {
+  gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
+  gyroscope.time_offset_ns = time_offset_ns;
+  recording.gyroscope = std::move(gyroscope);
+  if (recording.T_body_camera) return;
+  recording.notes.push_back("no T_BS in " + calibration_name +
+                            ": the gyroscope's axes are taken as the camera's");
+}
+
+/// A log's camera has the axes of the stored picture, a recording's those of the shown one.
+Pose of_shown_image(const Pose& T_body_stored, int quarter_turns) {
+  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
+  return T_body_stored * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
+}
+
+void add_log(Recording& recording, const Log& log, int quarter_turns) {
+  if (log.T_body_camera && !recording.T_body_camera)
+    recording.T_body_camera = of_shown_image(*log.T_body_camera, quarter_turns);
+  recording.readout_s = log.readout_s;
+  recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
+  if (log.true_poses.empty() || recording.truth) return;
+  recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
+}
+
+struct FoundCalibration {
+  Calibration calibration;
+  fs::path file;
+  bool found = true;
+};
+
+/// A calibration that somebody made goes before what a log says of the camera. Throws InputError
+/// where there is neither and one is required.
+FoundCalibration calibration_of(const fs::path& folder,
+                                const std::optional<Log>& log,
+                                bool required) {
+  const auto file = find_calibration(folder);
+  if (log && log->camera && (!file || *file == log->camera_file)) {
+    Calibration calibration;
+    calibration.camera = *log->camera;
+    return {calibration, log->camera_file};
+  }
+  if (!file && !required) return {{}, folder / "camera.yaml", false};
+  return {read_calibration(calibration_in(folder)), calibration_in(folder)};
+}
+
+/// The calibration may leave the size to the pictures; without pictures it may not.
+void check_size_is_known(const Camera& camera, const fs::path& calibration) {
+  if (camera.width > 0) return;
+  throw InputError(calibration.string() +
+                   ": key `image_width`: found nothing, expected a number of pixels, since there "
+                   "are no pictures to take it from");
+}
+
+}  // namespace
+
+std::optional<fs::path> find_images(const fs::path& path) {
+  const bool found = is_folder(path) ? !videos_in(path).empty() || !images_in(path).empty()
+                                     : is_video_name(path);
+  return found ? std::optional(path) : std::nullopt;
+}
+
+std::shared_ptr<const FrameCache> open_images(const fs::path& path,
+                                                std::size_t cache_bytes,
+                                                const TopicChoices& topics) {
+  if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
+  Recording recording;  // not calibrated: of any size
+  if (const auto video = video_at(path)) {
+    if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).images;
+    throw InputError(path.string() + ": found a file that is no video, expected a folder or " +
+                     recording_endings());
+  }
+  for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
+    if (!is_folder(folder)) continue;
+    auto files = images_in(folder);
+    if (files.empty()) continue;
+    add_image_files(recording, std::move(files), cache_bytes);
+    return recording.images;
+  }
+  throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
+}
+
+Recording read_images(const fs::path& path, const OpenOptions& options) {
+  const auto& tracks = options.tracks;
+  const fs::path folder = is_folder(path) ? path : folder_of(path);
+  const auto video = video_at(path);
+  std::optional<Log> log = log_beside(folder, video);
+  Recording recording;
+  // Of pictures the size is known, and so, roughly, what camera it may be.
+  const auto [calibration, calibration_file, found] =
+      calibration_of(folder, log, tracks.has_value());
+  const std::string name = calibration_file.filename().string();
+  recording.camera = calibration.camera;
+  recording.T_body_camera = calibration.T_body_camera;
+  VideoFile opened;
+  if (video) {
+    opened = open_video(*video, recording.camera, options.cache_bytes);
+    recording.images = opened.images;
+    recording.image_files = {*video};
+  } else if (auto files = images_in(folder); !files.empty()) {
+    add_image_files(recording, std::move(files), options.cache_bytes);
+  }
+  if (!found) {
+    const auto& files = recording.image_files;
+    guess_camera(recording, files.empty() ? std::nullopt : metadata_field_of_view(files.front()));
+  } else if (calibration.self_calibrated) {
+    set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
+  }
+  check_size_is_known(recording.camera, calibration_file);
+  const auto count = recording.images ? std::optional(recording.images->count()) : std::nullopt;
+  if (tracks) recording.tracks = read_tracks(*tracks, count);
+  recording.timestamps_ns =
+      frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
+  if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
+    read_tracks(*tracks, recording.frame_count());  // names the line
+  }
+  recording.truth = truth_beside(folder, recording.timestamps_ns);
+  auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
+  if (!gyroscope && !log && video) {
+    log = log_inside(*video, opened.first_frame_s);
+    if (log) gyroscope = log->gyroscope;
+  }
+  if (log) add_log(recording, *log, opened.quarter_turns);
+  if (gyroscope) add_gyroscope(recording, std::move(*gyroscope), calibration.time_offset_ns, name);
+  return recording;
+}
+
+}  // namespace gpo

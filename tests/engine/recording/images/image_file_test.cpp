@@ -1,0 +1,79 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/images/image_file.h"
+
+#include "tests/engine/test_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <zlib.h>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using test::TestFolder;
+using testing::HasSubstr;
+
+class ImageHeaders : public testing::TestWithParam<const char*> {};
+
+TEST_P(ImageHeaders, SayWhatOpenCvDecodes) {
+  const TestFolder folder;
+  const cv::Mat image(46, 62, CV_8UC3, cv::Scalar(10, 100, 200));
+  const auto file = folder.write(std::string("1") + GetParam(), image);
+  const auto header = read_image_header(folder.read(file.filename()));
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->width, 62);
+  EXPECT_EQ(header->height, 46);
+  EXPECT_EQ(header->bits, 8);
+  EXPECT_EQ(read_image(file).size(), cv::Size(62, 46));
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         ImageHeaders,
+                         testing::Values(".png", ".jpg", ".bmp", ".ppm", ".tiff", ".webp"));
+
+TEST(ImageHeader, HugeImagesAreRefusedBeforeTheyAreDecoded) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& bytes) {
+    return error_of([&] { read_image(folder.write("1.pgm", bytes)); });
+  };
+  EXPECT_THAT(error("P2 99999 99999 255\n0 0 0"),
+              HasSubstr("1.pgm: found a picture of 99999x99999, expected at most 64 million"));
+  EXPECT_THAT(error("P2 9999 9999 255\n0 0 0"), HasSubstr("at most 64 million pixels"));
+  EXPECT_THAT(error(std::string("II*\0\x08\0\0\0\x01\0\0\x01\x04\0\x01\0\0\0\xFF\xFF\xFF\xFF", 22)),
+              HasSubstr("cannot be decoded"));
+  EXPECT_THAT(error("/* XPM */ static char * x[]"), HasSubstr("cannot be decoded"));
+}
+
+/// A chunk with its length and its sum.
+std::string png_chunk(const std::string& kind, const std::string& content) {
+  const auto number = [](std::size_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFF);
+    return bytes;
+  };
+  const std::string summed = kind + content;
+  const auto* start = reinterpret_cast<const Bytef*>(summed.data());
+  return number(content.size()) + summed +
+         number(crc32(0, start, static_cast<uInt>(summed.size())));
+}
+
+TEST(ImageFile, WhatLibpngWouldRemarkOnIsLeftOut) {
+  const TestFolder folder;
+  const cv::Mat image(46, 62, CV_8UC3, cv::Scalar(10, 100, 200));
+  std::string bytes = folder.read(folder.write("1.png", image).filename());
+  constexpr std::size_t kFirst = 8 + 25;  // after IHDR
+  bytes.insert(kFirst, png_chunk("iCCP", "a profile that is none") + png_chunk("gAMA", "?"));
+  const auto file = folder.write("2.png", bytes);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(cv::norm(read_image(file), image, cv::NORM_INF), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  testing::internal::CaptureStderr();
+  cv::imread(file.string());
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("libpng warning: iCCP"));
+}
+
+}  // namespace
+}  // namespace gpo

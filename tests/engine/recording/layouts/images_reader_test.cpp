@@ -1,0 +1,255 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/pose.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/recording.h"
+#include "tests/engine/recording/images/made_video.h"
+#include "tests/engine/test_folder.h"
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+using test::error_of;
+using test::TestFolder;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr int kVideoFrames = 60;
+
+/// A picture that tells its number: bits as black and white columns, which compression leaves.
+cv::Mat numbered(int number) {
+  cv::Mat image(48, 64, CV_8UC3, cv::Scalar::all(0));
+  for (int bit = 0; bit < 8; ++bit) {
+    if ((number >> bit & 1) != 0) image.colRange(8 * bit, 8 * bit + 8).setTo(255);
+  }
+  return image;
+}
+
+int number_of(const cv::Mat& image) {
+  int number = 0;
+  for (int bit = 0; bit < 8; ++bit) {
+    number |= (image.at<cv::Vec3b>(24, 8 * bit + 4)[1] > 127 ? 1 : 0) << bit;
+  }
+  return number;
+}
+
+void write_video(const std::filesystem::path& file) {
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < kVideoFrames; ++i) images.push_back(numbered(i));
+  test::make_video(file, images);
+}
+
+class ImagesReader : public testing::Test {
+ protected:
+  ImagesReader() { folder.write("camera.yaml", test::kCameraYaml); }
+
+  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
+  std::string error() const {
+    return error_of([this] { open(); });
+  }
+  std::string file(const char* name) const { return (folder.path() / name).string(); }
+  void write_images(int count) const {
+    for (int i = 0; i < count; ++i) folder.write("img" + std::to_string(i) + ".png", numbered(i));
+  }
+
+  const TestFolder folder;
+};
+
+TEST_F(ImagesReader, GivesEveryFrameOfAVideoInWhateverOrder) {
+  write_video(folder.path() / "clip.avi");
+  OpenOptions options;
+  options.cache_bytes = 3 * 64 * 48 * 3;
+  for (const auto& path : {folder.path(), folder.path() / "clip.avi"}) {
+    const auto recording = open_recording(path, options);
+    EXPECT_EQ(recording->layout, "pictures");
+    ASSERT_EQ(recording->frame_count(), kVideoFrames);
+    EXPECT_EQ(recording->timestamps_ns[25], 1000000000);
+    for (int i = 0; i < kVideoFrames; ++i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
+    for (int i = kVideoFrames - 1; i >= 0; --i)
+      EXPECT_EQ(number_of(recording->images->bgr(i)), i);
+    for (int i = 0; i < 200; ++i) {
+      const int frame = (i * 37) % kVideoFrames;
+      EXPECT_EQ(number_of(recording->images->bgr(frame)), frame);
+      EXPECT_LE(recording->images->bytes(), options.cache_bytes);
+    }
+  }
+}
+
+TEST_F(ImagesReader, GivesEveryFrameOfAVideoToSeveralThreads) {
+  write_video(folder.path() / "clip.avi");
+  OpenOptions options;
+  options.cache_bytes = 3 * 64 * 48 * 3;
+  const auto recording = open_recording(folder.path(), options);
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (const int step : {1, 7, 37})
+      threads.emplace_back([&, step] {
+        for (int i = 0; i < kVideoFrames; ++i) {
+          const int frame = i * step % kVideoFrames;
+          if (number_of(recording->images->bgr(frame)) != frame) ++wrong;
+        }
+      });
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(ImagesReader, RefusesACutVideoWithoutNoise) {
+  write_video(folder.path() / "clip.avi");
+  folder.cut("clip.avi", 0.6);
+  testing::internal::CaptureStderr();
+  EXPECT_THAT(error(), testing::MatchesRegex(".*clip.avi: found .* cut.*expected .*"));
+  folder.write("clip.avi", "no video at all");
+  EXPECT_THAT(error(),
+              EndsWith("clip.avi: found something that cannot be decoded (cut, or no "
+                       "video), expected a video"));
+  folder.write("clip.avi", "");
+  EXPECT_THAT(error(), HasSubstr("clip.avi: found something that cannot be decoded"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
+  write_images(12);
+  folder.write("mask.png", numbered(200));
+  const auto recording = open();
+  ASSERT_EQ(recording->frame_count(), 12);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
+  EXPECT_EQ(recording->timestamps_ns[3], 100000000);
+  EXPECT_THAT(recording->notes,
+              ElementsAre("no frame_timestamps.txt and no rate_hz in camera.yaml: 30 frames a "
+                          "second are assumed",
+                          "no gyroscope: rotations from the pictures alone",
+                          "no ground truth: no metrics"));
+}
+
+TEST_F(ImagesReader, TakesTheRateOfTheCalibration) {
+  write_images(3);
+  folder.write("camera.yaml", std::string(test::kCameraYaml) + "rate_hz: 20\n");
+  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 50000000, 100000000));
+}
+
+TEST_F(ImagesReader, ReadsStoredTimesAndTheGyroscope) {
+  write_images(3);
+  folder.write("frame_timestamps.txt", "timestamp [s]\n10.5\n10.6\n10.7\n");
+  folder.write("gyro.csv", "timestamp_ns,wx,wy,wz\n10400000000,1,2,3\n10500000001,1,2,3\n");
+  const auto recording = open();
+  EXPECT_THAT(recording->timestamps_ns, ElementsAre(10500000000, 10600000000, 10700000000));
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_THAT(recording->gyroscope->timestamps_ns, ElementsAre(10400000000, 10500000001));
+  EXPECT_TRUE(recording->gyroscope->R_gyro_camera.isIdentity(0));
+  EXPECT_THAT(recording->notes,
+              Contains("no T_BS in camera.yaml: the gyroscope's axes are taken as the camera's"));
+}
+
+TEST_F(ImagesReader, TurnsTheGyroscopeByKalibrsTransform) {
+  write_images(1);
+  folder.write("gyro.csv", "timestamp,wx,wy,wz\n0,1,2,3\n0.01,1,2,3\n");
+  folder.write("camera.yaml", R"(cam0:
+  resolution: [64, 48]
+  intrinsics: [60, 60, 32, 24]
+  distortion_model: radtan
+  distortion_coeffs: [0, 0, 0, 0]
+  timeshift_cam_imu: 0.25
+  T_cam_imu: [[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+)");
+  const auto recording = open();
+  const Gyroscope& gyroscope = recording->gyroscope.value();
+  EXPECT_EQ(gyroscope.time_offset_ns, 250000000);
+  EXPECT_TRUE(
+      (gyroscope.R_gyro_camera * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY()));
+}
+
+TEST_F(ImagesReader, NamesBothCountsOfTimes) {
+  write_images(3);
+  folder.write("frame_timestamps.txt", "1\n2\n");
+  EXPECT_EQ(error(),
+            file("frame_timestamps.txt") + ": found 2 time stamps, expected 3, one a picture");
+}
+
+TEST_F(ImagesReader, NamesAVideoOfAnotherSize) {
+  write_video(folder.path() / "clip.avi");
+  folder.write("camera.yaml",
+               "resolution: [128, 96]\nintrinsics: [60, 60, 64, 48]\ndistortion_model: none\n");
+  EXPECT_EQ(
+      error(),
+      file("clip.avi") + ": found a picture of 64x48, expected the calibrated resolution 128x96");
+}
+
+TEST_F(ImagesReader, NamesWhatAFolderLacks) {
+  EXPECT_THAT(error(), HasSubstr(": found no recording, expected cam0/data.csv (EuRoC), "));
+  EXPECT_THAT(error_of([&] { open_recording(folder.write("notes.txt", "")); }),
+              HasSubstr("notes.txt: found a file that is no video, expected a folder, "));
+}
+
+TEST_F(ImagesReader, GuessesTheCameraWhereNobodyTellsItAndSaysSo) {
+  write_images(1);
+  EXPECT_EQ(open_recording(folder.path())->camera_source, CameraSource::file);
+  std::filesystem::remove(folder.path() / "camera.yaml");
+  const auto recording = open_recording(folder.path());
+  const Camera& camera = recording->camera;
+  EXPECT_EQ(recording->camera_source, CameraSource::guess);
+  EXPECT_EQ(cv::Size(camera.width, camera.height), recording->images->bgr(0).size());
+  const double seen_rad = 2 * std::atan(std::hypot(camera.width, camera.height) / 2 / camera.fx);
+  EXPECT_NEAR(degrees(seen_rad), 70, 1e-9);
+  EXPECT_THAT(
+      recording->notes,
+      testing::Contains(testing::StartsWith(
+          "no calibration: the camera is a guess (70 degrees along the picture's diagonal")));
+}
+
+TEST_F(ImagesReader, TellsASelfCalibratedCameraFromOneOfABoard) {
+  write_images(1);
+  const cv::Size size = open_recording(folder.path())->images->bgr(0).size();
+  folder.write("camera.yaml",
+               fmt::format("resolution: [{}, {}]\nsource: self-calibrated\n"
+                           "intrinsics: [60, 60, 32, 24]\ndistortion_model: none\n",
+                           size.width,
+                           size.height));
+  const auto recording = open_recording(folder.path());
+  EXPECT_EQ(recording->camera_source, CameraSource::self_calibrated);
+  EXPECT_EQ(recording->camera.fx, 60);
+}
+
+TEST_F(ImagesReader, AsksWhichOfTwoVideos) {
+  folder.write("a.mp4", "");
+  folder.write("b.MOV", "");
+  EXPECT_EQ(error(),
+            folder.path().string() +
+                ": found 2 videos (a.mp4, b.MOV), expected one; name the file to open");
+}
+
+TEST_F(ImagesReader, TakesTracksWithoutImagesOrList) {
+  folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n4,1,2,3\n");
+  const auto recording = open();
+  EXPECT_EQ(recording->layout, "tracks");
+  EXPECT_EQ(recording->frame_count(), 5);
+  folder.write("frame_timestamps.txt", "1\n2\n3\n");
+  EXPECT_EQ(error(),
+            file("tracks.csv") + ":3: found frame 4, expected 0 to 2, the frames of the recording");
+}
+
+TEST_F(ImagesReader, MakesThePlaneTheBoards) {
+  write_images(1);
+  folder.write("board.yaml", "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  const auto recording = open();
+  ASSERT_TRUE(recording->plane);
+  EXPECT_EQ(recording->plane->normal, Eigen::Vector3d(0, 0, -1));
+  EXPECT_EQ(recording->plane->distance, 0);
+  EXPECT_THAT(recording->notes,
+              Contains("no stored ground truth: it is computed from the chessboard"));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,99 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/layouts/open_recording.h"
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace gpo {
+namespace {
+
+const Eigen::Vector3d kBias(-0.0022, 0.0215, 0.0776);  // of EuRoC's gyroscope
+
+/// Gray noise with some structure, moved by so many pixels.
+cv::Mat image(double shift_px) {
+  cv::Mat noise(240, 320, CV_8UC3);
+  cv::RNG random(3);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 255);
+  cv::GaussianBlur(noise, noise, {}, 2);
+  const cv::Mat move = (cv::Mat_<double>(2, 3) << 1, 0, shift_px, 0, 1, 0);
+  cv::warpAffine(noise, noise, move, noise.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
+  return noise;
+}
+
+struct Made {
+  double rest_s = 2;             ///< from the beginning of 4 s
+  double noise_rad_s = 0.004;    ///< of a sample
+  double images_px_per_s = 0;  ///< while the gyroscope rests
+  Eigen::Vector3d rate = kBias;  ///< that the gyroscope tells then
+  std::uint64_t seed = 1;
+};
+
+Recording made(const Made& options) {
+  constexpr std::int64_t kStart_ns = 1'500'000'000'000'000'000;
+  Recording recording;
+  recording.camera = {320, 240, 250, 250, 160, 120, Distortion::none, {}};
+  for (int i = 0; i < 80; ++i) recording.timestamps_ns.push_back(kStart_ns + i * 50'000'000LL);
+  recording.images = std::make_shared<FrameCache>(80, [options](int i) {
+    const double moving_s = std::max(0.0, i / 20.0 - options.rest_s);
+    return image(options.images_px_per_s * i / 20.0 + 30 * moving_s);
+  });
+  Gyroscope gyroscope;
+  std::mt19937_64 random(options.seed);
+  std::normal_distribution<double> noise(0, options.noise_rad_s);
+  for (int k = 0; k < 800; ++k) {
+    const double t = k / 200.0;
+    const double turning = t > options.rest_s ? 0.5 * std::sin(9 * (t - options.rest_s)) : 0;
+    gyroscope.timestamps_ns.push_back(kStart_ns + k * 5'000'000LL);
+    gyroscope.rates_rad_s.push_back(options.rate + Eigen::Vector3d(turning, 0, -turning) +
+                                    Eigen::Vector3d(noise(random), noise(random), noise(random)));
+  }
+  recording.gyroscope = gyroscope;
+  return recording;
+}
+
+TEST(StationaryInterval, TellsTheBias) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Recording recording = made({.seed = seed});
+    const auto rest = find_stationary_interval(recording);
+    ASSERT_TRUE(rest);
+    EXPECT_NEAR(1e-9 * static_cast<double>(rest->last_ns - rest->first_ns), 2, 0.3);
+    EXPECT_LT((rest->mean_rad_s - kBias).cwiseAbs().maxCoeff(), 4 * rest->sigma_rad_s);
+    EXPECT_LT(rest->sigma_rad_s, 1e-3);
+  }
+}
+
+TEST(StationaryInterval, IsNoneWhereTheImagesTurn) {
+  // A turntable: the gyroscope says one rate all the time, and it is not its bias.
+  EXPECT_FALSE(find_stationary_interval(made({.images_px_per_s = 10})));
+}
+
+TEST(StationaryInterval, IsNoneWhereTheGyroscopeShakes) { EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05}))); }
+
+TEST(StationaryInterval, IsNoneWhereItIsShort) { EXPECT_FALSE(find_stationary_interval(made({.rest_s = 0.5}))); }
+
+TEST(StationaryInterval, IsNoneWithoutAGyroscope) {
+  Recording recording = made({});
+  recording.gyroscope.reset();
+  EXPECT_FALSE(find_stationary_interval(recording));
+}
+
+TEST(StationaryInterval, IsToldByTracksWhereThereAreNoImages) {
+  Recording recording = made({});
+  recording.images.reset();
+  EXPECT_FALSE(find_stationary_interval(recording));
+  for (int i = 0; i < 80; ++i)
+    for (int j = 0; j < 20; ++j)
+      recording.tracks.push_back({i, j, {10.0 * j + (i > 40 ? i - 40 : 0), 5.0 * j}});
+  ASSERT_TRUE(find_stationary_interval(recording));
+  for (TrackObservation& one : recording.tracks) one.raw_px.x() += one.frame;
+  EXPECT_FALSE(find_stationary_interval(recording));
+}
+
+}  // namespace
+}  // namespace gpo

@@ -1,0 +1,138 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/work/image_fetcher.h"
+
+#include "engine/base/error.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <semaphore>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
+int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
+
+/// Pictures that are decoded one by one, as the test lets them go, and a fetcher of them. Of 50 the
+/// decoder cannot read any more.
+class ImageFetcherTest : public testing::Test {
+ protected:
+  ~ImageFetcherTest() override { let_go_.release(100); }
+
+  cv::Mat decode(int index) {
+    {
+      const std::scoped_lock lock(mutex_);
+      decoded_.push_back(index);
+      by_test_ = by_test_ || std::this_thread::get_id() == test_;
+    }
+    begun_.release();
+    let_go_.acquire();
+    if (index >= 50) throw InputError("cut");
+    return image_of(index);
+  }
+  FetchedImage get(int index) { return fetcher_.get(images_, index); }
+  /// Lets one be decoded, and waits until it is there.
+  void let_one_go() {
+    let_go_.release();
+    come_.acquire();
+  }
+  std::vector<int> decoded() {
+    const std::scoped_lock lock(mutex_);
+    return decoded_;
+  }
+
+  const std::thread::id test_ = std::this_thread::get_id();
+  std::counting_semaphore<> begun_{0}, let_go_{0}, come_{0};
+  std::mutex mutex_;
+  std::vector<int> decoded_;
+  bool by_test_ = false;
+  /// Of which the cache keeps only the last.
+  std::shared_ptr<const FrameCache> images_ = std::make_shared<const FrameCache>(
+      100, [this](int i) { return decode(i); }, 1);
+  ImageFetcher fetcher_{[this] { come_.release(); }};
+};
+
+TEST_F(ImageFetcherTest, GivesAImageWhenItHasComeAndNeverWaits) {
+  const FetchedImage first = get(7);
+  EXPECT_TRUE(first.waiting);
+  EXPECT_TRUE(first.bgr.empty());
+  begun_.acquire();
+  EXPECT_TRUE(get(7).waiting) << "it is on its way";
+  let_one_go();
+  const FetchedImage then = get(7);
+  EXPECT_FALSE(then.waiting);
+  ASSERT_FALSE(then.bgr.empty());
+  EXPECT_EQ(number_of(then.bgr), 7);
+  EXPECT_THAT(decoded(), ElementsAre(7));
+  EXPECT_FALSE(by_test_);
+}
+
+TEST_F(ImageFetcherTest, TheNewestWishComesFirstAndTheOldestAreForgotten) {
+  get(0);
+  begun_.acquire();
+  for (int i = 1; i <= 9; ++i) get(i);
+  for (int i = 0; i < 5; ++i) let_one_go();
+  EXPECT_THAT(decoded(), ElementsAre(0, 9, 8, 7, 6));
+}
+
+TEST_F(ImageFetcherTest, KeepsWhatSeveralViewsShowThoughTheCacheDoesNot) {
+  for (const int i : {3, 4, 5}) {
+    get(i);
+    let_one_go();
+  }
+  for (const int i : {3, 4, 5}) EXPECT_EQ(number_of(get(i).bgr), i);
+  EXPECT_EQ(decoded().size(), 3U);
+}
+
+TEST_F(ImageFetcherTest, SaysWhyThereIsNoneAndDoesNotTryAgain) {
+  get(60);
+  let_one_go();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(get(60).error, "cut");
+    EXPECT_FALSE(get(60).waiting);
+  }
+  EXPECT_THAT(decoded(), ElementsAre(60));
+}
+
+TEST_F(ImageFetcherTest, AnotherRecordingsImagesTakeThePlaceOfAll) {
+  get(7);
+  begun_.acquire();
+  get(8);
+  const auto others = std::make_shared<const FrameCache>(9, [](int i) { return image_of(i); });
+  EXPECT_TRUE(fetcher_.get(others, 7).waiting);
+  let_one_go();  // of the first recording: of no interest any more; then the other's
+  const FetchedImage image = fetcher_.get(others, 7);
+  ASSERT_FALSE(image.bgr.empty());
+  EXPECT_EQ(number_of(image.bgr), 7);
+  EXPECT_THAT(decoded(), ElementsAre(7)) << "nobody asks for 8 any more";
+}
+
+TEST_F(ImageFetcherTest, HasAtOnceWhatIsThereAlready) {
+  let_go_.release();
+  images_->bgr(2);
+  EXPECT_EQ(number_of(get(2).bgr), 2);
+  EXPECT_TRUE(by_test_) << "the test itself had it decoded";
+}
+
+TEST(FetchImage, WaitsForIt) {
+  const FrameCache images(3, [](int i) {
+    if (i == 2) throw InputError("cut");
+    return image_of(i);
+  });
+  EXPECT_EQ(number_of(fetch_image(images, 1).bgr), 1);
+  EXPECT_THAT(fetch_image(images, 1).error, IsEmpty());
+  EXPECT_EQ(fetch_image(images, 2).error, "cut");
+}
+
+}  // namespace
+}  // namespace gpo
