@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks the English of comments, strings, test names and Markdown pages.
+
+  tests/prose_check.py [PATH...]     prints each violation as PATH:LINE: RULE: TEXT and exits with 1 if there is one
+  tests/prose_check.py --count PATH...   prints the number of violations of each rule
+
+Rules: no sentence starts with a fragment word ("Of", "What", "Who", "Where", ...) in place of its subject, and none of
+the words that have a standard term is used for it. EXCEPTIONS lists what is allowed, with the reason.
+"""
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SKIPPED = re.compile(r"^(tests/fuzz/(seeds|crashes)|sequences|assets/nine/.*\.yaml|LICENSE)|prose_check\.py$")
+CODE = re.compile(r"\.(h|cpp)$")
+SCRIPT = re.compile(r"(\.(py|pyi|sh|cmake)|CMakeLists\.txt|^\.ci/.*)$")
+
+# A sentence that starts with one of these has no subject, unless it is a question.
+FRAGMENT = re.compile(r"(Of|What|Who|Whose|Whoever|Whatever|Wherever|Where|Those|Nothing|Nobody|Somebody|Whether)\b")
+SENTENCE = re.compile(r"(?:^|(?<=[.;!?] )|(?<=: ))([A-Za-z][^.;!?]*[.;!?]?)")
+
+# Word or phrase -> what to write.
+WORDS = {
+    r"pictures?": "image",
+    r"soft(ened)? (image|picture)s?": "smoothed image",
+    r"row pace|pace": "row delay, rate",
+    r"(gyro(scope)?'?s? )?turns of": "rotations",
+    r"sights?|sighted": "observation, view",
+    r"(is|are|was|were|be) (told|said)\b(?! to)": "is reported, is estimated, is given",
+    r"(tells|tell) (the|a|an|how|what|which|where|them|it|one|of|by|from)": "determine, estimate, report",
+    r"(told|tells) by": "determined by",
+    r"surest|surer": "lowest uncertainty",
+    r"nobody|somebody|whoever": "no one, the caller, the user",
+    r"held against": "compared with",
+    r"stood still": "was stationary",
+    r"looks? of (a|the) (track|point)": "patch template",
+    r"wishe[ds]|heeds?|heeded": "requests, handles",
+    r"goes with|belongs? to (no|none)": "applies to",
+    r"so many|so much": "the number, the amount",
+    r"(is|are) charged with": "names the actor",
+    r"comes to be": "becomes",
+}
+WORD = re.compile(r"\b(?:" + "|".join(f"(?P<w{i}>{pattern})" for i, pattern in enumerate(WORDS)) + r")\b", re.I)
+
+# (path, part of the text): reason
+EXCEPTIONS = {}
+
+TOKEN = re.compile(r'//[^\n]*|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'')
+
+
+def code_texts(text):
+    """Yields (line, text) of each comment block and each string literal of a C++ source."""
+    block, begin, last = [], 0, -2
+    for match in TOKEN.finditer(text):
+        token = match[0]
+        line = text.count("\n", 0, match.start()) + 1
+        if token.startswith("//"):
+            own_line = not text[text.rfind("\n", 0, match.start()) + 1:match.start()].strip()
+            words = token.lstrip("/<! ").strip()
+            if block and last == line - 1 and own_line:
+                block.append(words)
+            else:
+                if block:
+                    yield begin, " ".join(block)
+                block, begin = [words], line
+            last = line
+        elif token.startswith('"') and len(token) > 2:
+            before = text[:match.start()].rstrip()
+            if not before.endswith("include"):
+                yield line, token[1:-1].replace("\\n", " ").replace('\\"', '"')
+    if block:
+        yield begin, " ".join(block)
+
+
+def script_texts(text):
+    """Yields (line, text) of each comment of a script."""
+    block, begin, last = [], 0, -2
+    for number, line in enumerate(text.split("\n"), 1):
+        stripped = line.strip()
+        if not stripped.startswith("#") or stripped.startswith("#!"):
+            continue
+        words = stripped.lstrip("# ")
+        if block and last == number - 1:
+            block.append(words)
+        else:
+            if block:
+                yield begin, " ".join(block)
+            block, begin = [words], number
+        last = number
+    if block:
+        yield begin, " ".join(block)
+
+
+def page_texts(text):
+    """Yields (line, text) of each paragraph, list entry and table cell of a Markdown page, without its code."""
+    text = re.sub(r"```.*?```", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
+    begin, block = 1, []
+    for number, line in enumerate(text.split("\n") + [""], 1):
+        starts = re.match(r"\s*([-*|>#]|\d+\.)\s*", line)
+        if not line.strip() or starts:
+            if block:
+                yield begin, " ".join(block)
+            block, begin = [], number
+        if line.strip():
+            cells = [c.strip() for c in line.strip("| ").split("|")] if line.lstrip().startswith("|") else [line.strip()]
+            for cell in cells[:-1]:
+                yield number, cell
+            block.append(re.sub(r"^([-*>#]|\d+\.)+\s*", "", cells[-1]))
+
+
+def violations(path, text):
+    kind = code_texts if CODE.search(path) else script_texts if SCRIPT.search(path) else page_texts
+    for line, block in kind(text):
+        plain = re.sub(r"`[^`]*`", "`x`", block).replace("**", "")
+        for sentence in SENTENCE.findall(plain):
+            if FRAGMENT.match(sentence) and not sentence.endswith("?"):
+                yield line, "fragment", sentence.strip()
+        if re.match(r"(of|what|who|whose|whoever|where|those|nothing|nobody)\b", plain) and kind is not page_texts:
+            yield line, "fragment", plain.strip()
+        if re.search(r"[A-Za-z] [A-Za-z]", plain) or kind is not code_texts:
+            for match in WORD.finditer(plain):
+                rule = list(WORDS.values())[int(match.lastgroup[1:])] if match.lastgroup else ""
+                yield line, f"'{match[0]}' -> {rule}", plain.strip()
+    for match in re.finditer(r"TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", text):
+        if re.match(r"(Of|What|Who|Whose|Whoever|Where|Those|Nothing|Nobody|That|Whether|As)[A-Z]", match[2]):
+            yield text.count("\n", 0, match.start()) + 1, "test name", match[2]
+
+
+def allowed(path, text):
+    return any(path == p and part in text for p, part in EXCEPTIONS)
+
+
+def main(arguments):
+    count = "--count" in arguments
+    roots = [a for a in arguments if not a.startswith("--")]
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", *roots], cwd=ROOT, capture_output=True, text=True, check=True)
+    rules = collections.Counter()
+    for path in listed.stdout.split("\n"):
+        if not path or SKIPPED.search(path) or not (CODE.search(path) or SCRIPT.search(path) or path.endswith(".md")):
+            continue
+        if not (ROOT / path).is_file():
+            continue
+        for line, rule, text in violations(path, (ROOT / path).read_text()):
+            if allowed(path, text):
+                continue
+            rules[rule.lower()] += 1
+            if not count:
+                print(f"{path}:{line}: {rule}: {text[:150]}")
+    if count:
+        for rule, number in rules.most_common():
+            print(f"{number:6} {rule}")
+    print(f"{sum(rules.values())} violations")
+    return 1 if rules else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
