@@ -42,9 +42,8 @@ bool fits(const BagTopic& topic, const RoleKind& kind) {
 std::string file_of(const Bag& bag) { return bag.file.string(); }
 
 int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
-  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
+  for (std::size_t i = 0; i < bag.topics.size(); ++i)
     if (bag.topics[i].name == name && fits(bag.topics[i], kind)) return static_cast<int>(i);
-  }
   const auto same_name = std::ranges::find(bag.topics, name, &BagTopic::name);
   const std::string found =
       same_name == bag.topics.end()

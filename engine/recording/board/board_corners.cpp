@@ -35,14 +35,12 @@ std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   // both give up within some tens of milliseconds in so small a picture (in a larger one they do
   // not).
   if (!cv::findChessboardCorners(reduced, size, corners, flags) &&
-      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) {
+      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE))
     return {};
-  }
   const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
   const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
-  for (auto& corner : corners) {
+  for (auto& corner : corners)
     corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
-  }
   return corners;
 }
 
@@ -50,9 +48,8 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
     if (i % board.columns > 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
-    if (i >= board.columns) {
+    if (i >= board.columns)
       least = std::min(least, cv::norm(corners[i] - corners[i - board.columns]));
-    }
   }
   return least;
 }
@@ -62,29 +59,24 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
 void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
   std::vector<cv::Point2f> grid;
   grid.reserve(corners.size());
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
       grid.emplace_back(static_cast<float>(column), static_cast<float>(row));
-    }
-  }
   const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
   if (H.empty()) return;
   std::vector<cv::Point2f> expected;
   cv::perspectiveTransform(grid, expected, H);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
     if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
-  }
 }
 
 /// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
 Corners quarter_turn(const Corners& from, const Board& board) {
   const int n = board.columns;
   Corners turned(from.size());
-  for (int row = 0; row < n; ++row) {
-    for (int column = 0; column < n; ++column) {
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column)
       turned[row * n + column] = from[column * n + (n - 1 - row)];
-    }
-  }
   return turned;
 }
 
@@ -95,9 +87,8 @@ Corners right_handed(Corners corners, const Board& board) {
   const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
   const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();
   if (along_row.x() * along_column.y() - along_row.y() * along_column.x() > 0) return corners;
-  for (auto row = corners.begin(); row != corners.end(); row += board.columns) {
+  for (auto row = corners.begin(); row != corners.end(); row += board.columns)
     std::reverse(row, row + board.columns);
-  }
   return corners;
 }
 
@@ -128,9 +119,8 @@ Corners ordered(Corners corners, const cv::Mat& gray, const Board& board) {
     turns.push_back(half_turn(turns.back()));
   }
   std::vector<Corners> dark_first;
-  for (const auto& turn : turns) {
+  for (const auto& turn : turns)
     if (darkness_of_first(gray, turn, board) > 0) dark_first.push_back(turn);
-  }
   if (!dark_first.empty()) turns = std::move(dark_first);
   const auto to_the_right = [&](const Corners& turn) {
     return (turn[board.columns - 1] - turn.front()).x();

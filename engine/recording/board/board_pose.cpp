@@ -182,11 +182,9 @@ std::vector<Eigen::Vector3d> board_points(const Board& board) {
     return (tag * (1 + board.tags->spacing) + corner % 2) * board.square_m;
   };
   std::vector<Eigen::Vector3d> points;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
       points.emplace_back(along(column), along(row), 0);
-    }
-  }
   return points;
 }
 
@@ -196,9 +194,7 @@ std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_
   const Seen seen = seen_corners(corners_raw_px, board, camera);
   const bool single_tag = board.tags && board.tags->alone;
   const std::size_t least = single_tag ? kLeastCornersOfTag : kLeastCorners;
-  if (seen.points.size() < least || nearly_collinear(seen.points, board)) {
-    return std::nullopt;
-  }
+  if (seen.points.size() < least || nearly_collinear(seen.points, board)) return std::nullopt;
   std::optional<BoardPose> best;
   for (const Pose& guess : first_guesses(seen, camera)) {
     const BoardPose pose = with_uncertainty(seen, camera, refined(seen, camera, guess));
@@ -214,9 +210,8 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
                                            const Camera& camera,
                                            const Pose& pose) {
   std::vector<Eigen::Vector2d> corners;
-  for (const auto& point : board_points(board)) {
+  for (const auto& point : board_points(board))
     corners.push_back(project(camera, to_camera(pose, point)));
-  }
   return corners;
 }
 

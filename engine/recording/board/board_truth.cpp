@@ -41,9 +41,8 @@ BoardViews look_at(const Recording& recording,
   const auto cache = board_cache_file(recording);
   BoardViews views = cache ? load_board_views(*cache) : BoardViews{};
   std::vector<int> missing;
-  for (const int frame : frames) {
+  for (const int frame : frames)
     if (!views.contains(frame)) missing.push_back(frame);
-  }
   if (missing.empty()) return views;
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
@@ -205,9 +204,8 @@ std::optional<PoseUncertainty> median_uncertainty(
   if (std::none_of(uncertainties.begin(), uncertainties.end(), known)) return std::nullopt;
   const auto of = [&](double PoseUncertainty::*number) {
     std::vector<double> values;
-    for (const auto& one : uncertainties) {
+    for (const auto& one : uncertainties)
       if (one) values.push_back((*one).*number);
-    }
     return median(std::move(values));
   };
   return PoseUncertainty{of(&PoseUncertainty::rms_px),

@@ -67,9 +67,8 @@ struct SeenMarker {
 std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
   std::vector<cv::Point> squares;
   for (int row = 0; row <= board.rows; ++row) {
-    for (int column = 0; column <= board.columns; ++column) {
+    for (int column = 0; column <= board.columns; ++column)
       if (((column + row) % 2 == 0) == light_first) squares.emplace_back(column, row);
-    }
   }
   return squares;
 }
@@ -122,13 +121,11 @@ std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
     const cv::Vec3d p = marker->H * on_board;
     guesses.emplace_back(static_cast<float>(p[0] / p[2]), static_cast<float>(p[1] / p[2]));
     square_px = marker->square_px;
-    for (const auto& corner : marker->corners) {
+    for (const auto& corner : marker->corners)
       nearest = std::min(nearest, cv::norm(corner - guesses.back()));
-    }
   }
-  if (guesses.size() != 2 || cv::norm(guesses[0] - guesses[1]) > kMostApart * square_px) {
+  if (guesses.size() != 2 || cv::norm(guesses[0] - guesses[1]) > kMostApart * square_px)
     return std::nullopt;
-  }
   return ExpectedCorner{(guesses[0] + guesses[1]) / 2, nearest / std::sqrt(2.0)};
 }
 
@@ -164,15 +161,13 @@ std::size_t seen_count(const std::vector<Eigen::Vector2d>& corners) {
 
 std::optional<std::string> dictionary_name(const std::string& name) {
   for (const NamedDictionary& one : kDictionaries) {
-    for (const std::string& spelled : {name, fmt::format("DICT_{}", name)}) {
+    for (const std::string& spelled : {name, fmt::format("DICT_{}", name)})
       if (std::equal(spelled.begin(),
                      spelled.end(),
                      one.name,
                      one.name + std::char_traits<char>::length(one.name),
-                     [](char a, char b) { return std::tolower(a) == std::tolower(b); })) {
+                     [](char a, char b) { return std::tolower(a) == std::tolower(b); }))
         return one.name;
-      }
-    }
   }
   return std::nullopt;
 }

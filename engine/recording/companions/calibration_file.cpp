@@ -45,9 +45,8 @@ constexpr double kLeastImageRate_hz = 0.01;
 constexpr double kMostImageRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
-  for (const char* name : names) {
+  for (const char* name : names)
     if (auto entry = find(map, name)) return entry;
-  }
   return std::nullopt;
 }
 
@@ -67,12 +66,10 @@ Distortion distortion_model(const YamlEntry& entry) {
   const std::string model = lower_case(text(entry, expected));
   if (model == "none" || model == "no") return Distortion::none;
   for (const char* same :
-       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"}) {
+       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"})
     if (model == same) return Distortion::radial_tangential;
-  }
-  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"}) {
+  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"})
     if (model == same) return Distortion::equidistant;
-  }
   yaml_fail(entry, fmt::format("\"{}\"", model), expected);
 }
 
@@ -80,32 +77,28 @@ void set_coefficients(Camera& camera, const YamlEntry& entry) {
   const std::vector<double> values = numbers(entry);
   const std::size_t n = values.size();
   if (camera.distortion == Distortion::none) {
-    if (std::any_of(values.begin(), values.end(), [](double k) { return k != 0; })) {
+    if (std::any_of(values.begin(), values.end(), [](double k) { return k != 0; }))
       yaml_fail(entry, count_of(values), "none for distortion model none");
-    }
     return;
   }
-  if (camera.distortion == Distortion::equidistant && n != 4) {
+  if (camera.distortion == Distortion::equidistant && n != 4)
     yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
-  }
   static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
   if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n)) {
     yaml_fail(entry,
               count_of(values),
               "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
   }
-  if (!are_coefficients(values)) {
+  if (!are_coefficients(values))
     yaml_fail(entry, "a coefficient that no lens has", "numbers of the order of 1");
-  }
   camera.coefficients = values;
 }
 
 void set_resolution(Camera& camera, const YamlEntry& entry, double width, double height) {
   constexpr double kMost = 1e5;
   const bool whole = width == std::floor(width) && height == std::floor(height);
-  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost) {
+  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost)
     yaml_fail(entry, "a size that no picture has", "[width, height] in pixels");
-  }
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
 }
@@ -113,12 +106,10 @@ void set_resolution(Camera& camera, const YamlEntry& entry, double width, double
 /// `k`: fx, fy, cx, cy.
 void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
   const auto& [fx, fy, cx, cy] = k;
-  if (fx <= 0 || fy <= 0) {
+  if (fx <= 0 || fy <= 0)
     yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
-  }
-  if (!is_focal_length(fx) || !is_focal_length(fy)) {
+  if (!is_focal_length(fx) || !is_focal_length(fy))
     yaml_fail(entry, "a focal length that no lens has", "fx, fy in pixels");
-  }
   camera.fx = fx;
   camera.fy = fy;
   camera.cx = cx;
@@ -159,11 +150,10 @@ Camera euroc_camera(const YamlEntry& root) {
       distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
   const auto euroc_key = find(root, "distortion_coefficients");
   const auto kalibr_key = find(root, "distortion_coeffs");
-  if (euroc_key || kalibr_key) {
+  if (euroc_key || kalibr_key)
     set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
-  } else if (camera.distortion != Distortion::none) {
+  else if (camera.distortion != Distortion::none)
     at(root, "distortion_coefficients", "a list of numbers");
-  }
   set_sigmas(camera, root);
   return camera;
 }
@@ -187,18 +177,16 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   Camera camera;
   set_opencv_size(camera, root);
   const auto k = numbers(matrix, 9, "9 (a 3x3 matrix)");
-  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
-  }
   set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
   const auto coefficients = find_any(root, kCoefficients);
   if (!coefficients) return camera;
   const auto fisheye = find(root, "fisheye_model");
   camera.distortion =
       fisheye && number(*fisheye) != 0 ? Distortion::equidistant : Distortion::radial_tangential;
-  if (const auto model = find(root, "distortion_model")) {
+  if (const auto model = find(root, "distortion_model"))
     camera.distortion = distortion_model(*model);
-  }
   set_coefficients(camera, *coefficients);
   return camera;
 }
@@ -214,11 +202,9 @@ std::vector<std::string> calibration_names() {
                            "camera_calibration",
                            "calib",
                            "intrinsics",
-                           "out_camera_data"}) {
-    for (const char* extension : {".yaml", ".yml", ".xml", ".json"}) {
+                           "out_camera_data"})
+    for (const char* extension : {".yaml", ".yml", ".xml", ".json"})
       names.push_back(std::string(stem) + extension);
-    }
-  }
   return names;
 }
 
@@ -237,12 +223,10 @@ Pose rigid_motion(const YamlEntry& entry) {
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   constexpr double kTolerance = 1e-2;  // files are written with few digits
   if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
-      R.determinant() < 0) {
+      R.determinant() < 0)
     yaml_fail(entry, "a matrix that is no rotation", "an orthonormal right-handed 3x3 part");
-  }
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     yaml_fail(entry, "another last row", "0, 0, 0, 1");
-  }
   return {nearest_rotation(R), T.topRightCorner<3, 1>()};
 }
 
@@ -263,11 +247,10 @@ Calibration read_calibration(const std::filesystem::path& file) {
   Calibration result;
   const auto matrix = find_any(root, kMatrix);
   result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
-  if (const auto T_BS = find(root, "T_BS")) {
+  if (const auto T_BS = find(root, "T_BS"))
     result.T_body_camera = rigid_motion(*T_BS);
-  } else if (const auto T_cam_imu = find(root, "T_cam_imu")) {
+  else if (const auto T_cam_imu = find(root, "T_cam_imu"))
     result.T_body_camera = inverse(rigid_motion(*T_cam_imu));
-  }
   if (const auto shift = find(root, "timeshift_cam_imu")) {
     const double seconds = number(*shift);
     if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
@@ -288,13 +271,11 @@ Calibration read_calibration(const std::filesystem::path& file) {
 }
 
 std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
-  for (const std::string& name : calibration_names()) {
+  for (const std::string& name : calibration_names())
     if (is_file(folder / name)) return folder / name;
-  }
   std::set<std::filesystem::path> chains;
-  for (const auto& file : files_in(folder)) {
+  for (const auto& file : files_in(folder))
     if (is_camchain(file)) chains.insert(file);
-  }
   return chains.empty() ? std::nullopt : std::optional(*chains.begin());
 }
 

@@ -43,11 +43,9 @@ Board charuco_board(const YamlEntry& root) {
   const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
   const auto squares = at(root, "squares", expected);
   const auto counts = numbers(squares, 2, expected);
-  for (const double count : counts) {
-    if (count < 3 || count > 100 || count != std::floor(count)) {
+  for (const double count : counts)
+    if (count < 3 || count > 100 || count != std::floor(count))
       yaml_fail(squares, fmt::format("{:g}", count), expected);
-    }
-  }
   Board board{static_cast<int>(counts[0]) - 1, static_cast<int>(counts[1]) - 1, square_side(root)};
   const double marker = length_m(root, "marker", "the side of a marker in meters");
   if (marker >= board.square_m) {
@@ -89,9 +87,8 @@ Board april_grid(const YamlEntry& root) {
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
   const auto spacing = at(root, "tagSpacing", "a tag's distance from the next over its side");
   const double ratio = number(spacing);
-  if (ratio <= 0 || ratio > 1) {
+  if (ratio <= 0 || ratio > 1)
     yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
-  }
   board.tags = BoardTags{ratio, tag_border(root, 2), {}};
   const int count = board.columns * board.rows / 4;
   if (count > april_tag_count()) {
@@ -143,9 +140,8 @@ Plane read_plane(const std::filesystem::path& file) {
   const auto n = numbers(normal, 3, "3 (x, y, z)");
   const double distance = number(at(root, "distance", "a number of meters"));
   const double norm = std::hypot(n[0], n[1], n[2]);
-  if (std::abs(norm - 1) > 1e-2) {
+  if (std::abs(norm - 1) > 1e-2)
     yaml_fail(normal, "length " + std::to_string(norm), "a unit vector");
-  }
   return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
 }
 

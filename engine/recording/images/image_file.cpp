@@ -86,12 +86,10 @@ bool is_whole_pnm(Bytes bytes) {
   std::array<std::size_t, 3> header{};  // width, height, largest value
   std::size_t i = 2;
   for (auto& number : header) {
-    while (i < bytes.size() && std::isdigit(byte_at(bytes, i)) == 0) {
+    while (i < bytes.size() && std::isdigit(byte_at(bytes, i)) == 0)
       i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
-    }
-    for (; i < bytes.size() && std::isdigit(byte_at(bytes, i)) != 0 && number < 1'000'000; ++i) {
+    for (; i < bytes.size() && std::isdigit(byte_at(bytes, i)) != 0 && number < 1'000'000; ++i)
       number = number * 10 + (byte_at(bytes, i) - '0');
-    }
   }
   const std::size_t channels = bytes[1] == '6' ? 3 : 1;
   const std::size_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
@@ -176,12 +174,10 @@ Header pnm_header(Bytes bytes) {
   std::size_t i = 2;
   const auto at_digit = [&] { return std::isdigit(static_cast<unsigned char>(bytes[i])) != 0; };
   for (std::int64_t* number : {&header.width, &header.height}) {
-    while (i < bytes.size() && !at_digit()) {
+    while (i < bytes.size() && !at_digit())
       i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
-    }
-    for (; i < bytes.size() && at_digit() && *number < 1'000'000'000; ++i) {
+    for (; i < bytes.size() && at_digit() && *number < 1'000'000'000; ++i)
       *number = *number * 10 + (bytes[i] - '0');
-    }
   }
   return header;
 }
@@ -259,9 +255,8 @@ cv::Mat read_image(const std::filesystem::path& file) {
 }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
-  if (!is_whole_image(bytes)) {
+  if (!is_whole_image(bytes))
     throw InputError(name + ": found a cut or broken picture, expected a whole one");
-  }
   check_header(name, bytes);
   cv::Mat image;
   try {
@@ -271,9 +266,7 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   } catch (const cv::Exception&) {
     image.release();
   }
-  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S) {
-    refuse_format(name);
-  }
+  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S) refuse_format(name);
   return image;
 }
 
@@ -281,9 +274,8 @@ int significant_bits(const cv::Mat& image) {
   if (image.depth() == CV_8U) return 8;
   double largest = 0;
   cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-  for (const int bits : {10, 12, 14}) {
+  for (const int bits : {10, 12, 14})
     if (largest < std::exp2(bits)) return bits;
-  }
   return 16;
 }
 

@@ -87,16 +87,14 @@ struct VideoDecoder::Input {
     const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
     stream = format->streams[best];
-    for (unsigned i = 0; i < format->nb_streams; ++i) {
+    for (unsigned i = 0; i < format->nb_streams; ++i)
       if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
-    }
     codec.reset(avcodec_alloc_context3(decoder));
     codec->thread_count = 0;
     codec->max_pixels = kMostPixels;
     if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
-        avcodec_open2(codec.get(), decoder, nullptr) < 0) {
+        avcodec_open2(codec.get(), decoder, nullptr) < 0)
       fail_to_open(file);
-    }
   }
 
   /// The next packet of the stream; false at the end, and where the file is cut.
@@ -204,9 +202,8 @@ VideoDecoder::VideoDecoder(fs::path file)
   numbering_ = Numbering::by_count;
   index_.times.clear();
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
-  for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
+  for (int frame = next_frame(); frame >= 0; frame = next_frame())
     index_.times.push_back(std::llround(frame * period));
-  }
   restart();
 }
 
@@ -249,11 +246,10 @@ int VideoDecoder::go_to(int frame) {
   }
   kept_.clear();
   const bool seekable = timed && key != keys.end() && *key <= time;
-  if (seekable && input_ && input_->seek(*key)) {
+  if (seekable && input_ && input_->seek(*key))
     state_ = State::sought;
-  } else {
+  else
     restart();
-  }
   if (!seekable) return 0;
   return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
 }

@@ -36,9 +36,8 @@ struct VideoEncoder::Output {
 VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
-  if (encoder == nullptr) {
+  if (encoder == nullptr)
     throw InputError(file_.string() + ": cannot be written: FFmpeg has no MPEG-4 encoder");
-  }
   auto& [format, codec, packet, frame, scaler] = *output_;
   const std::string path = unfinished_.path().string();
   AVFormatContext* made = nullptr;

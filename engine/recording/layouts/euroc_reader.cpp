@@ -80,9 +80,8 @@ void add_images(Recording& recording, ImageList list, const OpenOptions& options
 
 /// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
 std::optional<fs::path> truth_folder(const fs::path& folder) {
-  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
+  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"})
     if (is_file(folder / name / "data.csv")) return folder / name;
-  }
   return std::nullopt;
 }
 
@@ -97,9 +96,8 @@ std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& f
   TruthMounting mounting{recording.T_body_camera.value_or(Pose{})};
   if (const auto sensor = if_file(*source / "sensor.yaml")) {
     read_truth_clock(*sensor, path, mounting);
-    if (const auto T_BS = find(load_yaml(*sensor), "T_BS")) {
+    if (const auto T_BS = find(load_yaml(*sensor), "T_BS"))
       mounting.T_measured_camera = inverse(rigid_motion(*T_BS)) * mounting.T_measured_camera;
-    }
   }
   recording.truth = camera_truth(
       path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
@@ -138,18 +136,16 @@ fs::path calibration_of(const fs::path& folder) {
   fs::path cam = folder / "cam0" / "sensor.yaml";
   const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
   for (const fs::path& file :
-       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}) {
+       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"})
     if (is_file(file)) return file;
-  }
   return cam;
 }
 
 }  // namespace
 
 std::optional<fs::path> find_euroc(const fs::path& folder) {
-  for (const fs::path& base : {folder, folder / "mav0"}) {
+  for (const fs::path& base : {folder, folder / "mav0"})
     if (is_folder(base / "cam0")) return base;
-  }
   return std::nullopt;
 }
 

@@ -238,9 +238,8 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =
       frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
-  if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
+  if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count())
     read_tracks(*tracks, recording.frame_count());  // names the line
-  }
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
   if (!gyroscope && !log && video) {

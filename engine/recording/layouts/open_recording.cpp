@@ -83,9 +83,8 @@ bool stands_for_folder(const fs::path& file) {
 Found find_recording(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
+  if (status.type() == fs::file_type::not_found)
     throw InputError(path.string() + ": no such file or folder");
-  }
   if (error) {
     throw InputError(path.string() + ": found something that cannot be read (" + error.message() +
                      "), expected a recording");
@@ -121,9 +120,8 @@ void add_sidecars(Recording& recording, const Found& found) {
   if (const auto file = beside("board.yaml")) recording.board = read_board(*file);
   if (const auto file = beside("plane.yaml")) recording.plane = read_plane(*file);
   // Truth that comes from the board has the board's frame, z into the board.
-  if (!recording.truth && recording.board && recording.images) {
+  if (!recording.truth && recording.board && recording.images)
     recording.plane = Plane{{0, 0, -1}, 0};
-  }
 }
 
 /// Of a gyroscope of which no file says more than that it has one.
@@ -153,13 +151,12 @@ void add_notes(Recording& recording) {
     notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",
                                    board_title(*recording.board)));
   }
-  if (!from_board && !recording.truth) {
+  if (!from_board && !recording.truth)
     notes.emplace_back("no ground truth: no metrics");
-  } else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_value)) {
+  else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_value))
     notes.push_back("no frame is within the times of the ground truth, " + recording.truth->source);
-  } else if (!recording.plane) {
+  else if (!recording.plane)
     notes.emplace_back("no plane.yaml: no errors of the plane");
-  }
 }
 
 std::string name_of(const fs::path& path) {

@@ -328,9 +328,8 @@ std::optional<GpmfItem> GpmfItems::next() {
                 {}};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;
-  if (length > left) {
+  if (length > left)
     gpmf_fail(source_, item, fmt::format("{} bytes (cut)", left), std::to_string(length));
-  }
   item.data = rest_.substr(kHead, length);
   rest_.remove_prefix(std::min(rest_.size(), kHead + (length + 3) / 4 * 4));
   return item;

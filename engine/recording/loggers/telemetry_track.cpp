@@ -33,11 +33,10 @@ AVStream* telemetry_stream(AVFormatContext& format) {
   for (unsigned i = 0; i < format.nb_streams; ++i) {
     AVStream* stream = format.streams[i];
     const std::string tag = tag_of(*stream);
-    if (found == nullptr && (tag == "gpmd" || tag == "camm")) {
+    if (found == nullptr && (tag == "gpmd" || tag == "camm"))
       found = stream;
-    } else {
+    else
       stream->discard = AVDISCARD_ALL;
-    }
   }
   return found;
 }

@@ -200,9 +200,8 @@ std::string ChunkReader::read(std::uint32_t number,
 
 std::optional<Compression> compression_named(std::string_view name) {
   if (name.empty()) return Compression::none;  // MCAP's way to say it
-  for (std::size_t i = 0; i < kMethods.size(); ++i) {
+  for (std::size_t i = 0; i < kMethods.size(); ++i)
     if (name == kMethods[i].name) return static_cast<Compression>(i);
-  }
   return std::nullopt;
 }
 

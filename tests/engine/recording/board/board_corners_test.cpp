@@ -22,9 +22,8 @@ double largest_error(const std::vector<Eigen::Vector2d>& corners,
                      const Pose& pose) {
   double largest = 0;
   const auto truth = project_board(board, camera, pose);
-  for (std::size_t i = 0; i < truth.size(); ++i) {
+  for (std::size_t i = 0; i < truth.size(); ++i)
     largest = std::max(largest, (corners[i] - truth[i]).norm());
-  }
   return largest;
 }
 
@@ -55,9 +54,8 @@ TEST(BoardCorners, OfATwinBeginWhereRowsRunToTheRight) {
     ASSERT_FALSE(corners.empty()) << roll;
     EXPECT_GT(corners[7].x(), corners[0].x());
     double nearest = 1e9;
-    for (const Pose& symmetry : board_symmetries(twin)) {
+    for (const Pose& symmetry : board_symmetries(twin))
       nearest = std::min(nearest, largest_error(corners, twin, small_pinhole(), symmetry * truth));
-    }
     EXPECT_LT(nearest, 0.5) << roll;
   }
 }

@@ -32,10 +32,9 @@ Recording rolling_recording(const Board& board, int frames) {
   recording.board = board;
   const auto decode = [board](int index) {
     cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
-    if (index != 2) {
+    if (index != 2)
       image =
           test::render_board(board, small_pinhole(), looking_at(board, 0.4, 15, 20.0 * index));
-    }
     cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
     return image;
   };
@@ -124,9 +123,7 @@ TEST(BoardTruth, LeavesOutFramesThatFitMuchWorseThanTheOthers) {
   EXPECT_EQ(std::ranges::count(truth.poses, true, [](auto& pose) { return pose.has_value(); }), 7);
   // Alone it is not known to be worse than others, but no less bad than 2 px.
   const auto alone = board_truth(recording, std::vector<int>{5});
-  if (alone.poses[0]) {
-    EXPECT_GT(alone.uncertainties[0]->rms_px, 0.5);
-  }
+  if (alone.poses[0]) EXPECT_GT(alone.uncertainties[0]->rms_px, 0.5);
 }
 
 TEST(MedianUncertainty, IsOfTheFramesThatHaveAPose) {

@@ -76,9 +76,8 @@ inline cv::Mat render_print(const cv::Mat& texture,
     const int u = static_cast<int>(std::floor((x + board.square_m) * texels));
     const int v = static_cast<int>(std::floor((y + board.square_m) * texels));
     const int margin = texture.cols / (2 * (board.columns + 1));
-    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin) {
+    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin)
       return 110;
-    }
     const bool print = u >= 0 && v >= 0 && u < texture.cols && v < texture.rows;
     return print ? 25 + 0.8 * texture.at<std::uint8_t>(v, u) : 229;
   });

@@ -47,9 +47,8 @@ AVFrame* frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::int6
   const std::uint8_t* from = yuv.data;
   for (int plane = 0; plane < 3; ++plane) {
     const int half = plane == 0 ? 1 : 2;
-    for (int row = 0; row < image.rows / half; ++row, from += image.cols / half) {
+    for (int row = 0; row < image.rows / half; ++row, from += image.cols / half)
       std::copy_n(from, image.cols / half, frame->data[plane] + row * frame->linesize[plane]);
-    }
   }
   frame->pts = time;
   return frame;

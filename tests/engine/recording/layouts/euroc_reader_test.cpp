@@ -37,9 +37,8 @@ class EurocReader : public testing::Test {
     folder.write("mav0/imu0/sensor.yaml", kTbsImu);
     std::string imu =
         "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 8; ++i)
       imu += std::to_string(1403636579000000001 + i * 50000000LL) + ",0.1,0.2,0.3\n";
-    }
     folder.write("mav0/imu0/data.csv", imu);
   }
 
@@ -118,9 +117,8 @@ TEST_F(EurocReader, InterpolatesTheCamerasTruth) {
 
 TEST_F(EurocReader, DoesNotBridgeAGapInTheTruth) {
   std::string rows;
-  for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240}) {
+  for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240})
     rows += std::to_string(1403636579000000001 + ms * 1000000LL) + ",0,0,0,1,0,0,0\n";
-  }
   write_truth(rows);
   const auto recording = open();
   const auto& poses = recording->truth->poses;

@@ -31,17 +31,15 @@ constexpr int kVideoFrames = 60;
 /// A picture that tells its number: bits as black and white columns, which compression leaves.
 cv::Mat numbered(int number) {
   cv::Mat image(48, 64, CV_8UC3, cv::Scalar::all(0));
-  for (int bit = 0; bit < 8; ++bit) {
+  for (int bit = 0; bit < 8; ++bit)
     if ((number >> bit & 1) != 0) image.colRange(8 * bit, 8 * bit + 8).setTo(255);
-  }
   return image;
 }
 
 int number_of(const cv::Mat& image) {
   int number = 0;
-  for (int bit = 0; bit < 8; ++bit) {
+  for (int bit = 0; bit < 8; ++bit)
     number |= (image.at<cv::Vec3b>(24, 8 * bit + 4)[1] > 127 ? 1 : 0) << bit;
-  }
   return number;
 }
 

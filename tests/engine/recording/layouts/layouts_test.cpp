@@ -18,9 +18,8 @@ using testing::HasSubstr;
 
 /// The title of the layout that is found first.
 std::string title_of(const std::filesystem::path& path) {
-  for (const Layout& layout : layouts()) {
+  for (const Layout& layout : layouts())
     if (layout.find(path)) return layout.title;
-  }
   return "none";
 }
 
