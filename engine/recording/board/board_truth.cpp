@@ -30,25 +30,25 @@ namespace gpo {
 namespace {
 
 constexpr double kMostTimesMedian = 4;
-constexpr double kAlwaysGoodPx = 0.5;  ///< a blurred frame among very sharp ones is no mistake
+constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
 constexpr int kMedianFrames = 30;
 
-/// From the cache, and from the pictures where the cache has none.
-BoardViews look_at(const Recording& recording,
-                   const std::vector<int>& frames,
-                   const std::stop_token& stop,
-                   const BoardProgress& progress) {
+/// Loads the views of the frames from the cache, and computes those that it lacks.
+BoardViews views_of(const Recording& recording,
+                    const std::vector<int>& frames,
+                    const std::stop_token& stop,
+                    const BoardProgress& progress) {
   const auto cache = board_cache_file(recording);
   BoardViews views = cache ? load_board_views(*cache) : BoardViews{};
   std::vector<int> missing;
-  for (const int frame : frames)
-    if (!views.contains(frame)) missing.push_back(frame);
+  std::ranges::copy_if(
+      frames, std::back_inserter(missing), [&](int frame) { return !views.contains(frame); });
   if (missing.empty()) return views;
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
   BoardViews found;
   std::mutex mutex;
-  const auto look = [&](int frame, const cv::Mat& gray) {
+  const auto process = [&](int frame, const cv::Mat& gray) {
     const Board& board = *recording.board;
     const auto pose = board_pose(find_board(gray, board), board, recording.camera);
     const std::scoped_lock lock(mutex);
@@ -59,7 +59,7 @@ BoardViews look_at(const Recording& recording,
     if (cache && !found.empty()) save_board_views(*cache, found);
   };
   try {
-    for_each_image(*recording.images, missing, stop, look);
+    for_each_image(*recording.images, missing, stop, process);
   } catch (...) {
     save();
     throw;
@@ -69,7 +69,7 @@ BoardViews look_at(const Recording& recording,
   return views;
 }
 
-/// The RMS above which a fit is taken for a mistake [px].
+/// Returns the RMS above which a fit is rejected as wrong [px].
 double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   std::vector<double> rms_px;
   for (const int frame : frames) {
@@ -80,14 +80,12 @@ double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   return std::max(kAlwaysGoodPx, kMostTimesMedian * median(std::move(rms_px)));
 }
 
-/// The symmetric pose that is nearest in rotation.
+/// Returns the symmetric pose that is nearest in rotation to the last one.
 Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& last) {
   const auto turned = [&](const Pose& symmetry) {
     return so3_log(last.R_wc.transpose() * symmetry.R_wc * pose.R_wc).norm();
   };
-  return *std::min_element(symmetries.begin(), symmetries.end(), [&](const Pose& a, const Pose& b) {
-    return turned(a) < turned(b);
-  }) * pose;
+  return *std::ranges::min_element(symmetries, {}, turned) * pose;
 }
 
 GroundTruth in_one_frame(const BoardViews& views,
@@ -114,11 +112,11 @@ GroundTruth in_one_frame(const BoardViews& views,
 
 namespace fs = std::filesystem;
 
-/// To be raised whenever other corners, poses or uncertainties are found in the same pictures.
+/// Increase this whenever corners, poses or uncertainties in the same images change.
 constexpr int kAlgorithm = 1;
 constexpr std::string_view kMagic = "gpo board views\n";
 
-/// As it lies in the file.
+/// Layout of a view in the file.
 struct StoredView {
   std::int32_t frame = 0;
   std::int32_t found = 0;
@@ -157,7 +155,7 @@ std::optional<BoardPose> restored(const StoredView& one) {
       {one.rms_px, one.position_sigma_m, one.rotation_sigma_deg, one.normal_sigma_deg}};
 }
 
-/// The file's name is in its head, so that one that was renamed is told from ours.
+/// Contains the file's name, so that a renamed file is not accepted.
 std::string head_of(const fs::path& file) {
   return fmt::format("{}{}\n", kMagic, file.filename().string());
 }
@@ -180,7 +178,7 @@ GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
-  const BoardViews views = look_at(recording, frames, stop, progress);
+  const BoardViews views = views_of(recording, frames, stop, progress);
   return in_one_frame(views, frames, *recording.board, largest_rms_px(views, frames));
 }
 
@@ -190,10 +188,10 @@ GroundTruth board_truth(const Recording& recording,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
   const int left = recording.frame_count() - start;
-  std::vector<int> looked_at(std::max(frames, std::min(kMedianFrames, left)));
-  std::iota(looked_at.begin(), looked_at.end(), start);
-  const BoardViews views = look_at(recording, looked_at, stop, progress);
-  const std::span<const int> all = looked_at;
+  std::vector<int> considered(std::max(frames, std::min(kMedianFrames, left)));
+  std::iota(considered.begin(), considered.end(), start);
+  const BoardViews views = views_of(recording, considered, stop, progress);
+  const std::span<const int> all = considered;
   const double most_rms_px = largest_rms_px(views, all.first(std::min(kMedianFrames, left)));
   return in_one_frame(views, all.first(frames), *recording.board, most_rms_px);
 }
@@ -201,7 +199,7 @@ GroundTruth board_truth(const Recording& recording,
 std::optional<PoseUncertainty> median_uncertainty(
     std::span<const std::optional<PoseUncertainty>> uncertainties) {
   const auto known = [](const auto& one) { return one.has_value(); };
-  if (std::none_of(uncertainties.begin(), uncertainties.end(), known)) return std::nullopt;
+  if (std::ranges::none_of(uncertainties, known)) return std::nullopt;
   const auto of = [&](double PoseUncertainty::*number) {
     std::vector<double> values;
     for (const auto& one : uncertainties)
@@ -215,12 +213,11 @@ std::optional<PoseUncertainty> median_uncertainty(
 }
 
 std::string uncertainty_text(const PoseUncertainty& uncertainty) {
-  return fmt::format(
-      "{:.2g} mm, {:.2g} deg, its normal {:.2g} deg (one standard deviation; fit {:.2f} px RMS)",
-      1e3 * uncertainty.position_sigma_m,
-      uncertainty.rotation_sigma_deg,
-      uncertainty.normal_sigma_deg,
-      uncertainty.rms_px);
+  return fmt::format("{:.2g} mm, {:.2g} deg, board normal {:.2g} deg (1 sigma; fit {:.2f} px RMS)",
+                     1e3 * uncertainty.position_sigma_m,
+                     uncertainty.rotation_sigma_deg,
+                     uncertainty.normal_sigma_deg,
+                     uncertainty.rms_px);
 }
 
 std::optional<fs::path> board_cache_file(const Recording& recording) {
@@ -274,7 +271,7 @@ void save_board_views(const fs::path& file, const BoardViews& views) {
   try {
     write_file(file, bytes);
   } catch (const InputError&) {
-    // Not worth a word: nobody asked for it.
+    // The cache is optional.
   }
 }
 
