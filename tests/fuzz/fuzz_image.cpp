@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/metadata_field_of_view.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/images/image_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"

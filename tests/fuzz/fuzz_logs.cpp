@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What cameras and apps log beside and inside of videos. The first byte chooses what the rest is
 // read as.
-#include "engine/recording/layouts/metadata_field_of_view.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/loggers/telemetry_track.h"

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What pictures and videos say of the camera themselves. Their bytes are written here by the
 // formats' documents, or by FFmpeg.
-#include "engine/recording/layouts/metadata_field_of_view.h"
-
 #include "engine/geometry/pose.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/telemetry_track.h"
 #include "tests/engine/recording/loggers/telemetry_video.h"
