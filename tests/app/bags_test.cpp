@@ -171,7 +171,7 @@ TEST_P(ConvertedBag, GivesTheNumbersOfTheFolder) {
   const Outcome outcome = program(line);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_results_of_folder(bag, folder);
-  const BadInput again{line, "found something there already, expected no file"};
+  const BadInput again{line, "already exists; choose a new file"};
   EXPECT_THAT(program(line).err, HasSubstr(again.message));
 }
 
@@ -221,7 +221,7 @@ TEST(RealBags, AreDescribedOrRefused) {
     // Geocam's pictures are headers alone.
     if (std::string(name).starts_with("geocam")) {
       EXPECT_EQ(outcome.exit_code, 2);
-      EXPECT_THAT(outcome.err, HasSubstr("picture 0: found a cut or broken picture"));
+      EXPECT_THAT(outcome.err, HasSubstr("image 0: the image is truncated or broken"));
     }
   }
 }

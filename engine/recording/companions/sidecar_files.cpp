@@ -38,7 +38,8 @@ Board chessboard(const YamlEntry& root) {
   return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
 }
 
-/// `squares` counts the squares as OpenCV's CharucoBoard does, not the corners between them.
+/// `squares` is the number of squares, as in OpenCV's CharucoBoard, not of the corners between
+/// them.
 Board charuco_board(const YamlEntry& root) {
   const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
   const auto squares = at(root, "squares", expected);
@@ -60,7 +61,7 @@ Board charuco_board(const YamlEntry& root) {
   if (marker_count(board) > dictionary_size(*name)) {
     yaml_fail(dictionary,
               fmt::format("{} with {} markers", *name, dictionary_size(*name)),
-              fmt::format("one with {}, as many as the board has", marker_count(board)));
+              fmt::format("at least {}, one for each marker of the board", marker_count(board)));
   }
   return board;
 }
@@ -72,7 +73,7 @@ int tag_count(const YamlEntry& root, const std::string& key) {
   return static_cast<int>(count);
 }
 
-/// Width of a tag's black border, which Kalibr prints twice as wide as others do.
+/// Reads the width of a tag's black border; Kalibr's is twice as wide as others.
 int tag_border(const YamlEntry& root, int otherwise) {
   const auto entry = find(root, "tagBorder");
   if (!entry) return otherwise;
@@ -85,7 +86,7 @@ int tag_border(const YamlEntry& root, int otherwise) {
 Board april_grid(const YamlEntry& root) {
   Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
-  const auto spacing = at(root, "tagSpacing", "a tag's distance from the next over its side");
+  const auto spacing = at(root, "tagSpacing", "the gap between tags over their side");
   const double ratio = number(spacing);
   if (ratio <= 0 || ratio > 1)
     yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");

@@ -17,7 +17,7 @@ namespace gpo {
 
 namespace {
 
-constexpr int kBiasColumn = 11;  // of b_w in: t, p (3), q (4), v (3), b_w (3), b_a (3)
+constexpr int kBiasColumn = 11;  // of: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
 

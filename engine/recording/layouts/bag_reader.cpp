@@ -13,7 +13,6 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/images/image_file.h"
-#include "engine/recording/images/image_files.h"
 
 #include <algorithm>
 #include <utility>

@@ -9,7 +9,7 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/image_files.h"
+#include "engine/recording/images/image_file.h"
 #include "engine/recording/images/video_decoder.h"
 
 #include <algorithm>
