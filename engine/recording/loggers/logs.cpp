@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,9 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostSamples = 8'000'000;
 
-/// One kind of a log beside a video.
+/// A kind of log beside a video.
 struct Logger {
-  /// What `read` wants, where the folder has such a log.
+  /// Returns the argument of `read` if the folder has such a log.
   std::optional<fs::path> (*find)(const fs::path& folder, const std::optional<fs::path>& video);
   Log (*read)(const fs::path& found);
 };
@@ -35,7 +36,7 @@ std::optional<fs::path> find_stray_scanner(const fs::path& folder,
   return found ? std::optional(folder) : std::nullopt;
 }
 
-/// Others, too, call their data that.
+/// The name data.jsonl alone is too common.
 std::optional<fs::path> find_spectacular(const fs::path& folder,
                                          const std::optional<fs::path>& video) {
   return video && video->stem() == "data" ? if_file(folder / "data.jsonl") : std::nullopt;
@@ -56,13 +57,13 @@ constexpr std::array<Logger, 4> kLoggers = {{{find_stray_scanner, read_stray_sca
                                              {find_gcsv, read_gcsv},
                                              {find_sensor_logger, read_sensor_logger}}};
 
-/// GoPro's axes (x left, y back, z up, as seen from behind) <- camera.
+/// GoPro's axes (x left, y back, z up, seen from behind) <- camera.
 Pose camera_in_gopro() {
   return {(Eigen::Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(), Eigen::Vector3d::Zero()};
 }
 
-/// Of the settings of the whole video, which some models have; of what they cannot be read nothing
-/// is known.
+/// Returns the readout time from the settings of the whole video, which some models have; nullopt
+/// if they lack it or are unreadable.
 std::optional<double> readout_of_settings(const fs::path& video) {
   try {
     GpmfCount counted;
@@ -77,11 +78,11 @@ std::optional<double> readout_of_settings(const fs::path& video) {
       fmt::format("{}: telemetry: found {}, expected {}", log.file.string(), found, expected));
 }
 
-/// Nothing about the gyroscope where it has no samples.
+/// Adds the gyroscope if it has samples.
 void take_samples(Log& log, Gyroscope gyroscope) {
   const auto& times = gyroscope.timestamps_ns;
   if (gyroscope.rates_rad_s.empty()) return;
-  if (times.size() != gyroscope.rates_rad_s.size()) fail(log, "no times", "a clock that runs");
+  if (times.size() != gyroscope.rates_rad_s.size()) fail(log, "no times", "a running clock");
   for (std::size_t k = 1; k < times.size(); ++k) {
     if (times[k] > times[k - 1]) continue;
     fail(log,
@@ -90,13 +91,13 @@ void take_samples(Log& log, Gyroscope gyroscope) {
   }
   gyroscope.file = log.file;
   gyroscope.lines.resize(times.size());
-  for (std::size_t k = 0; k < times.size(); ++k) gyroscope.lines[k] = static_cast<int>(k) + 1;
+  std::iota(gyroscope.lines.begin(), gyroscope.lines.end(), 1);
   log.gyroscope = std::move(gyroscope);
 }
 
 void check_count(const Log& log, const Gyroscope& gyroscope) {
   if (gyroscope.rates_rad_s.size() <= kMostSamples) return;
-  fail(log, "one more sample", fmt::format("at most {}", kMostSamples));
+  fail(log, "too many samples", fmt::format("at most {}", kMostSamples));
 }
 
 void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {

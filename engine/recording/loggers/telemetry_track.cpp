@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
 
-/// The letters of a codec's tag.
+/// Returns a codec's tag as text.
 std::string tag_of(const AVStream& stream) {
   const unsigned tag = stream.codecpar->codec_tag;
   std::string letters;
@@ -27,7 +27,7 @@ std::string tag_of(const AVStream& stream) {
   return letters;
 }
 
-/// The first telemetry track; all others are passed over when packets are read.
+/// Returns the first telemetry track, and disables all others.
 AVStream* telemetry_stream(AVFormatContext& format) {
   AVStream* found = nullptr;
   for (unsigned i = 0; i < format.nb_streams; ++i) {
@@ -41,7 +41,7 @@ AVStream* telemetry_stream(AVFormatContext& format) {
   return found;
 }
 
-constexpr std::size_t kHead = 4;  // two bytes that are reserved, two that tell the kind
+constexpr std::size_t kHead = 4;  // two reserved bytes, two with the kind
 constexpr std::uint64_t kExposure = 1;
 constexpr std::uint64_t kGyroscope = 2;
 
@@ -52,13 +52,13 @@ constexpr int kMostBoxes = 10'000;
 
 std::uint64_t number_of(Bytes bytes) { return big_endian(bytes, 0, bytes.size()); }
 
-/// Its length and its kind, or of a key its namespace, go before what a box holds.
+/// A box in memory; for a key the kind is its namespace.
 struct MemoryBox {
   Bytes kind;
   Bytes data;
 };
 
-/// Takes a box off the front of what holds it; nothing at the end, and where it is cut.
+/// Takes a box off the front of its container; nullopt at the end, and if it is truncated.
 std::optional<MemoryBox> take_box(Bytes& rest) {
   constexpr std::size_t kHead = 8;
   if (rest.size() < kHead) return std::nullopt;
@@ -69,14 +69,14 @@ std::optional<MemoryBox> take_box(Bytes& rest) {
   return box;
 }
 
-/// Empty where there is none.
+/// Returns the content of the first box of a kind; empty if there is none.
 Bytes data_in(Bytes outer, Bytes kind) {
   while (const auto box = take_box(outer))
     if (box->kind == kind) return box->data;
   return {};
 }
 
-/// Whose place in the list of keys, counted from 1, is the kind of its value's box; 0: not there.
+/// Returns a key's place in the list, from 1, which is the kind of its value's box; 0 if missing.
 std::uint64_t place_of(Bytes keys, Bytes key) {
   constexpr std::size_t kVersionAndCount = 8;
   if (keys.size() < kVersionAndCount) return 0;
@@ -86,7 +86,7 @@ std::uint64_t place_of(Bytes keys, Bytes key) {
   return 0;
 }
 
-/// By the table of "well-known types".
+/// Converts a value according to the table of "well-known types".
 std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   enum { kUtf8 = 1, kSigned = 21, kUnsigned = 22, kFloat = 23, kDouble = 24 };
   const std::uint64_t bits = number_of(value.substr(0, 8));
@@ -117,9 +117,8 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
     if (bytes > kMostBytes) {
-      throw InputError(fmt::format("{}: found more than {} MiB of telemetry, expected less",
-                                   video.string(),
-                                   kMostBytes >> 20));
+      throw InputError(
+          fmt::format("{}: the telemetry is larger than {} MiB", video.string(), kMostBytes >> 20));
     }
     const auto begin = static_cast<double>(packet->pts);
     track.packets.push_back(
@@ -140,7 +139,7 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
   const auto need = [&](std::size_t length) {
     if (bytes.size() >= length) return;
     throw InputError(fmt::format(
-        "{}: found a sample of {} bytes (cut), expected {}", source, bytes.size(), length));
+        "{}: found a sample of {} bytes (truncated), expected {}", source, bytes.size(), length));
   };
   need(kHead);
   CammSample sample;
@@ -157,10 +156,7 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
       const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
       rates[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
     }
-    if (!rates.allFinite()) {
-      throw InputError(
-          fmt::format("{}: found a rate that is not finite, expected three numbers", source));
-    }
+    if (!rates.allFinite()) throw InputError(source + ": a rate is not finite");
     sample.rates_rad_s = rates;
   }
   return sample;
@@ -209,7 +205,7 @@ std::string MovieFile::bytes_of(MovieBox box) {
 }
 
 std::optional<std::string> metadata_value(Bytes meta, Bytes key) {
-  // QuickTime's begins with its first box, MPEG's with a version.
+  // QuickTime's content begins with its first box, MPEG's with a version.
   if (meta.size() >= 12 && meta.substr(4, 4) != "hdlr" && meta.substr(8, 4) == "hdlr")
     meta.remove_prefix(4);
   const std::uint64_t place = place_of(data_in(meta, "keys"), key);
