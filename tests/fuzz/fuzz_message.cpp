@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The first byte chooses the encoding and the type.
-#include "engine/recording/bags/bag_image.h"
 #include "engine/recording/bags/messages.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"

@@ -14,7 +14,7 @@
 namespace gpo {
 namespace {
 
-/// The opposite of a MessageCursor, little-endian.
+/// Encodes a message in little-endian order, the inverse of MessageCursor.
 class MessageBytes {
  public:
   explicit MessageBytes(MessageEncoding encoding) : cdr_(encoding == MessageEncoding::cdr) {}
@@ -52,7 +52,7 @@ class MessageBytes {
 
  private:
   bool cdr_;
-  std::string bytes_;  ///< without CDR's head, from which multiples do not count
+  std::string bytes_;  ///< without CDR's head, to which alignment is relative
 };
 
 void add_transform(MessageBytes& bytes, const PoseMessage& message) {
@@ -62,7 +62,7 @@ void add_transform(MessageBytes& bytes, const PoseMessage& message) {
   bytes.doubles(message.quaternion_xyzw);
 }
 
-/// A type's fields, where the two ROS do not differ, and the types that they have.
+/// A type's fields, if they are the same in both ROS, and the types of its fields.
 struct Definition {
   const char* name;
   const char* fields;
@@ -116,7 +116,7 @@ const std::array<Definition, 9> kDefinitions = {
 const Definition& definition_of(std::string_view name) {
   for (const Definition& one : kDefinitions)
     if (one.name == name) return one;
-  throw std::out_of_range("a message that is not written");
+  throw std::out_of_range("unknown message type");
 }
 
 std::string fields_of(std::string_view name, bool ros1) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/bag_image.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/bags/topic_roles.h"
