@@ -3,7 +3,6 @@
 #include "engine/recording/bags/bag_writer.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/bag.h"
 
 #include <algorithm>
 #include <array>

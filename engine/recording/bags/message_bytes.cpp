@@ -120,10 +120,9 @@ const Definition& definition_of(std::string_view name) {
 }
 
 std::string fields_of(std::string_view name, bool ros1) {
-  if (name == "std_msgs/Header") {
+  if (name == "std_msgs/Header")
     return ros1 ? "uint32 seq\ntime stamp\nstring frame_id\n"
                 : "builtin_interfaces/Time stamp\nstring frame_id\n";
-  }
   if (name != "sensor_msgs/CameraInfo") return definition_of(name).fields;
   const std::string matrices = ros1 ? "float64[] D\nfloat64[9] K\nfloat64[9] R\nfloat64[12] P\n"
                                     : "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\n";

@@ -138,18 +138,16 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
   if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
   const auto model = std::ranges::find_if(
       kModels, [&](const Model& m) { return info.distortion_model == m.name; });
-  if (model == kModels.end()) {
+  if (model == kModels.end())
     fail(name,
          "distortion_model",
          "\"" + info.distortion_model + "\"",
          "plumb_bob, rational_polynomial or equidistant");
-  }
-  if (std::ranges::find(model->counts, info.D.size()) == model->counts.end()) {
+  if (std::ranges::find(model->counts, info.D.size()) == model->counts.end())
     fail(name,
          "D",
          fmt::format("{} numbers", info.D.size()),
          fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
-  }
   if (!are_coefficients(info.D))
     fail(name, "D", "an implausible coefficient", "magnitudes of the order of 1");
   camera.distortion = model->distortion;

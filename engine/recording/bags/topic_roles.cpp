@@ -197,10 +197,9 @@ TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
   TopicChoices choices;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos || equals + 1 == text.size()) {
+    if (equals == std::string::npos || equals + 1 == text.size())
       throw SettingError(
           "topic", fmt::format("found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text));
-    }
     const auto role = choice<TopicRole>(text.substr(0, equals));
     if (!choices.emplace(role, text.substr(equals + 1)).second)
       throw SettingError("topic", fmt::format("found {} twice", to_string(role)));
@@ -218,12 +217,11 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices) {
     topic = choice == choices.end() ? found(bag, role, like, roles.notes)
                                     : std::optional(chosen(bag, kRoles[i], choice->second));
     if (role != TopicRole::image) continue;
-    if (!topic) {
+    if (!topic)
       throw InputError(fmt::format("{}: found no images among {}, expected a topic of type {}",
                                    bag.file.string(),
                                    topics_text(bag),
                                    kRoles[i].expected));
-    }
     like = bag.topics[*topic].name;
   }
   return roles;

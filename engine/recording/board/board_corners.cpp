@@ -11,7 +11,6 @@
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;

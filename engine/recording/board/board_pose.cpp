@@ -13,7 +13,6 @@
 #include <opencv2/calib3d.hpp>
 
 namespace gpo {
-
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

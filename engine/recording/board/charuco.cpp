@@ -13,7 +13,6 @@
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
 /// Largest distance between two markers' predictions of a corner, of a square's side.

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/file_kinds.h"
 
@@ -19,7 +18,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 using Names = std::initializer_list<const char*>;
@@ -84,11 +82,10 @@ void set_coefficients(Camera& camera, const YamlEntry& entry) {
   if (camera.distortion == Distortion::equidistant && n != 4)
     yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
   static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
-  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n)) {
+  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n))
     yaml_fail(entry,
               count_of(values),
               "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
-  }
   if (!are_coefficients(values))
     yaml_fail(entry, "an implausible coefficient", "magnitudes of the order of 1");
   camera.coefficients = values;

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 int corner_count(const YamlEntry& root, const std::string& key) {
@@ -49,20 +48,18 @@ Board charuco_board(const YamlEntry& root) {
       yaml_fail(squares, fmt::format("{:g}", count), expected);
   Board board{static_cast<int>(counts[0]) - 1, static_cast<int>(counts[1]) - 1, square_side(root)};
   const double marker = length_m(root, "marker", "the side of a marker in meters");
-  if (marker >= board.square_m) {
+  if (marker >= board.square_m)
     yaml_fail(at(root, "marker", ""),
               fmt::format("{:g}", marker),
               fmt::format("less than the square's side, {:g}", board.square_m));
-  }
   const auto dictionary = at(root, "dictionary", "one of " + dictionary_names());
   const auto name = dictionary_name(text(dictionary, "a name"));
   if (!name) yaml_fail(dictionary, "one of " + dictionary_names());
   board.markers = BoardMarkers{marker, *name};
-  if (marker_count(board) > dictionary_size(*name)) {
+  if (marker_count(board) > dictionary_size(*name))
     yaml_fail(dictionary,
               fmt::format("{} with {} markers", *name, dictionary_size(*name)),
               fmt::format("at least {}, one for each marker of the board", marker_count(board)));
-  }
   return board;
 }
 
@@ -92,11 +89,10 @@ Board april_grid(const YamlEntry& root) {
     yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
   board.tags = BoardTags{ratio, tag_border(root, 2), {}};
   const int count = board.columns * board.rows / 4;
-  if (count > april_tag_count()) {
+  if (count > april_tag_count())
     yaml_fail(at(root, "tagCols", ""),
               fmt::format("{} tags", count),
               fmt::format("at most {}", april_tag_count()));
-  }
   return board;
 }
 
@@ -164,7 +160,7 @@ std::string board_yaml(const Board& board) {
         tags->spacing,
         tags->border);
   }
-  if (const auto& markers = board.markers) {
+  if (const auto& markers = board.markers)
     return fmt::format(
         "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
         "marker: {}\ndictionary: {}\n",
@@ -173,7 +169,6 @@ std::string board_yaml(const Board& board) {
         board.square_m,
         markers->side_m,
         markers->dictionary);
-  }
   return fmt::format(
       "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
       board.columns,

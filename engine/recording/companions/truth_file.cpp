@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/truth_file.h"
 
-#include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/window/timestamps.h"
@@ -14,7 +13,6 @@
 #include <Eigen/Geometry>
 
 namespace gpo {
-
 namespace {
 
 constexpr int kBiasColumn = 11;  // of: t, p (3), q (4), v (3), b_w (3), b_a (3)

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 /// Also closes the file.

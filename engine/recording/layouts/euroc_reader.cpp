@@ -14,7 +14,6 @@
 #include <vector>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,10 +158,9 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   add_images(recording, read_image_list(folder), options);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
-  if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
+  if (!calibration.T_body_camera && (recording.gyroscope || recording.truth))
     recording.notes.push_back("no T_BS in " + calibration_file.filename().string() +
                               ": assuming that the camera has the body's axes");
-  }
   return recording;
 }
 

@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;

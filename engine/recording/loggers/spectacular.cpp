@@ -79,10 +79,9 @@ void add_lens(Camera& camera, std::string model, std::vector<double> k, const Pl
   if (none && (model.empty() || model == "pinhole" || model == "brown-conrady")) return;
   if (model == "pinhole" && count == 3) k = {k[0], k[1], 0, 0, k[2]};  // k1, k2, k3
   const bool opencv = k.size() == 4 || k.size() == 5 || k.size() == 8;
-  if ((model != "pinhole" && model != "brown-conrady") || !opencv) {
+  if ((model != "pinhole" && model != "brown-conrady") || !opencv)
     place.fail(fmt::format("another lens, with {} coefficients", count),
                "pinhole with 3, kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8");
-  }
   camera.distortion = Distortion::radial_tangential;
   camera.coefficients = std::move(k);
 }
@@ -100,12 +99,11 @@ Camera camera_of(const Json& json, const char* model_key, const Place& place) {
   if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
   const Json* model = find(json, model_key);
   const Json* coefficients = find(json, "distortionCoefficients");
-  if (coefficients != nullptr) {
+  if (coefficients != nullptr)
     add_lens(camera,
              model != nullptr && model->is_string() ? model->get<std::string>() : "pinhole",
              numbers(coefficients, "distortionCoefficients", place),
              place);
-  }
   return camera;
 }
 

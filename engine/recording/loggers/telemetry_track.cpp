@@ -116,10 +116,9 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
-    if (bytes > kMostBytes) {
+    if (bytes > kMostBytes)
       throw InputError(
           fmt::format("{}: the telemetry is larger than {} MiB", video.string(), kMostBytes >> 20));
-    }
     const auto begin = static_cast<double>(packet->pts);
     track.packets.push_back(
         {unit_s * begin,

@@ -82,10 +82,9 @@ Bag open_bag(const std::filesystem::path& file) {
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
   if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
   if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
-  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG")) {
+  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
     throw InputError(file.string() +
                      ": found an old bag format, expected version 2.0 (rosbag fix converts)");
-  }
   throw InputError(file.string() +
                    ": not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");
 }

@@ -159,12 +159,11 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
   }
   Decompressed made = contents(number);
   const Chunk& chunk = chunks_[number];
-  if (!made.whole && !chunk.cut) {
+  if (!made.whole && !chunk.cut)
     throw InputError(fmt::format("{}: broken chunk at byte {}, expected {} bytes",
                                  file_->path().string(),
                                  chunk.place,
                                  chunk.size));
-  }
   recent_.emplace_front(number, std::make_shared<const std::string>(std::move(made.bytes)));
   std::size_t bytes = 0;
   for (auto i = recent_.begin(); i != recent_.end(); ++i) {

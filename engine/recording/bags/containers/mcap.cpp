@@ -160,11 +160,10 @@ std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) 
   chunk.place = record.place + cursor.place();
   if (!cursor.ok() || chunk.stored > record.size) return std::nullopt;
   const auto compression = compression_named(name);
-  if (!compression || *compression == Compression::bz2) {
+  if (!compression || *compression == Compression::bz2)
     throw InputError(fmt::format("{}: found compression \"{}\", expected none, lz4 or zstd",
                                  opening.bag.file.string(),
                                  name));
-  }
   chunk.compression = *compression;
   return chunk;
 }

@@ -111,11 +111,10 @@ Chunk chunk_of(const Opening& opening, const Ros1Record& record) {
   Chunk chunk{record.data_place, record.data_size, record.number("size")};
   const auto name = record.field("compression").value_or("none");
   const auto compression = compression_named(name);
-  if (!compression) {
+  if (!compression)
     throw InputError(fmt::format("{}: found compression \"{}\", expected none, bz2 or lz4",
                                  opening.bag.file.string(),
                                  name));
-  }
   chunk.compression = *compression;
   return chunk;
 }
