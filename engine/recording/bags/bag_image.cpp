@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kNoConversion = -1;
 
-/// A ROS pixel encoding.
 struct PixelFormat {
   const char* name;
   int type;        ///< OpenCV's type of the stored pixels

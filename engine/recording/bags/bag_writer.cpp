@@ -20,7 +20,6 @@
 namespace gpo {
 namespace {
 
-/// Returns a number's little-endian bytes.
 template <class T>
 std::string stored(T value) {
   std::array<char, sizeof(T)> bytes;
@@ -28,7 +27,6 @@ std::string stored(T value) {
   return {bytes.data(), bytes.size()};
 }
 
-/// Returns a text after its length.
 template <class Length = std::uint32_t>
 std::string stored_text(std::string_view text) {
   return stored(static_cast<Length>(text.size())).append(text);
@@ -45,13 +43,11 @@ class ByteStream {
     stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     place_ += bytes.size();
   }
-  /// Overwrites bytes.
   void write_at(std::uint64_t place, std::string_view bytes) {
     stream_.seekp(static_cast<std::streamoff>(place));
     stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream_.seekp(static_cast<std::streamoff>(place_));
   }
-  /// Throws InputError if anything was not written.
   void finish() {
     stream_.close();
     if (!stream_) throw InputError(file_.string() + ": cannot be written");
@@ -94,13 +90,11 @@ std::string time_bytes(std::int64_t ns) {
          stored(static_cast<std::uint32_t>(ns % 1'000'000'000));
 }
 
-/// Index of a chunk's messages on one connection.
 struct Entries {
   std::uint32_t count = 0;
   std::string bytes;  ///< time and place of each
 };
 
-/// Summary of a written chunk for the end of the file.
 struct Info {
   std::uint64_t place;
   std::int64_t first_ns;

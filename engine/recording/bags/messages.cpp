@@ -26,7 +26,6 @@ constexpr std::size_t kCdrHead = 4;
 /// As with ByteCursor, values beyond the end are 0 or empty, and `ok` is false.
 class MessageCursor {
  public:
-  /// Not `ok` if the encoding is unknown.
   MessageCursor(std::string_view bytes, MessageEncoding encoding)
       : bytes_(bytes), encoding_(encoding), known_(encoding != MessageEncoding::unknown) {
     if (encoding != MessageEncoding::cdr) return;
@@ -86,7 +85,6 @@ class MessageCursor {
   bool swapped_ = false;
 };
 
-/// Types of poses.
 struct PoseType {
   const char* type;
   bool has_child;  ///< whether a child_frame_id follows the header
@@ -114,7 +112,6 @@ void fill_pose(MessageCursor& cursor, PoseMessage& message, bool has_child) {
 
 constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 
-/// ROS' names of models.
 struct Model {
   const char* name;
   Distortion distortion;

@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Types of topics with a role, and their description for people.
 struct RoleKind {
   bool (*fits)(const std::string& type);
   const char* things;    ///< "several topics with THINGS"
@@ -21,7 +20,6 @@ struct RoleKind {
   const char* unlikely;  ///< word in the names of topics with other data
 };
 
-/// Indexed by `TopicRole`.
 constexpr std::array<RoleKind, kTopicRoles> kRoles = {
     {{is_image_type, "images", "sensor_msgs/Image or CompressedImage", "depth"},
      {[](const std::string& type) { return type == kCameraInfoType; },
@@ -92,7 +90,6 @@ struct Image {
   BagMessage message;
 };
 
-/// State while the messages are read.
 struct Reading {
   const Bag& bag;
   BagContents contents{};
@@ -150,7 +147,6 @@ void read_imu_of(Reading& reading, const BagMessage& message, const BagTopic& to
       stamped(reading, message, read_imu(first_bytes(reading, message), topic.encoding)));
 }
 
-/// Reads the poses of the topic's first frame.
 void read_truth_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
   auto& truth = reading.contents.truth;
   PoseMessage pose = stamped(
@@ -169,7 +165,6 @@ void read_transforms_of(Reading& reading, const BagMessage& message, const BagTo
 
 using Reader = void (*)(Reading& reading, const BagMessage& message, const BagTopic& topic);
 
-/// Indexed by `TopicRole`.
 constexpr std::array<Reader, kTopicRoles> kReaders = {
     read_image_of, read_camera_info_of, read_imu_of, read_truth_of};
 

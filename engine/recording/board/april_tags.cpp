@@ -18,12 +18,10 @@ namespace {
 constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;
 constexpr int kCode = 6;  // bits along a tag's side, without border
 
-/// Four corners, clockwise [px].
 using Quad = std::vector<cv::Point2f>;
 
 double side_of(const Quad& quad) { return cv::arcLength(quad, true) / 4; }
 
-/// Returns the quad with each side moved outward.
 Quad widened(const Quad& quad, double by_px) {
   Quad wider = quad;
   for (int k = 0; k < 4; ++k) {

@@ -68,7 +68,6 @@ void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing)
     if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
 }
 
-/// Returns a square board's corners rotated by a quarter turn.
 Corners quarter_turn(const Corners& from, const Board& board) {
   const int n = board.columns;
   Corners turned(from.size());

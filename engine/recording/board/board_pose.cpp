@@ -61,7 +61,6 @@ bool nearly_collinear(const std::vector<Eigen::Vector3d>& points, const Board& b
   return false;
 }
 
-/// Returns both solutions of IPPE, T_camera_board.
 std::vector<Pose> first_guesses(const Visible& visible, const Camera& camera) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
@@ -125,7 +124,6 @@ Linearized linearize(const Visible& visible, const Camera& camera, const Pose& T
   return sum;
 }
 
-/// Levenberg-Marquardt from an initial pose.
 Pose refined(const Visible& visible, const Camera& camera, Pose T_camera_board) {
   double damping = 1e-4;
   double error = squared_error(visible, camera, T_camera_board);

@@ -12,6 +12,7 @@
 #include "engine/recording/frame_cache.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -80,7 +81,6 @@ double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   return std::max(kAlwaysGoodPx, kMostTimesMedian * median(std::move(rms_px)));
 }
 
-/// Returns the symmetric pose that is nearest in rotation to the last one.
 Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& last) {
   const auto turned = [&](const Pose& symmetry) {
     return so3_log(last.R_wc.transpose() * symmetry.R_wc * pose.R_wc).norm();
@@ -113,20 +113,11 @@ GroundTruth in_one_frame(const BoardViews& views,
 namespace fs = std::filesystem;
 
 /// Increase this whenever corners, poses or uncertainties in the same images change.
-constexpr int kAlgorithm = 1;
+constexpr int kAlgorithm = 2;
 constexpr std::string_view kMagic = "gpo board views\n";
 
-/// Layout of a view in the file.
-struct StoredView {
-  std::int32_t frame = 0;
-  std::int32_t found = 0;
-  double R_wc[9] = {};
-  double p_wc[3] = {};
-  double rms_px = 0;
-  double position_sigma_m = 0;
-  double rotation_sigma_deg = 0;
-  double normal_sigma_deg = 0;
-};
+/// Frame, whether the board was found, R_wc, p_wc, uncertainty.
+using StoredView = std::array<double, 18>;
 
 std::string bytes_of(const auto& value) {
   std::string bytes(sizeof(value), '\0');
@@ -135,24 +126,21 @@ std::string bytes_of(const auto& value) {
 }
 
 StoredView stored(int frame, const std::optional<BoardPose>& view) {
-  StoredView one;
-  one.frame = frame;
+  StoredView one{static_cast<double>(frame), view ? 1.0 : 0.0};
   if (!view) return one;
-  one.found = 1;
-  Eigen::Map<Eigen::Matrix3d>(one.R_wc) = view->pose.R_wc;
-  Eigen::Map<Eigen::Vector3d>(one.p_wc) = view->pose.p_wc;
-  one.rms_px = view->uncertainty.rms_px;
-  one.position_sigma_m = view->uncertainty.position_sigma_m;
-  one.rotation_sigma_deg = view->uncertainty.rotation_sigma_deg;
-  one.normal_sigma_deg = view->uncertainty.normal_sigma_deg;
+  Eigen::Map<Eigen::Matrix3d>(one.data() + 2) = view->pose.R_wc;
+  Eigen::Map<Eigen::Vector3d>(one.data() + 11) = view->pose.p_wc;
+  const auto& u = view->uncertainty;
+  Eigen::Map<Eigen::Vector4d>(one.data() + 14) << u.rms_px, u.position_sigma_m,
+      u.rotation_sigma_deg, u.normal_sigma_deg;
   return one;
 }
 
 std::optional<BoardPose> restored(const StoredView& one) {
-  if (one.found == 0) return std::nullopt;
+  if (one[1] == 0) return std::nullopt;
   return BoardPose{
-      {Eigen::Map<const Eigen::Matrix3d>(one.R_wc), Eigen::Map<const Eigen::Vector3d>(one.p_wc)},
-      {one.rms_px, one.position_sigma_m, one.rotation_sigma_deg, one.normal_sigma_deg}};
+      {Eigen::Map<const Eigen::Matrix3d>(&one[2]), Eigen::Map<const Eigen::Vector3d>(&one[11])},
+      {one[14], one[15], one[16], one[17]}};
 }
 
 /// Contains the file's name, so that a renamed file is not accepted.
@@ -255,7 +243,7 @@ BoardViews load_board_views(const fs::path& file) {
        i += sizeof(StoredView)) {
     StoredView one;
     std::memcpy(&one, body.data() + i, sizeof(one));
-    views[one.frame] = restored(one);
+    views[static_cast<int>(one[0])] = restored(one);
   }
   return views;
 }

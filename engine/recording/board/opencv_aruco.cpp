@@ -24,7 +24,6 @@ auto dictionary_at(int number) {
 #endif
 }
 
-/// Quads that decode as markers, with their numbers, and the others.
 struct Detections {
   OpencvMarkers markers;
   Quads others;

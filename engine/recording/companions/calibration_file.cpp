@@ -100,7 +100,6 @@ void set_resolution(Camera& camera, const YamlEntry& entry, double width, double
   camera.height = static_cast<int>(height);
 }
 
-/// `k`: fx, fy, cx, cy.
 void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
   const auto& [fx, fy, cx, cy] = k;
   if (!is_focal_length(fx) || !is_focal_length(fy))
@@ -113,7 +112,6 @@ void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<dou
     yaml_fail(entry, fmt::format("{:g}, {:g}", cx, cy), "cx, cy in pixels, near the image center");
 }
 
-/// Reads standard deviations as `calibrate` writes them.
 void set_sigmas(Camera& camera, const YamlEntry& root) {
   const auto intrinsics = find(root, "intrinsics_sigma");
   if (!intrinsics) return;
@@ -150,7 +148,6 @@ Camera euroc_camera(const YamlEntry& root) {
   return camera;
 }
 
-/// Leaves the size at 0 if the file lacks it.
 void set_opencv_size(Camera& camera, const YamlEntry& root) {
   if (const auto size = find_any(root, kSize)) {
     const auto s = numbers(*size, 2, "2 (width, height)");

@@ -79,7 +79,6 @@ int tag_border(const YamlEntry& root, int otherwise) {
   return static_cast<int>(border);
 }
 
-/// Kalibr's keys.
 Board april_grid(const YamlEntry& root) {
   Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");

@@ -66,7 +66,6 @@ struct PngChunk {
   bool sum_agrees = false;
 };
 
-/// Returns the chunk at `place`; nullopt if it is truncated.
 std::optional<PngChunk> png_chunk(Bytes bytes, std::size_t place) {
   constexpr std::size_t kAround = 12;  // length, kind, checksum
   if (place + kAround > bytes.size()) return std::nullopt;
@@ -103,7 +102,6 @@ std::size_t read_pnm_numbers(Bytes bytes, std::span<std::int64_t> numbers, std::
   return i;
 }
 
-/// Whether a binary PGM or PPM has all pixels that its header announces.
 bool is_whole_pnm(Bytes bytes) {
   std::array<std::int64_t, 3> header{};  // width, height, largest value
   const std::size_t pixels = read_pnm_numbers(bytes, header, 1'000'000) + 1;
@@ -143,7 +141,6 @@ std::string without_remarks(Bytes bytes) {
   throw InputError(name + ": cannot decode: not an image of a supported format");
 }
 
-/// Throws InputError for images that are too large and formats that are not supported.
 void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_image_header(bytes);
   if (!header) refuse_format(name);

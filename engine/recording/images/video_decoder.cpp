@@ -58,7 +58,6 @@ bool is_truncated(const VideoIndex& index) {
   return index.declared_count - (duration_s * index.rate_hz + 1) > missing / 2;
 }
 
-/// Returns the times since the first frame.
 std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
   std::vector<std::int64_t> times;
   for (const std::int64_t time : index.times)
@@ -69,7 +68,6 @@ std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
 
 }  // namespace
 
-/// An open container, its video stream and its decoder.
 struct VideoDecoder::Input {
   Format format;
   AVStream* stream = nullptr;
@@ -147,7 +145,6 @@ struct VideoDecoder::Input {
 
 namespace {
 
-/// Times of all packets.
 struct PacketTimes {
   std::vector<std::int64_t> all;
   std::vector<std::int64_t> keys;

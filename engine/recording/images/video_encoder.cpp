@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Also closes the file.
 void close_output(AVFormatContext** format) {
   avio_closep(&(*format)->pb);
   avformat_free_context(*format);

@@ -104,7 +104,6 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
-/// Adds the gyroscope, whose axes are the body's.
 void add_gyroscope(Recording& recording,
                    const OpenedBag& opened,
                    const Calibration& calibration,

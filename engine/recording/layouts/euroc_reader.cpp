@@ -25,7 +25,6 @@ struct ImageList {
   std::optional<CsvTable> table;
 };
 
-/// The table's names are relative to `folder`.
 ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
   ImageList list;
   list.timestamps_ns = csv_time_stamps(table, unit);
@@ -80,7 +79,6 @@ std::optional<fs::path> truth_folder(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// Returns the mean gyroscope bias if the truth has it.
 std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& folder) {
   const auto source = truth_folder(folder);
   if (!source) {

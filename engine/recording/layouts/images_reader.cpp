@@ -36,7 +36,6 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   return {};
 }
 
-/// Returns the video to open, or nullopt.
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
   auto videos = files_of_kind(path, is_video_name);
@@ -60,7 +59,6 @@ std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   return times;
 }
 
-/// Other sources of the frames' times.
 struct OtherTimes {
   const std::optional<Log>& log;
   const std::vector<std::int64_t>& video_ns;

@@ -32,7 +32,6 @@ constexpr double kStill_px = 0.5;       // median image motion
 constexpr double kHidden_px = 0.1;      // image motion that cannot be detected
 constexpr std::size_t kLeastPoints = 15;
 
-/// A path whose layout is known.
 struct Found {
   const Layout* layout;
   fs::path path;    ///< argument of the layout's reader
@@ -131,7 +130,6 @@ void add_sidecars(Recording& recording, const Found& found) {
     recording.plane = Plane{{0, 0, -1}, 0};
 }
 
-/// Sets a bias that is in no file.
 void take_bias_from_rest(Recording& recording) {
   if (!recording.gyroscope || recording.gyroscope->bias_known) return;
   const auto rest = find_stationary_interval(recording);
@@ -168,7 +166,6 @@ std::string name_of(const fs::path& path) {
   return (clean.has_filename() ? clean : clean.parent_path()).filename().string();
 }
 
-/// Consecutive samples of a gyroscope.
 struct Block {
   std::size_t begin = 0, end = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -30,12 +30,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names of frames in bags.
 constexpr const char* kCamera = "camera";
 constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
-/// Indices of `kTopics`.
 enum class Topic { images, camera_info, imu, truth, tf_static };
 const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/camera_info", kCameraInfoType},
@@ -51,7 +49,6 @@ PoseMessage transform(std::int64_t time_ns,
   return {{time_ns, parent}, child, p, q.coeffs()};
 }
 
-/// A message to be written.
 struct Planned {
   Topic topic;
   std::int64_t time_ns;  ///< camera's clock
@@ -79,7 +76,6 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-/// Encodes the planned messages.
 class Messages {
  public:
   Messages(const Recording& recording,
@@ -133,7 +129,6 @@ class Messages {
     return imu_bytes(message, encoding_);
   }
 
-  /// Pose of the camera in the axes of the gyroscope.
   PoseMessage mounting(std::int64_t time_ns) const {
     const Eigen::Matrix3d& R_gyro_camera = recording_.gyroscope->R_gyro_camera;
     const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
@@ -186,7 +181,6 @@ struct BagFormat {
   std::int64_t earliest_ns;
 };
 
-/// By `RecordingFormat` - 1.
 constexpr std::array<BagFormat, 2> kBagFormats = {
     {{".bag", ros1_writer, 0},
      {".mcap",
@@ -280,7 +274,6 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
   return text;
 }
 
-/// Writes the images, if any, and the list of all frames.
 void write_images(const Recording& recording,
                     const fs::path& cam,
                     const std::function<void(int done, int of)>& progress) {

@@ -46,7 +46,6 @@ void add_sample(Gyroscope& gyroscope,
   gyroscope.rates_rad_s.push_back(rates_rad_s);
 }
 
-/// Finds a column by its name in the table's header.
 int column_of(const CsvTable& table, const std::string& name) {
   const auto found = std::ranges::find(
       table.header, name, [](const std::string& cell) { return lower_case(trimmed(cell)); });
@@ -96,7 +95,6 @@ void add_odometry(Log& log, const fs::path& file) {
   }
 }
 
-/// A value above the table, and its line.
 struct HeadValue {
   std::string text;
   int line = 0;

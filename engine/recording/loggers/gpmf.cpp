@@ -26,7 +26,6 @@ std::string printable(Bytes key) {
   return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
 }
 
-/// "SOURCE: KEY: found FOUND, expected EXPECTED".
 [[noreturn]] void gpmf_fail(const std::string& source,
                             const GpmfItem& item,
                             const std::string& found,
@@ -35,7 +34,6 @@ std::string printable(Bytes key) {
       fmt::format("{}: {}: found {}, expected {}", source, printable(item.key), found, expected));
 }
 
-/// Size of a number [bytes]; 0 if it is no number.
 int gpmf_size(char type) {
   if (type == 'b' || type == 'B') return 1;
   if (type == 's' || type == 'S') return 2;
@@ -43,7 +41,6 @@ int gpmf_size(char type) {
   return type == 'd' || type == 'j' || type == 'J' ? 8 : 0;
 }
 
-/// Items of a stream by their keys.
 struct Stream {
   std::map<Bytes, GpmfItem> items;
 
@@ -99,7 +96,6 @@ std::string stored_axes(Bytes model) {
   return model.starts_with("Fusion") ? "yXZ" : "ZXY";
 }
 
-/// Returns the rotation from stored axes to GoPro's.
 Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& source) {
   const GpmfItem* matrix = stream.find("MTRX");
   const GpmfItem* output = stream.find("ORIO");
@@ -124,7 +120,6 @@ Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& so
   return signed_axes(stored_axes(model))->transpose();
 }
 
-/// Returns the scale from samples to rad/s for each axis.
 Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (const GpmfItem* divisors = stream.find("SCAL")) {
@@ -164,7 +159,6 @@ void add_gyroscope(GpmfPayload& payload,
   payload.gyroscope = stamp_of(stream, "GYRO", counted.rates, source);
 }
 
-/// Reads one device; returns whether it has a gyroscope.
 bool add_device(GpmfPayload& payload,
                 const GpmfItem& device,
                 const std::string& source,
@@ -225,7 +219,6 @@ std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const 
   return fitted(points);
 }
 
-/// Fits the times of samples since the first frame [s].
 std::optional<Line> sample_line(const std::vector<GpmfPayload>& payloads,
                                 const std::vector<double>& payload_times_s) {
   const auto with_rates = [](const GpmfPayload& p) {

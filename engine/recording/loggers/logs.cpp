@@ -21,40 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostSamples = 8'000'000;
 
-/// A kind of log beside a video.
-struct Logger {
-  /// Returns the argument of `read` if the folder has such a log.
-  std::optional<fs::path> (*find)(const fs::path& folder, const std::optional<fs::path>& video);
-  Log (*read)(const fs::path& found);
-};
-
-std::optional<fs::path> find_stray_scanner(const fs::path& folder,
-                                           const std::optional<fs::path>& /*video*/) {
-  const bool found = is_file(folder / "odometry.csv") && is_file(folder / "camera_matrix.csv");
-  return found ? std::optional(folder) : std::nullopt;
-}
-
-/// The name data.jsonl alone is too common.
-std::optional<fs::path> find_spectacular(const fs::path& folder,
-                                         const std::optional<fs::path>& video) {
-  return video && video->stem() == "data" ? if_file(folder / "data.jsonl") : std::nullopt;
-}
-
-std::optional<fs::path> find_gcsv(const fs::path& /*folder*/,
-                                  const std::optional<fs::path>& video) {
-  return video ? if_file(fs::path(*video).replace_extension(".gcsv")) : std::nullopt;
-}
-
-std::optional<fs::path> find_sensor_logger(const fs::path& folder,
-                                           const std::optional<fs::path>& /*video*/) {
-  return if_file(folder / "Gyroscope.csv");
-}
-
-constexpr std::array<Logger, 4> kLoggers = {{{find_stray_scanner, read_stray_scanner},
-                                             {find_spectacular, read_spectacular},
-                                             {find_gcsv, read_gcsv},
-                                             {find_sensor_logger, read_sensor_logger}}};
-
 /// GoPro's axes (x left, y back, z up, seen from behind) <- camera.
 Pose camera_in_gopro() {
   return {(Eigen::Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(), Eigen::Vector3d::Zero()};
@@ -76,7 +42,6 @@ std::optional<double> readout_of_settings(const fs::path& video) {
       fmt::format("{}: telemetry: found {}, expected {}", log.file.string(), found, expected));
 }
 
-/// Adds the gyroscope if it has samples.
 void take_samples(Log& log, Gyroscope gyroscope) {
   const auto& times = gyroscope.timestamps_ns;
   if (gyroscope.rates_rad_s.empty()) return;
@@ -140,8 +105,15 @@ void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
 }  // namespace
 
 std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video) {
-  for (const Logger& logger : kLoggers)
-    if (const auto found = logger.find(folder, video)) return logger.read(*found);
+  if (is_file(folder / "odometry.csv") && is_file(folder / "camera_matrix.csv"))
+    return read_stray_scanner(folder);
+  // The name data.jsonl alone is too common.
+  if (video && video->stem() == "data")
+    if (const auto file = if_file(folder / "data.jsonl")) return read_spectacular(*file);
+  if (video)
+    if (const auto file = if_file(fs::path(*video).replace_extension(".gcsv")))
+      return read_gcsv(*file);
+  if (const auto file = if_file(folder / "Gyroscope.csv")) return read_sensor_logger(*file);
   return std::nullopt;
 }
 

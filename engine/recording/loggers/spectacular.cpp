@@ -27,7 +27,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 
-/// File and line for messages.
 struct Place {
   const fs::path& file;
   int line = 0;  ///< 0: the whole file
@@ -188,7 +187,6 @@ Gyroscope sorted(const Samples& samples, const fs::path& file) {
   return gyroscope;
 }
 
-/// Adds the first camera of an optional file.
 void add_calibration(Log& log, const fs::path& file) {
   if (!is_file(file)) return;
   const Json json = read_json(file);

@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
 
-/// Returns a codec's tag as text.
 std::string tag_of(const AVStream& stream) {
   const unsigned tag = stream.codecpar->codec_tag;
   std::string letters;
@@ -69,7 +68,6 @@ std::optional<MemoryBox> take_box(Bytes& rest) {
   return box;
 }
 
-/// Returns the content of the first box of a kind; empty if there is none.
 Bytes data_in(Bytes outer, Bytes kind) {
   while (const auto box = take_box(outer))
     if (box->kind == kind) return box->data;

@@ -45,7 +45,6 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
 
 constexpr std::size_t kStep = std::size_t{1} << 18;
 
-/// Result of one step of a decoder.
 struct Step {
   std::size_t read = 0;
   std::size_t written = 0;
@@ -126,7 +125,6 @@ struct Method {
   Decompressed (*decompress)(std::string_view stored, std::size_t most_bytes);
 };
 
-/// Indexed by `Compression`.
 constexpr std::array<Method, 4> kMethods = {
     {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
 

@@ -57,7 +57,6 @@ bool for_each_mcap_record(std::string_view records,
   return true;
 }
 
-/// Entry of a chunk in the summary.
 struct ChunkEntry {
   std::uint64_t place = 0;
   std::uint64_t length = 0;        ///< of the whole record
@@ -69,7 +68,6 @@ struct Summary {
   std::optional<std::uint64_t> messages;  ///< in the whole file
 };
 
-/// State while the index is built.
 struct Opening : BagOpening {
   explicit Opening(const std::shared_ptr<const FileBytes>& from) : BagOpening(from) {
     chunks->add({0, from->size(), from->size()});  // for messages outside of all chunks
@@ -146,7 +144,6 @@ Summary read_summary(Opening& opening, const std::string& bytes) {
   return summary;
 }
 
-/// Reads the head of a chunk's record; nullopt if it is truncated.
 std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) {
   const std::string head =
       opening.file->read(record.place, std::min<std::uint64_t>(record.size, 256));
@@ -168,7 +165,6 @@ std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) 
   return chunk;
 }
 
-/// Returns false if a part of the index is broken.
 bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records) {
   bool whole = true;
   const bool read = for_each_mcap_record(records, [&](McapOp op, std::string_view content) {
@@ -220,7 +216,6 @@ void add_message(Opening& opening,
   if (cursor.ok()) opening.topics.add_message(channel, time, chunk, place);
 }
 
-/// Scans a chunk; false if it is truncated or broken.
 bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const std::uint32_t number = opening.chunks->add(chunk);
   const Decompressed made = opening.chunks->contents(number);
@@ -253,7 +248,6 @@ bool scan_record(Opening& opening, const McapRecord& record) {
   return true;
 }
 
-/// Builds the index from the whole file.
 void scan(Opening& opening) {
   std::uint64_t place = kMcapMagic.size();
   bool ended = false;

@@ -28,7 +28,6 @@ T number_in(std::optional<std::string_view> field) {
   return ByteCursor(*field).number<T>();
 }
 
-/// Returns the value of the first field of that name.
 std::optional<std::string_view> ros1_field(std::string_view fields, std::string_view name) {
   ByteCursor cursor(fields);
   while (cursor.more()) {
@@ -39,7 +38,6 @@ std::optional<std::string_view> ros1_field(std::string_view fields, std::string_
   return std::nullopt;
 }
 
-/// Seconds and nanoseconds, of 4 bytes each.
 std::int64_t ros1_time_ns(std::uint32_t seconds, std::uint32_t nanoseconds) {
   return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
 }
@@ -51,7 +49,6 @@ struct Ros1Record {
   std::uint32_t data_size = 0;
 
   std::uint64_t end() const { return data_place + data_size; }
-  /// Returns the value of a field; nullopt if missing.
   std::optional<std::string_view> field(std::string_view name) const {
     return ros1_field(fields, name);
   }
@@ -72,7 +69,6 @@ struct Ros1Record {
   }
 };
 
-/// Reads bytes at a place, fewer at the end.
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
 /// Reads the record at `place`; nullopt if its fields are truncated or invalid.
@@ -172,7 +168,6 @@ bool read_index(Opening& opening, const Ros1Record& header) {
   return true;
 }
 
-/// Scans a chunk; false if it is truncated or broken.
 bool scan_chunk(Opening& opening, std::uint32_t number) {
   const Chunk chunk = opening.chunks->chunk(number);
   Decompressed made;
@@ -201,7 +196,6 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
   return whole;
 }
 
-/// Builds the index from the whole file.
 void scan(Opening& opening, std::uint64_t place) {
   const ReadBytes read = reader(opening);
   while (place < opening.file->size()) {
