@@ -8,7 +8,6 @@
 
 #include <array>
 #include <memory>
-#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -90,11 +89,8 @@ std::string digest_of(const std::vector<fs::path>& images) {
   for (const fs::path& file : images) {
     std::error_code error;
     const auto size = fs::file_size(file, error);
-    if (error) {
-      throw InputError(fmt::format("{}: cannot be read ({}), expected a picture of the recording",
-                                   file.string(),
-                                   error.message()));
-    }
+    if (error)
+      throw InputError(fmt::format("{}: cannot be read: {}", file.string(), error.message()));
     text += fmt::format("{} {}\n", file.filename().string(), size);
   }
   return sha256(text);
@@ -127,14 +123,14 @@ RecordingContent content_of(const Recording& recording) {
 }
 
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b) {
-  std::set<std::string> names;
-  for (const auto& [name, part] : a) {
-    const auto other = b.find(name);
-    if (other == b.end() || other->second != part) names.insert(name);
+  std::vector<std::string> names;
+  RecordingContent all = a;
+  all.insert(b.begin(), b.end());
+  for (const auto& [name, part] : all) {
+    const auto in_a = a.find(name), in_b = b.find(name);
+    if (in_a == a.end() || in_b == b.end() || in_a->second != in_b->second) names.push_back(name);
   }
-  for (const auto& [name, part] : b)
-    if (!a.contains(name)) names.insert(name);
-  return {names.begin(), names.end()};
+  return names;
 }
 
 }  // namespace gpo

@@ -10,19 +10,19 @@
 
 namespace gpo {
 
-/// What a recording holds, wherever it lies: its parts by name ("fx", "truth", "pictures"), each as
-/// a text that is the same where the part is. Numbers stand as they are, what is long as its
-/// SHA-256. Parts that a recording does not have are not there.
+/// A recording's parts by name ("fx", "truth", "pictures"), each as a text that identifies its
+/// content independently of the recording's path: numbers as they are, long data as SHA-256.
+/// Missing parts have no entry.
 using RecordingContent = std::map<std::string, std::string>;
 
-/// Of pictures it looks at names and sizes, and of those that a recipe made at the recipe. Throws
-/// InputError where a picture's file has gone.
+/// Identifies images by file names and sizes, and rendered images by their recipe. Throws
+/// InputError if an image file is missing.
 RecordingContent content_of(const Recording& recording);
 
-/// All that is known of a board, in a line.
+/// Describes a board in one line.
 std::string text_of(const Board& board);
 
-/// The names of the parts that differ, or that only one has.
+/// Returns the names of the parts that differ or exist in one recording only.
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b);
 
 }  // namespace gpo

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/file_kinds.h"
 
+#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -44,4 +46,24 @@ bool is_yaml_name(const std::filesystem::path& file) {
 
 bool is_recipe(const std::filesystem::path& path) { return is_yaml_name(path) && is_file(path); }
 
+std::vector<std::filesystem::path> files_of_kind(
+    const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file)) {
+  std::vector<std::filesystem::path> files = files_in(folder);
+  std::erase_if(files, std::not_fn(is_kind));
+  std::ranges::sort(files);
+  return files;
+}
+
+std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
+                                               const char* things,
+                                               const std::filesystem::path& folder) {
+  if (files.size() > 1)
+    throw InputError(fmt::format("{}: found {} {} ({}, {}), expected one; name the file to open",
+                                 folder.string(),
+                                 files.size(),
+                                 things,
+                                 files[0].filename().string(),
+                                 files[1].filename().string()));
+  return files.empty() ? std::nullopt : std::optional(files[0]);
+}
 }  // namespace gpo

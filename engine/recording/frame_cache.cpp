@@ -15,11 +15,6 @@ namespace {
 
 std::size_t size_in_bytes(const cv::Mat& image) { return image.total() * image.elemSize(); }
 
-struct Image {
-  int frame;
-  cv::Mat bgr;
-};
-
 }  // namespace
 
 FrameCache::FrameCache(int count, Decode decode, std::size_t byte_limit)
@@ -53,7 +48,7 @@ cv::Mat FrameCache::bgr(int index) const {
   std::unique_lock lock(mutex_);
   while (true) {
     if (const cv::Mat* image = kept(index)) return *image;
-    // Where another thread fails to decode it this one tries, too, and so has the error itself.
+    // If another thread fails to decode it, this one tries again and gets the error itself.
     if (decoding_.insert(index).second) break;
     decoded_.wait(lock);
   }
@@ -101,8 +96,7 @@ void ImagesAhead::decode(const std::stop_token& stop, int first, int end) {
   for (int index = first; index < end; ++index) {
     {
       std::unique_lock lock(mutex_);
-      const auto is_room = [this]() { return ready_.size() < kAhead; };
-      if (!changed_.wait(lock, stop, is_room)) return;
+      if (!changed_.wait(lock, stop, [this] { return ready_.size() < kAhead; })) return;
     }
     Entry entry;
     try {
@@ -140,12 +134,12 @@ void for_each_image(const FrameCache& images,
                       const std::function<void(int frame, const cv::Mat& gray)>& look) {
   std::mutex decoding;
   std::size_t next = 0;
-  const auto take = [&]() -> std::optional<Image> {
+  const auto take = [&]() -> std::optional<std::pair<int, cv::Mat>> {
     const std::scoped_lock lock(decoding);
     if (next == frames.size() || stop.stop_requested()) return std::nullopt;
     const std::size_t i = next;
-    next = frames.size();  // where decoding throws the others have nothing left to do
-    Image image{frames[i], images.bgr(frames[i])};
+    next = frames.size();  // ends the other threads if decoding throws
+    std::pair image(frames[i], images.bgr(frames[i]));
     next = i + 1;
     return image;
   };
@@ -154,8 +148,8 @@ void for_each_image(const FrameCache& images,
   in_parallel(threads, threads, [&](int) {
     while (const auto image = take()) {
       cv::Mat gray;
-      cv::cvtColor(image->bgr, gray, cv::COLOR_BGR2GRAY);
-      look(image->frame, gray);
+      cv::cvtColor(image->second, gray, cv::COLOR_BGR2GRAY);
+      look(image->first, gray);
     }
   });
 }

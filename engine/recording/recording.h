@@ -21,7 +21,7 @@
 
 namespace gpo {
 
-/// Who says what a recording's camera is like.
+/// Where a recording's camera model comes from.
 enum class CameraSource { file, self_calibrated, guess };
 
 template <>
@@ -32,51 +32,51 @@ struct ChoiceKeys<CameraSource> {
 
 /// ArUco markers in the light squares of a board.
 struct BoardMarkers {
-  double side_m = 0;       ///< of a marker, with its black border
+  double side_m = 0;       ///< of a marker, including its black border
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
 };
 
-/// AprilTags (36h11) side by side, as Kalibr prints them; or one alone.
+/// A grid of AprilTags (36h11) as Kalibr prints it, or a single one.
 struct BoardTags {
-  double spacing = 0;          ///< from a tag to the next, in a tag's sides [-]
+  double spacing = 0;          ///< gap between two tags, in sides of a tag [-]
   int border = 2;              ///< width of the black border around a tag's code [bits]
-  std::optional<int> alone{};  ///< the number of a tag that is alone, or kAnyTag
+  std::optional<int> alone{};  ///< number of a single tag, or kAnyTag; nullopt: a grid
   static constexpr int kAnyTag = -1;
 };
 
-/// A chessboard on the true plane; a ChArUco board, one with markers; or a board of tags, whose
-/// corners are those of the tags.
+/// A board on the true plane: a chessboard, a ChArUco board (with markers) or a board of tags,
+/// whose corners are those of the tags.
 struct Board {
-  int columns = 0;                        ///< inner corners along a row; of tags: two a tag
-  int rows = 0;                           ///< inner corners along a column; of tags: two a tag
+  int columns = 0;                        ///< inner corners along a row; two for each tag
+  int rows = 0;                           ///< inner corners along a column; two for each tag
   double square_m = 0;                    ///< side of a square, or of a tag
-  std::optional<BoardMarkers> markers{};  ///< of a ChArUco board; none: a plain chessboard
-  std::optional<BoardTags> tags{};        ///< of a board of tags
+  std::optional<BoardMarkers> markers{};  ///< only for a ChArUco board
+  std::optional<BoardTags> tags{};        ///< only for a board of tags
 };
 
-/// What was recorded, immutable once opened. Shared between threads by shared_ptr<const>.
+/// A recording, immutable once opened. Threads share it by shared_ptr<const>.
 struct Recording {
   std::filesystem::path path;
   std::string name;    ///< last component of the path
-  std::string layout;  ///< for people: "EuRoC"; the titles in the table of layouts
+  std::string layout;  ///< title of the layout, for people: "EuRoC"
   Camera camera;
   CameraSource camera_source = CameraSource::file;
-  std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; where it is told
-  std::vector<std::int64_t> timestamps_ns;     ///< one a frame, strictly ascending
-  std::shared_ptr<const FrameCache> images;  ///< null where there are none
-  /// Where `images` come from: a video, or one file a frame; empty where they are not from files.
+  std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; nullopt if unknown
+  std::vector<std::int64_t> timestamps_ns;     ///< of the frames, strictly ascending
+  std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
+  /// Files of the images: a video, a bag, or one file for each frame; empty if they are not from
+  /// files.
   std::vector<std::filesystem::path> image_files;
   std::optional<Gyroscope> gyroscope;
-  /// Rolling shutter: from the first row to the last, where the camera's log tells it; negative:
-  /// the last row first.
+  /// Rolling shutter: readout time from the first row to the last; negative if the last row is
+  /// first.
   std::optional<double> readout_s;
-  std::optional<GroundTruth> truth;  ///< from a file; truth from the board is computed on demand
-  std::optional<Plane> plane;        ///< true plane, in the truth's world
+  std::optional<GroundTruth> truth;  ///< from a file; truth from a board is computed on demand
+  std::optional<Plane> plane;        ///< true plane in the truth's world
   std::optional<Board> board;
-  std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use our tracker
-  std::vector<std::string> notes;        ///< "no gyroscope: ...", each said once to the user
-  /// Where what was found in the pictures is kept for the next time; empty: nowhere.
-  std::filesystem::path cache_folder;
+  std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use the tracker
+  std::vector<std::string> notes;        ///< "no gyroscope: ...", each shown once to the user
+  std::filesystem::path cache_folder;    ///< for detections in images; empty: do not cache
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };

@@ -156,7 +156,7 @@ TEST(Ros2Database, OfPythonGivesTheNumbersOfTheFolder) {
   write_file(folder / "cut.db3", bytes.substr(0, bytes.size() * 6 / 10));
   const Outcome cut = program("run " + (folder / "cut.db3").string() + kBagWindow);
   EXPECT_EQ(cut.exit_code, 0) << cut.err;
-  EXPECT_THAT(cut.err, HasSubstr("the bag is cut or broken: "));
+  EXPECT_THAT(cut.err, HasSubstr("the bag is truncated or broken"));
 }
 
 class ConvertedBag : public testing::TestWithParam<const char*> {};
@@ -171,7 +171,7 @@ TEST_P(ConvertedBag, GivesTheNumbersOfTheFolder) {
   const Outcome outcome = program(line);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_results_of_folder(bag, folder);
-  const BadInput again{line, "found something there already, expected no file"};
+  const BadInput again{line, "already exists; choose a new file"};
   EXPECT_THAT(program(line).err, HasSubstr(again.message));
 }
 
@@ -212,7 +212,7 @@ TEST(RealBags, AreDescribedOrRefused) {
     const Outcome outcome = program("info " + (folder / name).string());
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_THAT(outcome.out, HasSubstr("/turtle1/pose (turtlesim/Pose, 1344)"));
-    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": found no camera among /rosout"));
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": found no images among /rosout"));
   }
   for (const char* name : {"klintan_sample.db3", "geocam.db3", "geocam.mcap"}) {
     const Outcome outcome = program("info " + (folder / name).string());
@@ -221,7 +221,7 @@ TEST(RealBags, AreDescribedOrRefused) {
     // Geocam's pictures are headers alone.
     if (std::string(name).starts_with("geocam")) {
       EXPECT_EQ(outcome.exit_code, 2);
-      EXPECT_THAT(outcome.err, HasSubstr("picture 0: found a cut or broken picture"));
+      EXPECT_THAT(outcome.err, HasSubstr("image 0: the image is truncated or broken"));
     }
   }
 }

@@ -188,7 +188,7 @@ TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
   const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["camera"]["source"], "guess");
   EXPECT_NE(json["verdict"]["readiness"], "ready");
-  EXPECT_THAT(run.err, HasSubstr("no calibration: the camera is a guess (70 degrees"));
+  EXPECT_THAT(run.err, HasSubstr("no calibration: assuming a 70 deg"));
   EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
   const Outcome info = program(fmt::format("info {} --json", folder.string()));
   EXPECT_EQ(nlohmann::json::parse(info.out)["camera"]["source"], "guess");
@@ -234,9 +234,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "--square: -1, expected a length in meters, > 0"},
         BadInput{"assets --output {}", "--board is required: there is no assets/board.yaml"},
         BadInput{"assets/fonts --board 9x6 --square 0.02 --output {}",
-                 "assets/fonts: found no pictures, expected a video or numbered pictures"},
+                 "assets/fonts: found no images, expected a video or numbered images"},
         BadInput{"README.md --board 9x6 --square 0.02 --output {}",
-                 "README.md: found a file that is no video"},
+                 "README.md: unsupported file"},
         BadInput{"no/such --board 9x6 --square 0.02 --output {}",
                  "no/such: no such file or folder"},
         BadInput{"assets --board 9x6 --square 0.02 --output README.md/camera.yaml",

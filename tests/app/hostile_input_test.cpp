@@ -185,16 +185,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "1,0,1\n0,1e999,1\n0,0,1\n",
                  "camera_matrix.csv:2: found \"1e999\""},
         Replaced{"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
-        Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: found something"}));
+        Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: cannot decode"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Images,
     HostileFile,
     ::testing::Values(
-        Replaced{"cam0/data/0.pgm", "", "0.pgm: found"},
-        Replaced{"cam0/data/0.pgm", "no picture at all", "cannot be decoded, expected a picture"},
-        Replaced{"cam0/data/0.pgm", image().substr(0, 40), "found a cut or broken picture"},
-        Replaced{"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found a picture of 65535x65535"},
+        Replaced{"cam0/data/0.pgm", "", "0.pgm: the image is truncated or broken"},
+        Replaced{"cam0/data/0.pgm", "no picture at all", "cannot decode: not an image"},
+        Replaced{"cam0/data/0.pgm", image().substr(0, 40), "the image is truncated or broken"},
+        Replaced{"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found an image of 65535x65535"},
         Replaced{
             "cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}));
 

@@ -18,11 +18,11 @@ gpo::fuzz::Target chosen{};
 extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
   gpo::fuzz::quiet_libraries();
   const char* name = std::getenv("GPO_FUZZ_TARGET");
-  for (const auto& target : gpo::fuzz::kTargets)
+  for (const auto& target : gpo::fuzz::targets())
     if (name != nullptr && std::string_view(name) == target.name) chosen = target;
   if (chosen.read != nullptr) return 0;
   std::fputs("GPO_FUZZ_TARGET names no target. Choose one of:\n", stderr);
-  for (const auto& target : gpo::fuzz::kTargets) std::fprintf(stderr, "%s\n", target.name);
+  for (const auto& target : gpo::fuzz::targets()) std::fprintf(stderr, "%s\n", target.name);
   std::exit(2);
 }
 

@@ -5,6 +5,7 @@
 #include "tests/engine/peak_memory.h"
 #include "tests/fuzz/targets.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -42,7 +43,7 @@ TEST_P(FuzzReplay, ReadsOrRefusesEveryInputInBoundedMemory) {
   EXPECT_GT(inputs, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, ::testing::ValuesIn(kTargets), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, ::testing::ValuesIn(targets()), [](const auto& info) {
   return std::string(info.param.name);
 });
 
@@ -51,8 +52,8 @@ TEST(FuzzTargets, EveryFolderOfInputsBelongsToOne) {
     for (const auto& entry :
          fs::directory_iterator(fs::path(GPO_SOURCE_DIR) / "tests/fuzz" / kind)) {
       const std::string name = entry.path().filename();
-      bool known = false;
-      for (const Target& target : kTargets) known = known || name == target.name;
+      const bool known =
+          std::ranges::any_of(targets(), [&](const Target& target) { return name == target.name; });
       EXPECT_TRUE(known) << entry.path();
     }
   }

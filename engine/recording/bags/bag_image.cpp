@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/bag_image.h"
-
 #include "engine/base/error.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/image_file.h"
@@ -16,13 +14,12 @@
 namespace gpo {
 namespace {
 
-constexpr int kAsItIs = -1;
+constexpr int kNoConversion = -1;
 
-/// What ROS calls an encoding of pixels.
 struct PixelFormat {
   const char* name;
-  int type;        ///< OpenCV's, of what is stored
-  int conversion;  ///< OpenCV's, to blue, green, red
+  int type;        ///< OpenCV's type of the stored pixels
+  int conversion;  ///< OpenCV's conversion to blue, green, red
 };
 
 // ROS names a Bayer pattern by the first two pixels of its first two rows, OpenCV by the second and
@@ -32,13 +29,13 @@ constexpr std::array<PixelFormat, 24> kPixelFormats = {
      {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
      {"mono16", CV_16UC1, cv::COLOR_GRAY2BGR},
      {"16UC1", CV_16UC1, cv::COLOR_GRAY2BGR},
-     {"bgr8", CV_8UC3, kAsItIs},
-     {"8UC3", CV_8UC3, kAsItIs},
+     {"bgr8", CV_8UC3, kNoConversion},
+     {"8UC3", CV_8UC3, kNoConversion},
      {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
      {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
      {"8UC4", CV_8UC4, cv::COLOR_BGRA2BGR},
      {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
-     {"bgr16", CV_16UC3, kAsItIs},
+     {"bgr16", CV_16UC3, kNoConversion},
      {"rgb16", CV_16UC3, cv::COLOR_RGB2BGR},
      {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2BGR},
      {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2BGR},
@@ -58,35 +55,35 @@ const PixelFormat& format_of(const ImageMessage& image, const std::string& name)
       kPixelFormats, [&](const PixelFormat& one) { return image.encoding == one.name; });
   if (found != kPixelFormats.end()) return *found;
   throw InputError(fmt::format(
-      "{}: found pixels encoded as \"{}\", expected mono8, bgr8, rgb8, bayer_rggb8, mono16 or "
-      "another of ROS' gray and color pictures of 8 or 16 bits",
+      "{}: found pixel encoding \"{}\", expected one of ROS' gray and color encodings with 8 or 16 "
+      "bits such as mono8, bgr8, rgb8, bayer_rggb8 or mono16",
       name,
       image.encoding));
 }
 
-/// The rows without what fills them up, in the machine's order of bytes.
+/// Returns the pixels without padding, in the machine's byte order.
 cv::Mat stored_pixels(const ImageMessage& image, const PixelFormat& format) {
   cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), format.type);
   const std::size_t row = pixels.cols * pixels.elemSize();
   for (int y = 0; y < pixels.rows; ++y)
     std::memcpy(pixels.ptr(y), image.data.data() + std::size_t{image.step} * y, row);
-  if (image.big_endian && pixels.depth() == CV_16U) {
-    for (int y = 0; y < pixels.rows; ++y) {
-      auto* bytes = pixels.ptr(y);
-      for (std::size_t i = 0; i + 1 < row; i += 2) std::swap(bytes[i], bytes[i + 1]);
-    }
-  }
+  if (image.big_endian && pixels.depth() == CV_16U)
+    for (int y = 0; y < pixels.rows; ++y)
+      for (std::size_t i = 0; i + 1 < row; i += 2)
+        std::swap(pixels.ptr(y)[i], pixels.ptr(y)[i + 1]);
   return pixels;
 }
 
-void check_room(const ImageMessage& image, const PixelFormat& format, const std::string& name) {
+void check_data_size(const ImageMessage& image,
+                     const PixelFormat& format,
+                     const std::string& name) {
   check_image_size(name, image.width, image.height);
   const std::uint64_t row = std::uint64_t{image.width} * CV_ELEM_SIZE(format.type);
   const std::uint64_t rows = image.height;
-  const bool room = rows > 0 && row > 0 && image.step >= row &&
-                    image.data.size() >= std::uint64_t{image.step} * (rows - 1) + row;
-  if (room) return;
-  throw InputError(fmt::format("{}: found {} bytes in rows of {}, expected a picture of {}x{} {}",
+  if (rows > 0 && row > 0 && image.step >= row &&
+      image.data.size() >= std::uint64_t{image.step} * (rows - 1) + row)
+    return;
+  throw InputError(fmt::format("{}: found {} bytes in rows of {}, expected an image of {}x{} {}",
                                name,
                                image.data.size(),
                                image.step,
@@ -97,14 +94,14 @@ void check_room(const ImageMessage& image, const PixelFormat& format, const std:
 
 cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
   const PixelFormat& format = format_of(image, name);
-  check_room(image, format, name);
+  check_data_size(image, format, name);
   cv::Mat pixels = stored_pixels(image, format);
-  if (format.conversion == kAsItIs) return pixels;
+  if (format.conversion == kNoConversion) return pixels;
   cv::Mat bgr;
   try {
     cv::cvtColor(pixels, bgr, format.conversion);
   } catch (const cv::Exception&) {
-    throw InputError(fmt::format("{}: found a picture of {}x{} that cannot be {}",
+    throw InputError(fmt::format("{}: an image of {}x{} cannot have the encoding {}",
                                  name,
                                  image.width,
                                  image.height,
@@ -122,7 +119,7 @@ cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::stri
   } else if (const auto message = read_image(bytes, topic.encoding)) {
     return decode_raw(*message, name);
   }
-  throw InputError(name + ": found a message that is cut or no picture, expected " + topic.type);
+  throw InputError(name + ": truncated or broken message, expected " + topic.type);
 }
 
 }  // namespace gpo

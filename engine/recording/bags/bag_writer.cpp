@@ -3,7 +3,6 @@
 #include "engine/recording/bags/bag_writer.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/bag.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +20,6 @@
 namespace gpo {
 namespace {
 
-/// A number as bags have it, little-endian.
 template <class T>
 std::string stored(T value) {
   std::array<char, sizeof(T)> bytes;
@@ -29,13 +27,12 @@ std::string stored(T value) {
   return {bytes.data(), bytes.size()};
 }
 
-/// A text with its length before it.
 template <class Length = std::uint32_t>
 std::string stored_text(std::string_view text) {
   return stored(static_cast<Length>(text.size())).append(text);
 }
 
-/// A file that is written from its beginning to its end, and knows where it is.
+/// A file that is written sequentially and knows its position.
 class ByteStream {
  public:
   explicit ByteStream(const std::filesystem::path& file)
@@ -46,13 +43,11 @@ class ByteStream {
     stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     place_ += bytes.size();
   }
-  /// Writes over what is there already.
   void write_at(std::uint64_t place, std::string_view bytes) {
     stream_.seekp(static_cast<std::streamoff>(place));
     stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream_.seekp(static_cast<std::streamoff>(place_));
   }
-  /// Throws InputError where anything could not be written.
   void finish() {
     stream_.close();
     if (!stream_) throw InputError(file_.string() + ": cannot be written");
@@ -78,7 +73,7 @@ namespace ros1 {
 namespace {
 
 constexpr std::size_t kChunkBytes = 768 << 10;
-constexpr std::uint32_t kHeaderBytes = 4096;  ///< of the bag's header with what fills it up
+constexpr std::uint32_t kHeaderBytes = 4096;  ///< of the bag's header with padding
 
 std::string field(std::string_view name, std::string_view value) {
   return stored_text(std::string(name) + "=" + std::string(value));
@@ -95,18 +90,16 @@ std::string time_bytes(std::int64_t ns) {
          stored(static_cast<std::uint32_t>(ns % 1'000'000'000));
 }
 
-/// The messages of a chunk by their connection.
 struct Entries {
   std::uint32_t count = 0;
   std::string bytes;  ///< time and place of each
 };
 
-/// A chunk that is written, for the end of the file.
 struct Info {
   std::uint64_t place;
   std::int64_t first_ns;
   std::int64_t last_ns;
-  std::map<int, std::uint32_t> counts;  ///< of messages, by connection
+  std::map<int, std::uint32_t> counts;  ///< of messages by connection
 };
 
 class Ros1Writer {
@@ -215,7 +208,7 @@ std::string record(McapOp op, const std::string& content) {
   return bytes;
 }
 
-/// ROS 2 has three words where ROS 1 has two: "sensor_msgs/msg/Image".
+/// Converts to ROS 2's three words, "sensor_msgs/msg/Image".
 std::string ros2_name(const std::string& type) {
   const std::string_view all = type;
   const auto slash = all.find('/');
@@ -241,7 +234,7 @@ class McapWriter {
   }
 
   void write(int topic, std::int64_t ns, const std::string& bytes) {
-    const std::uint64_t time = std::max<std::int64_t>(ns, 0);  // the format has none before 1970
+    const std::uint64_t time = std::max<std::int64_t>(ns, 0);  // the format begins in 1970
     first_ = counted_ == 0 ? time : std::min(first_, time);
     last_ = std::max(last_, time);
     chunk_first_ = chunk_.empty() ? time : std::min(chunk_first_, time);
@@ -260,7 +253,7 @@ class McapWriter {
     stream_.write(record(McapOp::data_end, stored(std::uint32_t{0})));
     const std::uint64_t start = stream_.place();
     std::string summary = definitions_ + statistics() + chunk_indices_;
-    // The sum is of all up to itself, also of the footer's beginning.
+    // The checksum covers everything up to itself, including the footer's beginning.
     constexpr std::uint64_t kFooterBytes = 20;
     summary += static_cast<char>(McapOp::footer);
     summary += stored(kFooterBytes) + stored(start) + stored(std::uint64_t{0});
@@ -271,7 +264,7 @@ class McapWriter {
   }
 
  private:
-  /// A schema and a channel for each topic; the schemas' numbers begin at 1.
+  /// Returns a schema and a channel for each topic; the schemas' ids begin at 1.
   static std::string definitions(const std::vector<WrittenTopic>& topics) {
     std::string bytes;
     for (std::size_t i = 0; i < topics.size(); ++i) {

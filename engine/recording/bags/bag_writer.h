@@ -13,46 +13,46 @@
 
 namespace gpo {
 
-/// What is written: a name and a type that `message_type` knows.
+/// A topic's name and its type, which `message_type` must know.
 struct WrittenTopic {
   std::string name;
   std::string type;
 };
 
-/// A bag while it is written: a message after the other, in the order of their times, then the end.
+/// Writes a bag: messages in the order of time, then the end.
 struct BagWriter {
-  MessageEncoding encoding;  ///< that the messages are to have
+  MessageEncoding encoding;  ///< required for the messages
   std::function<void(int topic, std::int64_t time_ns, const std::string& bytes)> write;
-  /// Throws InputError where not all of it could be written.
+  /// Throws InputError if the file is incomplete.
   std::function<void()> finish;
 };
 
-/// ROS 1, chunks of 768 KiB, not compressed.
+/// ROS 1, uncompressed chunks of 768 KiB.
 BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
 
-/// ROS 2 in MCAP, chunks of 4 MiB, compressed by zstd.
+/// ROS 2 in MCAP, chunks of 4 MiB compressed with zstd.
 BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
 
-// Messages as bytes, encoded either way: what messages.h reads.
+// Encoders of messages, the inverse of the readers in messages.h.
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
-/// The rectified camera is the same one without distortion.
+/// The rectified camera has the same matrix without distortion.
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
-/// Says that there is no orientation, and nothing of covariances.
+/// Marks orientation and covariances as unknown.
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
 /// geometry_msgs/TransformStamped
 std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
 /// tf2_msgs/TFMessage
 std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
 
-/// What a bag says of a type, so that others can read it without knowing it.
+/// Description of a type that a bag contains for its readers.
 struct MessageType {
   const char* name;        ///< "sensor_msgs/Image"
   const char* ros1_sum;    ///< MD5 of the definition
-  std::string definition;  ///< its fields, and those of the types that it has
+  std::string definition;  ///< its fields, and those of the types of its fields
 };
 
-/// Of the types above. Throws std::out_of_range for another.
+/// Knows the types above. Throws std::out_of_range for others.
 MessageType message_type(const std::string& name, MessageEncoding encoding);
 
 }  // namespace gpo

@@ -1,10 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "engine/recording/bags/bag_writer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
-#include <initializer_list>
 #include <stdexcept>
 #include <string_view>
 
@@ -14,7 +15,7 @@
 namespace gpo {
 namespace {
 
-/// The opposite of a MessageCursor, little-endian.
+/// Encodes a message in little-endian order, the inverse of MessageCursor.
 class MessageBytes {
  public:
   explicit MessageBytes(MessageEncoding encoding) : cdr_(encoding == MessageEncoding::cdr) {}
@@ -52,7 +53,7 @@ class MessageBytes {
 
  private:
   bool cdr_;
-  std::string bytes_;  ///< without CDR's head, from which multiples do not count
+  std::string bytes_;  ///< without CDR's head, to which alignment is relative
 };
 
 void add_transform(MessageBytes& bytes, const PoseMessage& message) {
@@ -62,68 +63,51 @@ void add_transform(MessageBytes& bytes, const PoseMessage& message) {
   bytes.doubles(message.quaternion_xyzw);
 }
 
-/// A type's fields, where the two ROS do not differ, and the types that they have.
+/// A type and its fields, if they are the same in both ROS.
 struct Definition {
   const char* name;
   const char* fields;
-  std::initializer_list<const char*> parts;
   const char* ros1_sum;
 };
 
-const std::array<Definition, 9> kDefinitions = {
+constexpr std::array<Definition, 9> kDefinitions = {
     {{"sensor_msgs/Image",
       "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n"
       "uint32 step\nuint8[] data\n",
-      {"std_msgs/Header"},
       "060021388200f6f0f447d0fcd9c64743"},
-     {"sensor_msgs/CameraInfo",
-      "",
-      {"std_msgs/Header", "sensor_msgs/RegionOfInterest"},
-      "c9a58c1b0b154e0e6da7578cb991d214"},
+     {"sensor_msgs/CameraInfo", "", "c9a58c1b0b154e0e6da7578cb991d214"},
      {"sensor_msgs/RegionOfInterest",
       "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n",
-      {},
       ""},
      {"sensor_msgs/Imu",
       "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
       "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
       "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
       "float64[9] linear_acceleration_covariance\n",
-      {"std_msgs/Header", "geometry_msgs/Quaternion", "geometry_msgs/Vector3"},
       "6a62c6daae103f4ff57a132d6f95cec2"},
      {"geometry_msgs/TransformStamped",
       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
-      {"std_msgs/Header",
-       "geometry_msgs/Transform",
-       "geometry_msgs/Vector3",
-       "geometry_msgs/Quaternion"},
       "b5764a33bfeb3588febc2682852579b0"},
      {"tf2_msgs/TFMessage",
       "geometry_msgs/TransformStamped[] transforms\n",
-      {"geometry_msgs/TransformStamped",
-       "std_msgs/Header",
-       "geometry_msgs/Transform",
-       "geometry_msgs/Vector3",
-       "geometry_msgs/Quaternion"},
       "94810edda583a504dfda3829e70d7eec"},
      {"geometry_msgs/Transform",
       "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
-      {},
       ""},
-     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n", {}, ""},
-     {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n", {}, ""}}};
+     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n", ""},
+     {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n", ""}}};
 
+constexpr std::string_view kTime = "builtin_interfaces/Time";
 const Definition& definition_of(std::string_view name) {
   for (const Definition& one : kDefinitions)
     if (one.name == name) return one;
-  throw std::out_of_range("a message that is not written");
+  throw std::out_of_range("unknown message type");
 }
 
 std::string fields_of(std::string_view name, bool ros1) {
-  if (name == "std_msgs/Header") {
+  if (name == "std_msgs/Header")
     return ros1 ? "uint32 seq\ntime stamp\nstring frame_id\n"
                 : "builtin_interfaces/Time stamp\nstring frame_id\n";
-  }
   if (name != "sensor_msgs/CameraInfo") return definition_of(name).fields;
   const std::string matrices = ros1 ? "float64[] D\nfloat64[9] K\nfloat64[9] R\nfloat64[12] P\n"
                                     : "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\n";
@@ -131,6 +115,17 @@ std::string fields_of(std::string_view name, bool ros1) {
          matrices + "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n";
 }
 
+/// Adds the types in `fields` and in their own fields, in the order of their first occurrence.
+void add_parts(std::vector<std::string>& parts, std::string_view fields, bool ros1) {
+  TextLines lines(fields);
+  while (const auto line = lines.next()) {
+    const std::string type(line->substr(0, line->find_first_of("[ ")));
+    const bool known = type == kTime || std::ranges::find(parts, type) != parts.end();
+    if (known || type.find('/') == std::string::npos) continue;
+    parts.push_back(type);
+    add_parts(parts, fields_of(type, ros1), ros1);
+  }
+}
 }  // namespace
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding) {
@@ -191,15 +186,15 @@ MessageType message_type(const std::string& name, MessageEncoding encoding) {
   const bool ros1 = encoding == MessageEncoding::ros1;
   const Definition& definition = definition_of(name);
   MessageType type{definition.name, definition.ros1_sum, fields_of(name, ros1)};
-  std::vector<std::string> parts(definition.parts.begin(), definition.parts.end());
-  if (!ros1) parts.emplace_back("builtin_interfaces/Time");
-  for (const std::string& part : parts) {
-    const bool time = part == "builtin_interfaces/Time";
-    type.definition += fmt::format("{:=<80}\nMSG: {}\n{}",
-                                   "",
-                                   part,
-                                   time ? "int32 sec\nuint32 nanosec\n" : fields_of(part, ros1));
-  }
+  std::vector<std::string> parts;
+  add_parts(parts, type.definition, ros1);
+  if (!ros1) parts.emplace_back(kTime);
+  for (const std::string& part : parts)
+    type.definition +=
+        fmt::format("{:=<80}\nMSG: {}\n{}",
+                    "",
+                    part,
+                    part == kTime ? "int32 sec\nuint32 nanosec\n" : fields_of(part, ros1));
   return type;
 }
 

@@ -21,19 +21,17 @@ namespace {
 
 constexpr std::size_t kCdrHead = 4;
 
-/// Walks through a message, whichever way it is encoded: ROS 1 puts everything side by side,
-/// little-endian; CDR of ROS 2 begins with four bytes that tell the order of bytes, puts numbers at
-/// multiples of their size after those, and ends texts with a zero. As in a ByteCursor, what lies
-/// beyond the end is 0 or empty, and `ok` is false.
+/// Reads a message in either encoding: ROS 1 is little-endian without padding; CDR (ROS 2) has four
+/// bytes with the byte order, aligns numbers to their size after those, and ends texts with a zero.
+/// As with ByteCursor, values beyond the end are 0 or empty, and `ok` is false.
 class MessageCursor {
  public:
-  /// Not `ok` where the encoding is neither of the two.
   MessageCursor(std::string_view bytes, MessageEncoding encoding)
       : bytes_(bytes), encoding_(encoding), known_(encoding != MessageEncoding::unknown) {
     if (encoding != MessageEncoding::cdr) return;
     const std::string_view head = bytes_.take(kCdrHead);
     if (!bytes_.ok()) return;
-    // Plain CDR, the only one that ROS 2 writes; 0 is big-endian, 1 little-endian.
+    // Only plain CDR, as ROS 2 writes it; 0 is big-endian, 1 little-endian.
     known_ = head[0] == 0 && (head[1] == 0 || head[1] == 1);
     swapped_ = head[1] == 0;
   }
@@ -48,14 +46,14 @@ class MessageCursor {
     stored = std::string(stored.rbegin(), stored.rend());
     return ByteCursor(stored).number<T>();
   }
-  /// uint8[]: as many as the number before them says.
+  /// uint8[], after its length.
   std::string_view bytes() { return bytes_.take(number<std::uint32_t>()); }
   std::string text() {
     std::string text(bytes());
     if (!ros1() && text.ends_with('\0')) text.pop_back();
     return text;
   }
-  /// float64[], at most 1000 of them.
+  /// float64[], at most 1000 values.
   std::vector<double> doubles() {
     const auto count = number<std::uint32_t>();
     constexpr std::uint32_t kMost = 1000;
@@ -71,7 +69,7 @@ class MessageCursor {
   Eigen::Vector3d vector() { return Eigen::Map<const Eigen::Vector3d>(doubles(3).data()); }
   MessageHeader header() {
     if (ros1()) number<std::uint32_t>();  // seq
-    // ROS 2 has signed seconds.
+    // Only ROS 2 has signed seconds.
     const std::int64_t seconds =
         ros1() ? std::int64_t{number<std::uint32_t>()} : number<std::int32_t>();
     const std::int64_t stamp_ns = seconds * 1'000'000'000 + number<std::uint32_t>();
@@ -87,17 +85,16 @@ class MessageCursor {
   bool swapped_ = false;
 };
 
-/// How the types of poses begin after their header.
 struct PoseType {
   const char* type;
-  bool has_child;
+  bool has_child;  ///< whether a child_frame_id follows the header
 };
 constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", false},
                                                  {"geometry_msgs/PoseWithCovarianceStamped", false},
                                                  {"geometry_msgs/TransformStamped", true},
                                                  {"nav_msgs/Odometry", true}}};
 
-/// A message that begins with a header; `fill` reads what follows it.
+/// Reads a message that begins with a header; `fill` reads the rest.
 template <class Message, class Fill>
 std::optional<Message> read_whole(std::string_view bytes, MessageEncoding encoding, Fill fill) {
   MessageCursor cursor(bytes, encoding);
@@ -115,7 +112,6 @@ void fill_pose(MessageCursor& cursor, PoseMessage& message, bool has_child) {
 
 constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 
-/// ROS' names of models.
 struct Model {
   const char* name;
   Distortion distortion;
@@ -139,27 +135,25 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
   if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
   const auto model = std::ranges::find_if(
       kModels, [&](const Model& m) { return info.distortion_model == m.name; });
-  if (model == kModels.end()) {
+  if (model == kModels.end())
     fail(name,
          "distortion_model",
          "\"" + info.distortion_model + "\"",
          "plumb_bob, rational_polynomial or equidistant");
-  }
-  if (std::ranges::find(model->counts, info.D.size()) == model->counts.end()) {
+  if (std::ranges::find(model->counts, info.D.size()) == model->counts.end())
     fail(name,
          "D",
          fmt::format("{} numbers", info.D.size()),
          fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
-  }
   if (!are_coefficients(info.D))
-    fail(name, "D", "a coefficient that no lens has", "numbers of the order of 1");
+    fail(name, "D", "an implausible coefficient", "magnitudes of the order of 1");
   camera.distortion = model->distortion;
   camera.coefficients = info.D;
-  // ROS writes five where four were calibrated.
+  // ROS writes five coefficients also for four calibrated ones.
   if (info.D.size() == 5 && info.D.back() == 0) camera.coefficients.pop_back();
 }
 
-/// Once ROS' names of frames began with a slash.
+/// Removes the slash with which old names of frames begin.
 std::string plain(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
@@ -257,9 +251,9 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     fail(name, "K", "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   if (!is_focal_length(k[0]) || !is_focal_length(k[4]))
-    fail(name, "K", "a focal length that no lens has", "fx, fy in pixels");
+    fail(name, "K", fmt::format("{:g}, {:g}", k[0], k[4]), "plausible fx, fy > 0 in pixels");
   if (std::max(info.width, info.height) > kLongestSide)
-    fail(name, "width", "a size that no picture has", "pixels");
+    fail(name, "width", fmt::format("{}x{}", info.width, info.height), "pixels");
   Camera camera;
   camera.width = static_cast<int>(info.width);
   camera.height = static_cast<int>(info.height);
@@ -268,7 +262,10 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
   camera.cx = k[2];
   camera.cy = k[5];
   if (!has_near_principal_point(camera))
-    fail(name, "K", "a principal point far outside of the picture", "cx, cy near its middle");
+    fail(name,
+         "K",
+         fmt::format("{:g}, {:g}", k[2], k[5]),
+         "cx, cy in pixels, near the image center");
   if (!std::isfinite(camera.cx) || !std::isfinite(camera.cy))
     fail(name, "K", "no numbers", "cx, cy in pixels");
   set_lens(camera, info, name);

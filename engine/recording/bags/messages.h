@@ -14,15 +14,15 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace gpo {
 
-// The messages of ROS that a recording is made of, as ROS names their fields. What reads them
-// returns nothing where the bytes are cut, or not encoded as the topic says. Of names that point
-// into the message's bytes it is said.
+// ROS messages of a recording, with ROS' names of fields. The readers return nullopt if the bytes
+// are truncated or not in the topic's encoding.
 
 struct MessageHeader {
-  std::int64_t stamp_ns = 0;  ///< 0: the sender did not say
+  std::int64_t stamp_ns = 0;  ///< 0 if unknown
   std::string frame_id;
 };
 
@@ -34,24 +34,24 @@ struct ImageMessage {
   std::string encoding;  ///< "mono8"
   bool big_endian = false;
   std::uint32_t step = 0;  ///< bytes a row
-  std::string_view data;   ///< in the message's bytes
+  std::string_view data;   ///< points into the message's bytes
 };
 
 /// sensor_msgs/CompressedImage
 struct CompressedImageMessage {
   MessageHeader header;
-  std::string format;     ///< "jpeg", and more
-  std::string_view data;  ///< a file of a picture, in the message's bytes
+  std::string format;     ///< "jpeg", ...
+  std::string_view data;  ///< an image file; points into the message's bytes
 };
 
-/// sensor_msgs/CameraInfo, as far as it is the calibration
+/// sensor_msgs/CameraInfo, only the calibration
 struct CameraInfoMessage {
   MessageHeader header;
   std::uint32_t height = 0;
   std::uint32_t width = 0;
   std::string distortion_model;  ///< "plumb_bob"
   std::vector<double> D;
-  std::vector<double> K;  ///< 9, row by row
+  std::vector<double> K;  ///< 3 x 3, row by row
 };
 
 /// sensor_msgs/Imu, without its orientation
@@ -62,14 +62,14 @@ struct ImuMessage {
 };
 
 /// geometry_msgs/PoseStamped, PoseWithCovarianceStamped and TransformStamped, nav_msgs/Odometry:
-/// where something is in the frame of the header.
+/// a pose in the header's frame.
 struct PoseMessage {
   MessageHeader header;
-  std::string child_frame_id;  ///< what is there; empty: the type has no such field
+  std::string child_frame_id;  ///< the frame with this pose; empty if the type has no such field
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector4d quaternion_xyzw = Eigen::Vector4d::Zero();
 
-  /// Nothing where the quaternion is no rotation.
+  /// nullopt if the quaternion is no rotation.
   std::optional<Pose> pose() const;
 };
 
@@ -79,7 +79,7 @@ inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 inline constexpr const char* kImuType = "sensor_msgs/Imu";
 inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 
-/// Of all types above the first field; needs only the beginning of the message.
+/// Reads the header of any type above; needs only the beginning of the message.
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding);
 std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
@@ -93,19 +93,22 @@ std::optional<PoseMessage> read_pose(std::string_view bytes,
 std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
                                                         MessageEncoding encoding);
 
-/// Whether somebody calibrated it: ROS' drivers send zeros otherwise.
+/// False for the zeros that ROS' drivers send without a calibration.
 bool is_calibrated(const CameraInfoMessage& info);
 
-/// Throws InputError that begins with `name` where it is no camera that we know.
+/// Throws InputError that begins with `name` if the camera is not supported.
 Camera camera_of(const CameraInfoMessage& info, const std::string& name);
 
-/// What `camera_of` reads; without its header.
+/// The inverse of `camera_of`; leaves the header empty.
 CameraInfoMessage camera_info_of(const Camera& camera);
 
-/// T_from_to, x_from = R x_to + p, along transforms that are known, in either direction; nothing
-/// where they do not connect the two.
+/// Returns T_from_to, x_from = R x_to + p, along the given transforms in either direction; nullopt
+/// if they do not connect the frames.
 std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms,
                                       const std::string& from,
                                       const std::string& to);
 
+/// Decodes the image of a message on a `topic` of images: blue, green, red, 8 or 16 bits each.
+/// Throws InputError that begins with `name`.
+cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name);
 }  // namespace gpo

@@ -13,22 +13,23 @@
 namespace gpo {
 namespace {
 
-/// Topics that have a role, for people.
 struct RoleKind {
   bool (*fits)(const std::string& type);
   const char* things;    ///< "several topics with THINGS"
   const char* expected;  ///< the types
-  const char* unlikely;  ///< word in the names of topics of these types that are something else
+  const char* unlikely;  ///< word in the names of topics with other data
 };
 
-bool is_camera_info(const std::string& type) { return type == kCameraInfoType; }
-bool is_imu(const std::string& type) { return type == kImuType; }
-
-/// As `TopicRole` counts them.
 constexpr std::array<RoleKind, kTopicRoles> kRoles = {
-    {{is_image_type, "pictures", "sensor_msgs/Image or CompressedImage", "depth"},
-     {is_camera_info, "calibrations", "sensor_msgs/CameraInfo", "depth"},
-     {is_imu, "a gyroscope", "sensor_msgs/Imu", "accel"},
+    {{is_image_type, "images", "sensor_msgs/Image or CompressedImage", "depth"},
+     {[](const std::string& type) { return type == kCameraInfoType; },
+      "calibrations",
+      "sensor_msgs/CameraInfo",
+      "depth"},
+     {[](const std::string& type) { return type == kImuType; },
+      "a gyroscope",
+      "sensor_msgs/Imu",
+      "accel"},
      {is_pose_type,
       "poses",
       "geometry_msgs/PoseStamped, PoseWithCovarianceStamped, TransformStamped or "
@@ -39,26 +40,23 @@ bool fits(const BagTopic& topic, const RoleKind& kind) {
   return topic.messages > 0 && topic.encoding != MessageEncoding::unknown && kind.fits(topic.type);
 }
 
-std::string file_of(const Bag& bag) { return bag.file.string(); }
-
 int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
-  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
+  for (std::size_t i = 0; i < bag.topics.size(); ++i)
     if (bag.topics[i].name == name && fits(bag.topics[i], kind)) return static_cast<int>(i);
-  }
   const auto same_name = std::ranges::find(bag.topics, name, &BagTopic::name);
   const std::string found =
       same_name == bag.topics.end()
           ? fmt::format("no topic {} among {}", name, topics_text(bag))
           : fmt::format("{} messages of {} in {}", same_name->messages, same_name->type, name);
   throw InputError(
-      fmt::format("{}: --topic: found {}, expected {}", file_of(bag), found, kind.expected));
+      fmt::format("{}: --topic: found {}, expected {}", bag.file.string(), found, kind.expected));
 }
 
 std::size_t common_beginning(const std::string& a, const std::string& b) {
   return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
 }
 
-/// The first by name, or the one whose name begins most like `like`.
+/// Returns the topic whose name has the longest common prefix with `like`, or the first by name.
 std::optional<int> found(const Bag& bag,
                          TopicRole role,
                          const std::string& like,
@@ -74,7 +72,7 @@ std::optional<int> found(const Bag& bag,
   });
   if (all.size() == 1 || role == TopicRole::camera_info) return best;
   const int other = all.front() == best ? all[1] : all.front();
-  notes.push_back(fmt::format("{} topics with {}: {} is read; --topic {}={} reads another",
+  notes.push_back(fmt::format("{} topics with {}: using {}; choose another by --topic {}={}",
                               all.size(),
                               kind.things,
                               bag.topics[best].name,
@@ -83,7 +81,7 @@ std::optional<int> found(const Bag& bag,
   return best;
 }
 
-/// Enough for a header, and for all of an Imu or a pose, if frames have names that people can read.
+/// Enough for a header, and for a whole Imu or pose with frame names of plausible length.
 constexpr std::uint64_t kMostSmallBytes = 2048;
 constexpr std::size_t kMostTransforms = 100'000;
 
@@ -92,7 +90,6 @@ struct Image {
   BagMessage message;
 };
 
-/// While the messages are gone through.
 struct Reading {
   const Bag& bag;
   BagContents contents{};
@@ -105,7 +102,7 @@ struct Reading {
   const auto number = std::count_if(bag.messages.data(), &message, [&](const BagMessage& other) {
     return other.topic == message.topic;
   });
-  throw InputError(fmt::format("{}: {}: message {} is cut or none, expected {}",
+  throw InputError(fmt::format("{}: {}: message {} is truncated or broken, expected {}",
                                bag.file.string(),
                                topic.name,
                                number,
@@ -122,7 +119,7 @@ T required(const Reading& reading, const BagMessage& message, std::optional<T> m
   return *std::move(made);
 }
 
-/// The same of a message that begins with a header.
+/// The same for a message that begins with a header.
 template <class T>
 T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   T made = required(reading, message, std::move(read));
@@ -150,7 +147,6 @@ void read_imu_of(Reading& reading, const BagMessage& message, const BagTopic& to
       stamped(reading, message, read_imu(first_bytes(reading, message), topic.encoding)));
 }
 
-/// Of a topic that tells of several things the first one.
 void read_truth_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
   auto& truth = reading.contents.truth;
   PoseMessage pose = stamped(
@@ -169,7 +165,6 @@ void read_transforms_of(Reading& reading, const BagMessage& message, const BagTo
 
 using Reader = void (*)(Reading& reading, const BagMessage& message, const BagTopic& topic);
 
-/// As `TopicRole` counts them.
 constexpr std::array<Reader, kTopicRoles> kReaders = {
     read_image_of, read_camera_info_of, read_imu_of, read_truth_of};
 
@@ -178,7 +173,7 @@ bool is_static_transforms(const BagTopic& topic) {
          topic.encoding != MessageEncoding::unknown;
 }
 
-/// Strictly ascending in time; says how many had a time that was there already.
+/// Sorts by time and drops messages with repeated time stamps, with a note.
 template <class T>
 void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
   const auto time = [](const T& one) { return one.header.stamp_ns; };
@@ -186,8 +181,8 @@ void put_in_order(std::vector<T>& all, const char* things, std::vector<std::stri
   const auto same_time = [&](const T& a, const T& b) { return time(a) == time(b); };
   const auto again = std::unique(all.begin(), all.end(), same_time);  // clang 14 cannot do ranges'
   if (again == all.end()) return;
-  notes.push_back(fmt::format(
-      "{} {} are left out: they have the time stamps of others", all.end() - again, things));
+  notes.push_back(
+      fmt::format("ignoring {} {} with repeated time stamps", all.end() - again, things));
   all.erase(again, all.end());
 }
 
@@ -197,10 +192,9 @@ TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
   TopicChoices choices;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos || equals + 1 == text.size()) {
+    if (equals == std::string::npos || equals + 1 == text.size())
       throw SettingError(
           "topic", fmt::format("found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text));
-    }
     const auto role = choice<TopicRole>(text.substr(0, equals));
     if (!choices.emplace(role, text.substr(equals + 1)).second)
       throw SettingError("topic", fmt::format("found {} twice", to_string(role)));
@@ -218,12 +212,11 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices) {
     topic = choice == choices.end() ? found(bag, role, like, roles.notes)
                                     : std::optional(chosen(bag, kRoles[i], choice->second));
     if (role != TopicRole::image) continue;
-    if (!topic) {
-      throw InputError(fmt::format("{}: found no camera among {}, expected a topic of {}",
-                                   file_of(bag),
+    if (!topic)
+      throw InputError(fmt::format("{}: found no images among {}, expected a topic of type {}",
+                                   bag.file.string(),
                                    topics_text(bag),
                                    kRoles[i].expected));
-    }
     like = bag.topics[*topic].name;
   }
   return roles;
@@ -258,8 +251,8 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
       read(reading, message, bag.topics[message.topic]);
 
   BagContents& contents = reading.contents;
-  put_in_order(reading.images, "pictures", contents.notes);
-  put_in_order(contents.imu, "samples of the gyroscope", contents.notes);
+  put_in_order(reading.images, "images", contents.notes);
+  put_in_order(contents.imu, "gyroscope samples", contents.notes);
   put_in_order(contents.truth, "poses", contents.notes);
   for (const Image& image : reading.images) {
     contents.image_times_ns.push_back(image.header.stamp_ns);
@@ -267,8 +260,7 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
   }
   contents.camera_frame = reading.images.front().header.frame_id;
   if (reading.some_without_stamp)
-    contents.notes.emplace_back(
-        "messages without a time stamp have the time at which they were recorded");
+    contents.notes.emplace_back("using the times of recording for messages without time stamps");
   return std::move(reading.contents);
 }
 

@@ -15,7 +15,7 @@
 
 namespace gpo {
 
-/// What a bag's topics are read as.
+/// Roles of a bag's topics.
 enum class TopicRole { image, camera_info, imu, truth };
 inline constexpr int kTopicRoles = 4;
 template <>
@@ -25,43 +25,43 @@ struct ChoiceKeys<TopicRole> {
       "image", "camera_info", "imu", "truth"};
 };
 
-/// The topics that a user chose, by name.
+/// Names of the topics that the user chose.
 using TopicChoices = std::map<TopicRole, std::string>;
 
-/// "image=/cam0/image_raw", as often as there are roles. Throws SettingError.
+/// Parses "image=/cam0/image_raw", one text for each role. Throws SettingError.
 TopicChoices parse_topic_choices(const std::vector<std::string>& texts);
 
 struct TopicRoles {
-  std::array<std::optional<int>, kTopicRoles> topics;  ///< of `Bag::topics`
+  std::array<std::optional<int>, kTopicRoles> topics;  ///< indices in `Bag::topics`
   std::vector<std::string> notes;                      ///< "several topics with ..."
 
   std::optional<int> of(TopicRole role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// Finds a topic with messages for each role by its type: the chosen one, else the one whose name
-/// begins most like the pictures', of those the first by name; one that its name calls depth or
-/// accelerations only where there is no other. Throws InputError where there are no pictures, or no
-/// such topic as was chosen.
+/// Finds a topic with messages of the right type for each role: the chosen one, otherwise the one
+/// with the longest common prefix with the images' topic, otherwise the first by name. Topics with
+/// `depth` or `accel` in their names come last. Throws InputError if there are no images or a
+/// chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
-/// "/imu (sensor_msgs/Imu, 200)", with commas between and only the first of very many.
+/// "/imu (sensor_msgs/Imu, 200), ...", abbreviated if there are many.
 std::string topics_text(const Bag& bag);
 
-/// What a recording is made of, as the bag has it: by the time stamps in the messages' headers,
-/// strictly ascending. Where a header has none it is the time at which it was recorded.
+/// A recording's data in a bag, sorted by the time stamps of the messages' headers, strictly
+/// ascending. Messages without a time stamp have the time of recording.
 struct BagContents {
   std::vector<std::int64_t> image_times_ns;
-  std::vector<BagMessage> images;  ///< as many
-  std::string camera_frame;          ///< where the first picture was taken: its `frame_id`
+  std::vector<BagMessage> images;              ///< one for each time
+  std::string camera_frame;                      ///< `frame_id` of the first image
   std::optional<CameraInfoMessage> camera_info;  ///< the first
   std::vector<ImuMessage> imu;
   std::vector<PoseMessage> truth;
-  std::vector<PoseMessage> transforms;  ///< of /tf_static
-  std::vector<std::string> notes;       ///< what was left out
+  std::vector<PoseMessage> transforms;  ///< from /tf_static
+  std::vector<std::string> notes;       ///< about ignored messages
 };
 
-/// Goes through the messages of the topics that have a role, in the order of the file; of pictures
-/// it reads the first bytes. Throws InputError where a message is cut or not of its type.
+/// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
+/// message is truncated or not of its type.
 BagContents read_contents(const Bag& bag, const TopicRoles& roles);
 
 }  // namespace gpo

@@ -16,19 +16,17 @@ namespace gpo {
 namespace {
 
 constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;
-constexpr int kCode = 6;  // bits along a tag's side, without its border
+constexpr int kCode = 6;  // bits along a tag's side, without border
 
-/// Four corners, clockwise [px].
 using Quad = std::vector<cv::Point2f>;
 
 double side_of(const Quad& quad) { return cv::arcLength(quad, true) / 4; }
 
-/// With each side moved outward.
 Quad widened(const Quad& quad, double by_px) {
   Quad wider = quad;
   for (int k = 0; k < 4; ++k) {
     const cv::Point2f before = quad[k] - quad[(k + 3) % 4], after = quad[(k + 1) % 4] - quad[k];
-    // Outward of a clockwise way (y is down) is to its left.
+    // y is down, so the outside of a clockwise contour is on its left.
     const cv::Vec2d n(before.y / cv::norm(before), -before.x / cv::norm(before));
     const cv::Vec2d m(after.y / cv::norm(after), -after.x / cv::norm(after));
     const double sine = n[0] * m[1] - n[1] * m[0];
@@ -39,11 +37,11 @@ Quad widened(const Quad& quad, double by_px) {
   return wider;
 }
 
-/// The tag that a quadrilateral is, if it is one.
+/// Decodes the tag in a quadrilateral; nullopt if there is none.
 std::optional<MarkerCode> code_of(const cv::Mat& gray, const Quad& quad, int border) {
   constexpr int kBit = 6;  // px
   const int bits = kCode + 2 * border;
-  const float first = -0.5F;  // where the first pixel begins
+  const float first = -0.5F;  // left border of the first pixel
   const float last = static_cast<float>(bits * kBit) - 0.5F;
   const Quad square = {{first, first}, {last, first}, {last, last}, {first, last}};
   cv::Mat flat, means;
@@ -66,7 +64,7 @@ std::optional<MarkerCode> code_of(const cv::Mat& gray, const Quad& quad, int bor
   return identify_marker(white(inside) / 255, kFamily);
 }
 
-/// Column and row, from the top, of a tag; nothing where the board has none of that number.
+/// Returns the column and row (from the top) of a tag; nullopt if the board lacks this number.
 std::optional<cv::Point> place_of(int id, const Board& board) {
   if (const auto& alone = board.tags->alone) {
     const bool wanted = *alone == BoardTags::kAnyTag || *alone == id;
@@ -78,7 +76,7 @@ std::optional<cv::Point> place_of(int id, const Board& board) {
   return cv::Point(id % columns, rows - 1 - id / columns);
 }
 
-/// Where the corners of tags in a grid, which are those of two black squares each, are exactly.
+/// Refines the corners of a tag in a grid, where each touches two black squares.
 void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
   const double bits = kCode + 2 * board.tags->border;
   const double plain = std::min(board.tags->border / bits, board.tags->spacing);
@@ -95,23 +93,23 @@ bool is_inside(const Quad& quad, const cv::Mat& gray) {
   });
 }
 
-/// The board's tags by their numbers, each corner clockwise from the tag's own top left.
+/// Tags by their numbers; corners clockwise from the tag's own top left.
 using Tags = std::map<int, Quad>;
 
-/// Adds the tags that are found once everything black is made narrower.
+/// Adds the tags that appear after all black areas are narrowed.
 void add_tags(Tags& tags, const cv::Mat& gray, const Board& board, int narrower_px) {
   const int size = 2 * narrower_px + 1;
   cv::Mat narrowed;
   cv::dilate(gray, narrowed, cv::getStructuringElement(cv::MORPH_RECT, {size, size}));
   for (Quad quad : dark_quads(narrowed)) {
-    constexpr float kAprilTags = 0.5F;  // where AprilTag has the middle of the first pixel
+    constexpr float kAprilTags = 0.5F;  // center of the first pixel in AprilTag's convention
     for (cv::Point2f& corner : quad) corner -= cv::Point2f(kAprilTags, kAprilTags);
     quad = widened(quad, narrower_px);
     if (!is_inside(quad, gray)) continue;
     if (!board.tags->alone) refine(quad, gray, board);
     const auto code = code_of(gray, quad, board.tags->border);
     if (!code || tags.contains(code->id) || !place_of(code->id, board)) continue;
-    // OpenCV has this family upside down.
+    // OpenCV stores this family upside down.
     std::rotate(quad.begin(), quad.begin() + (6 - code->quarters) % 4, quad.end());
     tags[code->id] = quad;
   }
@@ -125,7 +123,7 @@ std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& b
   const int corner_count = board.columns * board.rows;
   const auto expected = static_cast<std::size_t>(corner_count / 4);
   Tags tags;
-  // Where squares touch a tag's corners it is no quadrilateral until all black is narrower.
+  // Black squares that touch a tag's corners hide its outline until black areas are narrower.
   for (const int narrower_px : {0, 1, 2, 3})
     if (tags.size() < expected) add_tags(tags, gray, board, narrower_px);
   if (tags.empty() || tags.size() > expected) return {};

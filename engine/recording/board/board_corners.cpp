@@ -11,17 +11,16 @@
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-constexpr int kSearchSize = 420;  // [px] long side of the picture in which the board is looked for
-constexpr double kMostAstray = 0.12;  // of the distance to the next corner, before refinement
-constexpr double kSubPixReach = 0.3;  // of the distance to the next corner
+constexpr int kSearchSize = 420;      // [px] long side of the reduced image for the first search
+constexpr double kMostAstray = 0.12;  // of the corner distance, before refinement
+constexpr double kSubPixReach = 0.3;  // of the corner distance
 
-/// A chessboard's corners by OpenCV in a reduced picture, row by row but in some order, back in
-/// full pixels.
+/// Finds a chessboard's corners with OpenCV in a reduced image. Returns them in full pixels, row by
+/// row but in an unspecified order.
 std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   cv::Mat reduced = gray;
   const double scale =
@@ -31,18 +30,15 @@ std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   const cv::Size size(board.columns, board.rows);
   const int flags =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  // The first is quicker and finds boards at a slant, the second finds small ones among clutter;
-  // both give up within some tens of milliseconds in so small a picture (in a larger one they do
-  // not).
+  // The first finder is faster and finds tilted boards, the second finds small ones among clutter.
+  // In an image this small both give up within some tens of milliseconds.
   if (!cv::findChessboardCorners(reduced, size, corners, flags) &&
-      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) {
+      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE))
     return {};
-  }
   const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
   const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
-  for (auto& corner : corners) {
+  for (auto& corner : corners)
     corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
-  }
   return corners;
 }
 
@@ -50,58 +46,50 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
     if (i % board.columns > 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
-    if (i >= board.columns) {
+    if (i >= board.columns)
       least = std::min(least, cv::norm(corners[i] - corners[i - board.columns]));
-    }
   }
   return least;
 }
 
-/// The search in the reduced picture leaves single corners far off (a gap of the floor beside the
-/// board attracts them). Those that a homography of the whole board contradicts move onto it.
+/// Moves corners that contradict a homography of the whole board onto it: the search in the reduced
+/// image leaves single corners far off, e.g. on a gap in the floor beside the board.
 void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
   std::vector<cv::Point2f> grid;
   grid.reserve(corners.size());
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
       grid.emplace_back(static_cast<float>(column), static_cast<float>(row));
-    }
-  }
   const cv::Mat H = cv::findHomography(grid, corners, cv::RANSAC, kMostAstray * spacing);
   if (H.empty()) return;
   std::vector<cv::Point2f> expected;
   cv::perspectiveTransform(grid, expected, H);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
     if (cv::norm(corners[i] - expected[i]) > kMostAstray * spacing) corners[i] = expected[i];
-  }
 }
 
-/// The order in which `corner(row, column)` is `from` rotated by a quarter turn.
 Corners quarter_turn(const Corners& from, const Board& board) {
   const int n = board.columns;
   Corners turned(from.size());
-  for (int row = 0; row < n; ++row) {
-    for (int column = 0; column < n; ++column) {
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column)
       turned[row * n + column] = from[column * n + (n - 1 - row)];
-    }
-  }
   return turned;
 }
 
 Corners half_turn(const Corners& from) { return {from.rbegin(), from.rend()}; }
 
-/// Reverses each row where the corners run the wrong way round.
+/// Reverses each row if the corners are in left-handed order.
 Corners right_handed(Corners corners, const Board& board) {
   const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
   const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();
   if (along_row.x() * along_column.y() - along_row.y() * along_column.x() > 0) return corners;
-  for (auto row = corners.begin(); row != corners.end(); row += board.columns) {
+  for (auto row = corners.begin(); row != corners.end(); row += board.columns)
     std::reverse(row, row + board.columns);
-  }
   return corners;
 }
 
-/// How much darker the inner squares with even row + column are than the others.
+/// Returns how much darker the inner squares with even row + column are than the others.
 double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Board& board) {
   double difference = 0;
   for (int row = 0; row + 1 < board.rows; ++row) {
@@ -118,8 +106,9 @@ double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Boar
   return difference;
 }
 
-/// Our own order (OpenCV's jumps between frames, and its finders disagree): the first square inside
-/// is dark where the turns of the board differ in that; among equals the rows run to the right.
+/// Orders the corners consistently (OpenCV's order jumps between frames and differs between its
+/// finders): the first inner square is dark if that distinguishes the board's rotations; among
+/// equals the rows run to the right.
 Corners ordered(Corners corners, const cv::Mat& gray, const Board& board) {
   corners = right_handed(std::move(corners), board);
   std::vector<Corners> turns = {corners, half_turn(corners)};
@@ -128,16 +117,11 @@ Corners ordered(Corners corners, const cv::Mat& gray, const Board& board) {
     turns.push_back(half_turn(turns.back()));
   }
   std::vector<Corners> dark_first;
-  for (const auto& turn : turns) {
+  for (const auto& turn : turns)
     if (darkness_of_first(gray, turn, board) > 0) dark_first.push_back(turn);
-  }
   if (!dark_first.empty()) turns = std::move(dark_first);
-  const auto to_the_right = [&](const Corners& turn) {
-    return (turn[board.columns - 1] - turn.front()).x();
-  };
-  return *std::max_element(turns.begin(), turns.end(), [&](const auto& a, const auto& b) {
-    return to_the_right(a) < to_the_right(b);
-  });
+  return *std::ranges::max_element(
+      turns, {}, [&](const Corners& turn) { return (turn[board.columns - 1] - turn.front()).x(); });
 }
 
 Corners find_chessboard(const cv::Mat& gray, const Board& board) {

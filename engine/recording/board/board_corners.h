@@ -13,46 +13,46 @@
 
 namespace gpo {
 
-/// The board's corners in one picture [raw px], sub-pixel, in the order of `board_points`: row by
-/// row, so that (along a row) x (along a column) points away from the camera. Empty where no board
-/// is found.
+/// Returns the board's corners in one image [raw px], sub-pixel, in the order of `board_points`:
+/// row by row, so that (along a row) x (along a column) points away from the camera. Empty if there
+/// is no board.
 ///
-/// A chessboard is found whole or not at all. Which end is first: the one with a dark square
-/// inside, where the board's turns differ in that; else the one whose rows run to the right, which
-/// is another one once the camera has rolled (`board_symmetries`). Of a ChArUco board corners may
-/// be hidden, which are NaN; its markers tell the ends apart. So do the tags of a board of tags.
+/// A chessboard is found completely or not at all. Its first corner is the one beside a dark inner
+/// square if that distinguishes the board's rotations, otherwise the one whose rows run to the
+/// right, which changes when the camera rolls (`board_symmetries`). ChArUco boards and boards of
+/// tags may be partly hidden: hidden corners are NaN, and the markers determine the order.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
-/// Sub-pixel corners by windows of half so wide; one that moves by more than `reach_px` stays where
-/// it was. Returns which moved no further.
+/// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
+/// more than `reach_px` stays in place; the result is false for it.
 std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
                                  const cv::Mat& gray,
                                  int half_px,
                                  double reach_px);
 
-/// OpenCV's predefined dictionary of that name, with or without `DICT_`, in full and as OpenCV
-/// spells it: "5x5_100" -> "DICT_5X5_100". Nothing where there is none.
+/// Returns OpenCV's full name of a predefined dictionary, given with or without `DICT_`, in any
+/// case: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
 std::optional<std::string> dictionary_name(const std::string& name);
 /// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
-/// How many markers it has; a board needs one for each of its light squares.
+/// Number of markers in a dictionary; a board needs one for each of its light squares.
 int dictionary_size(const std::string& dictionary);
-/// Markers on a board: the light squares' count.
+/// Number of markers on a board, one in each light square.
 int marker_count(const Board& board);
 
-/// Corners of a ChArUco board [raw px], as `find_board` gives them: those between two squares whose
-/// markers are both seen, the others NaN. Empty where there is none.
+/// Returns the corners of a ChArUco board [raw px] as `find_board` does: those between two visible
+/// markers, the others NaN. Empty if there is none.
 ///
-/// OpenCV up to 4.5 began boards with an even number of rows of squares with a light square, since
-/// then all begin with a dark one; both are found.
+/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
+/// with a dark one since. Both are found.
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
 
-/// How many different tags there are in the family 36h11.
+/// Number of tags in the family 36h11.
 int april_tag_count();
 
-/// Corners of a board of tags [raw px], as `find_board` gives them: of the tags that are seen, the
-/// others NaN. Empty where there is none. Tags are numbered as Kalibr prints them: from the bottom
-/// row on, from left to right.
+/// Returns the corners of a board of tags [raw px] as `find_board` does: those of visible tags, the
+/// others NaN. Empty if there is none. Tags are numbered as Kalibr prints them: from the bottom row
+/// up, from left to right.
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
 
 }  // namespace gpo

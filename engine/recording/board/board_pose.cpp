@@ -13,47 +13,46 @@
 #include <opencv2/calib3d.hpp>
 
 namespace gpo {
-
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kMostRmsPx = 2;  // a pose that fits worse is none
+constexpr double kMostRmsPx = 2;
 constexpr std::size_t kLeastCorners = 6;
 constexpr std::size_t kLeastCornersOfTag = 4;
 
-/// Corners that are seen: on the board [m], in the picture, and undistorted [px].
-struct Seen {
+/// Visible corners: on the board [m], in the raw image, and undistorted [px].
+struct Visible {
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> raw_px;
   std::vector<Eigen::Vector2d> ideal_px;
 };
 
-Seen seen_corners(const std::vector<Eigen::Vector2d>& raw_px,
-                  const Board& board,
-                  const Camera& camera) {
-  Seen seen;
+Visible visible_corners(const std::vector<Eigen::Vector2d>& raw_px,
+                        const Board& board,
+                        const Camera& camera) {
+  Visible visible;
   const auto points = board_points(board);
   for (std::size_t i = 0; i < std::min(points.size(), raw_px.size()); ++i) {
     if (!raw_px[i].allFinite()) continue;
     const Eigen::Vector2d ideal = undistort(camera, raw_px[i]);
     if (!ideal.allFinite()) continue;
-    seen.points.push_back(points[i]);
-    seen.raw_px.push_back(raw_px[i]);
-    seen.ideal_px.push_back(ideal);
+    visible.points.push_back(points[i]);
+    visible.raw_px.push_back(raw_px[i]);
+    visible.ideal_px.push_back(ideal);
   }
-  return seen;
+  return visible;
 }
 
-/// Whether a line runs through all points but one, at most: they fix no homography.
+/// Whether all points but at most one are collinear, so that they determine no homography.
 bool nearly_collinear(const std::vector<Eigen::Vector3d>& points, const Board& board) {
-  // A line meets at most one point of a row, or of a column.
+  // A line meets at most max(columns, rows) corners.
   if (static_cast<int>(points.size()) > std::max(board.columns, board.rows) + 1) return false;
   const double flat = 1e-6 * board.square_m * board.square_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
-      const auto off = std::count_if(points.begin(), points.end(), [&](const auto& point) {
+      const auto off = std::ranges::count_if(points, [&](const auto& point) {
         return (points[j] - points[i]).cross(point - points[i]).norm() > flat;
       });
       if (off <= 1) return true;
@@ -62,12 +61,11 @@ bool nearly_collinear(const std::vector<Eigen::Vector3d>& points, const Board& b
   return false;
 }
 
-/// Both of IPPE's solutions, T_camera_board.
-std::vector<Pose> first_guesses(const Seen& seen, const Camera& camera) {
+std::vector<Pose> first_guesses(const Visible& visible, const Camera& camera) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
-  for (const auto& point : seen.points) points.emplace_back(point.x(), point.y(), 0);
-  for (const auto& pixel : seen.ideal_px) pixels.emplace_back(pixel.x(), pixel.y());
+  for (const auto& point : visible.points) points.emplace_back(point.x(), point.y(), 0);
+  for (const auto& pixel : visible.ideal_px) pixels.emplace_back(pixel.x(), pixel.y());
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
   std::vector<cv::Mat> rvecs;
   std::vector<cv::Mat> tvecs;
@@ -82,25 +80,25 @@ std::vector<Pose> first_guesses(const Seen& seen, const Camera& camera) {
   return guesses;
 }
 
-/// Sum of the squared residuals r and the normal equations' two sides. J is dr / d(rotation [rad],
-/// translation [m]), applied to T_camera_board from the left.
+/// Sum of the squared residuals r and both sides of the normal equations.
+/// J = dr / d(rotation [rad], translation [m]), applied to T_camera_board from the left.
 struct Linearized {
   double squared_px2 = 0;
   Matrix6 JtJ = Matrix6::Zero();
   Vector6 Jtr = Vector6::Zero();
 };
 
-double squared_error(const Seen& seen, const Camera& camera, const Pose& T_camera_board) {
+double squared_error(const Visible& visible, const Camera& camera, const Pose& T_camera_board) {
   double sum = 0;
-  for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    const Eigen::Vector3d x = to_world(T_camera_board, seen.points[i]);
+  for (std::size_t i = 0; i < visible.points.size(); ++i) {
+    const Eigen::Vector3d x = to_world(T_camera_board, visible.points[i]);
     if (x.z() <= 0) return std::numeric_limits<double>::infinity();
-    sum += (project(camera, x) - seen.raw_px[i]).squaredNorm();
+    sum += (project(camera, x) - visible.raw_px[i]).squaredNorm();
   }
   return sum;
 }
 
-/// d(raw pixel) / d(point in the camera's frame), by central differences.
+/// Returns d(raw pixel) / d(point in the camera's frame), by central differences.
 Eigen::Matrix<double, 2, 3> projection_jacobian(const Camera& camera, const Eigen::Vector3d& x) {
   const double step = 1e-6 * x.norm();
   Eigen::Matrix<double, 2, 3> J;
@@ -111,11 +109,11 @@ Eigen::Matrix<double, 2, 3> projection_jacobian(const Camera& camera, const Eige
   return J;
 }
 
-Linearized linearize(const Seen& seen, const Camera& camera, const Pose& T_camera_board) {
+Linearized linearize(const Visible& visible, const Camera& camera, const Pose& T_camera_board) {
   Linearized sum;
-  for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    const Eigen::Vector3d x = to_world(T_camera_board, seen.points[i]);
-    const Eigen::Vector2d r = project(camera, x) - seen.raw_px[i];
+  for (std::size_t i = 0; i < visible.points.size(); ++i) {
+    const Eigen::Vector3d x = to_world(T_camera_board, visible.points[i]);
+    const Eigen::Vector2d r = project(camera, x) - visible.raw_px[i];
     const Eigen::Matrix<double, 2, 3> P = projection_jacobian(camera, x);
     Eigen::Matrix<double, 2, 6> J;
     J << -P * skew(x), P;
@@ -126,17 +124,16 @@ Linearized linearize(const Seen& seen, const Camera& camera, const Pose& T_camer
   return sum;
 }
 
-/// Levenberg and Marquardt's descent from a first guess.
-Pose refined(const Seen& seen, const Camera& camera, Pose T_camera_board) {
+Pose refined(const Visible& visible, const Camera& camera, Pose T_camera_board) {
   double damping = 1e-4;
-  double error = squared_error(seen, camera, T_camera_board);
+  double error = squared_error(visible, camera, T_camera_board);
   for (int iteration = 0; iteration < 30 && std::isfinite(error); ++iteration) {
-    const Linearized now = linearize(seen, camera, T_camera_board);
+    const Linearized now = linearize(visible, camera, T_camera_board);
     Matrix6 A = now.JtJ;
     A.diagonal() *= 1 + damping;
     const Vector6 step = -solve_symmetric(A, now.Jtr);
     const Pose moved = Pose{so3_exp(step.head<3>()), step.tail<3>()} * T_camera_board;
-    const double moved_error = squared_error(seen, camera, moved);
+    const double moved_error = squared_error(visible, camera, moved);
     if (moved_error < error) {
       const bool settled = error - moved_error < 1e-10 * error;
       T_camera_board = moved;
@@ -151,16 +148,18 @@ Pose refined(const Seen& seen, const Camera& camera, Pose T_camera_board) {
   return T_camera_board;
 }
 
-BoardPose with_uncertainty(const Seen& seen, const Camera& camera, const Pose& T_camera_board) {
-  const Linearized at = linearize(seen, camera, T_camera_board);
-  const auto n = static_cast<double>(seen.points.size());
+BoardPose with_uncertainty(const Visible& visible,
+                           const Camera& camera,
+                           const Pose& T_camera_board) {
+  const Linearized at = linearize(visible, camera, T_camera_board);
+  const auto n = static_cast<double>(visible.points.size());
   const Matrix6 covariance = at.squared_px2 / (2 * n - 6) * inverse_of_symmetric(at.JtJ);
   const Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
   const Eigen::Vector3d normal = T_camera_board.R_wc.col(2);
   const auto sigma = [](double variance) { return std::sqrt(std::max(0.0, variance)); };
   BoardPose found{inverse(T_camera_board), {}};
   found.uncertainty.rms_px = std::sqrt(at.squared_px2 / n);
-  // The camera's center moves by -R^T of the translation alone: a turn from the left is about it.
+  // A rotation from the left is about the camera's center, so only the translation moves it.
   found.uncertainty.position_sigma_m = sigma(covariance.bottomRightCorner<3, 3>().trace());
   found.uncertainty.rotation_sigma_deg = degrees(sigma(rotation.trace()));
   found.uncertainty.normal_sigma_deg =
@@ -182,29 +181,23 @@ std::vector<Eigen::Vector3d> board_points(const Board& board) {
     return (tag * (1 + board.tags->spacing) + corner % 2) * board.square_m;
   };
   std::vector<Eigen::Vector3d> points;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
       points.emplace_back(along(column), along(row), 0);
-    }
-  }
   return points;
 }
 
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
                                     const Camera& camera) {
-  const Seen seen = seen_corners(corners_raw_px, board, camera);
-  const bool single_tag = board.tags && board.tags->alone;
-  const std::size_t least = single_tag ? kLeastCornersOfTag : kLeastCorners;
-  if (seen.points.size() < least || nearly_collinear(seen.points, board)) {
-    return std::nullopt;
-  }
+  const Visible visible = visible_corners(corners_raw_px, board, camera);
+  const std::size_t least = board.tags && board.tags->alone ? kLeastCornersOfTag : kLeastCorners;
+  if (visible.points.size() < least || nearly_collinear(visible.points, board)) return std::nullopt;
   std::optional<BoardPose> best;
-  for (const Pose& guess : first_guesses(seen, camera)) {
-    const BoardPose pose = with_uncertainty(seen, camera, refined(seen, camera, guess));
+  for (const Pose& guess : first_guesses(visible, camera)) {
+    const BoardPose pose = with_uncertainty(visible, camera, refined(visible, camera, guess));
     const double rms_px = pose.uncertainty.rms_px;
-    const bool in_front = pose.pose.p_wc.z() < 0;
-    if (!in_front || !(rms_px <= kMostRmsPx)) continue;
+    if (!(pose.pose.p_wc.z() < 0) || !(rms_px <= kMostRmsPx)) continue;
     if (!best || rms_px < best->uncertainty.rms_px) best = pose;
   }
   return best;
@@ -214,9 +207,8 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
                                            const Camera& camera,
                                            const Pose& pose) {
   std::vector<Eigen::Vector2d> corners;
-  for (const auto& point : board_points(board)) {
+  for (const auto& point : board_points(board))
     corners.push_back(project(camera, to_camera(pose, point)));
-  }
   return corners;
 }
 

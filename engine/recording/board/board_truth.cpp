@@ -12,6 +12,7 @@
 #include "engine/recording/frame_cache.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -30,26 +31,25 @@ namespace gpo {
 namespace {
 
 constexpr double kMostTimesMedian = 4;
-constexpr double kAlwaysGoodPx = 0.5;  ///< a blurred frame among very sharp ones is no mistake
+constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
 constexpr int kMedianFrames = 30;
 
-/// From the cache, and from the pictures where the cache has none.
-BoardViews look_at(const Recording& recording,
-                   const std::vector<int>& frames,
-                   const std::stop_token& stop,
-                   const BoardProgress& progress) {
+/// Loads the views of the frames from the cache, and computes those that it lacks.
+BoardViews views_of(const Recording& recording,
+                    const std::vector<int>& frames,
+                    const std::stop_token& stop,
+                    const BoardProgress& progress) {
   const auto cache = board_cache_file(recording);
   BoardViews views = cache ? load_board_views(*cache) : BoardViews{};
   std::vector<int> missing;
-  for (const int frame : frames) {
-    if (!views.contains(frame)) missing.push_back(frame);
-  }
+  std::ranges::copy_if(
+      frames, std::back_inserter(missing), [&](int frame) { return !views.contains(frame); });
   if (missing.empty()) return views;
   const int of = static_cast<int>(frames.size());
   int done = of - static_cast<int>(missing.size());
   BoardViews found;
   std::mutex mutex;
-  const auto look = [&](int frame, const cv::Mat& gray) {
+  const auto process = [&](int frame, const cv::Mat& gray) {
     const Board& board = *recording.board;
     const auto pose = board_pose(find_board(gray, board), board, recording.camera);
     const std::scoped_lock lock(mutex);
@@ -60,7 +60,7 @@ BoardViews look_at(const Recording& recording,
     if (cache && !found.empty()) save_board_views(*cache, found);
   };
   try {
-    for_each_image(*recording.images, missing, stop, look);
+    for_each_image(*recording.images, missing, stop, process);
   } catch (...) {
     save();
     throw;
@@ -70,7 +70,7 @@ BoardViews look_at(const Recording& recording,
   return views;
 }
 
-/// The RMS above which a fit is taken for a mistake [px].
+/// Returns the RMS above which a fit is rejected as wrong [px].
 double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   std::vector<double> rms_px;
   for (const int frame : frames) {
@@ -81,14 +81,11 @@ double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   return std::max(kAlwaysGoodPx, kMostTimesMedian * median(std::move(rms_px)));
 }
 
-/// The symmetric pose that is nearest in rotation.
 Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& last) {
   const auto turned = [&](const Pose& symmetry) {
     return so3_log(last.R_wc.transpose() * symmetry.R_wc * pose.R_wc).norm();
   };
-  return *std::min_element(symmetries.begin(), symmetries.end(), [&](const Pose& a, const Pose& b) {
-    return turned(a) < turned(b);
-  }) * pose;
+  return *std::ranges::min_element(symmetries, {}, turned) * pose;
 }
 
 GroundTruth in_one_frame(const BoardViews& views,
@@ -115,21 +112,12 @@ GroundTruth in_one_frame(const BoardViews& views,
 
 namespace fs = std::filesystem;
 
-/// To be raised whenever other corners, poses or uncertainties are found in the same pictures.
-constexpr int kAlgorithm = 1;
+/// Increase this whenever corners, poses or uncertainties in the same images change.
+constexpr int kAlgorithm = 2;
 constexpr std::string_view kMagic = "gpo board views\n";
 
-/// As it lies in the file.
-struct StoredView {
-  std::int32_t frame = 0;
-  std::int32_t found = 0;
-  double R_wc[9] = {};
-  double p_wc[3] = {};
-  double rms_px = 0;
-  double position_sigma_m = 0;
-  double rotation_sigma_deg = 0;
-  double normal_sigma_deg = 0;
-};
+/// Frame, whether the board was found, R_wc, p_wc, uncertainty.
+using StoredView = std::array<double, 18>;
 
 std::string bytes_of(const auto& value) {
   std::string bytes(sizeof(value), '\0');
@@ -138,27 +126,24 @@ std::string bytes_of(const auto& value) {
 }
 
 StoredView stored(int frame, const std::optional<BoardPose>& view) {
-  StoredView one;
-  one.frame = frame;
+  StoredView one{static_cast<double>(frame), view ? 1.0 : 0.0};
   if (!view) return one;
-  one.found = 1;
-  Eigen::Map<Eigen::Matrix3d>(one.R_wc) = view->pose.R_wc;
-  Eigen::Map<Eigen::Vector3d>(one.p_wc) = view->pose.p_wc;
-  one.rms_px = view->uncertainty.rms_px;
-  one.position_sigma_m = view->uncertainty.position_sigma_m;
-  one.rotation_sigma_deg = view->uncertainty.rotation_sigma_deg;
-  one.normal_sigma_deg = view->uncertainty.normal_sigma_deg;
+  Eigen::Map<Eigen::Matrix3d>(one.data() + 2) = view->pose.R_wc;
+  Eigen::Map<Eigen::Vector3d>(one.data() + 11) = view->pose.p_wc;
+  const auto& u = view->uncertainty;
+  Eigen::Map<Eigen::Vector4d>(one.data() + 14) << u.rms_px, u.position_sigma_m,
+      u.rotation_sigma_deg, u.normal_sigma_deg;
   return one;
 }
 
 std::optional<BoardPose> restored(const StoredView& one) {
-  if (one.found == 0) return std::nullopt;
+  if (one[1] == 0) return std::nullopt;
   return BoardPose{
-      {Eigen::Map<const Eigen::Matrix3d>(one.R_wc), Eigen::Map<const Eigen::Vector3d>(one.p_wc)},
-      {one.rms_px, one.position_sigma_m, one.rotation_sigma_deg, one.normal_sigma_deg}};
+      {Eigen::Map<const Eigen::Matrix3d>(&one[2]), Eigen::Map<const Eigen::Vector3d>(&one[11])},
+      {one[14], one[15], one[16], one[17]}};
 }
 
-/// The file's name is in its head, so that one that was renamed is told from ours.
+/// Contains the file's name, so that a renamed file is not accepted.
 std::string head_of(const fs::path& file) {
   return fmt::format("{}{}\n", kMagic, file.filename().string());
 }
@@ -181,7 +166,7 @@ GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
-  const BoardViews views = look_at(recording, frames, stop, progress);
+  const BoardViews views = views_of(recording, frames, stop, progress);
   return in_one_frame(views, frames, *recording.board, largest_rms_px(views, frames));
 }
 
@@ -191,10 +176,10 @@ GroundTruth board_truth(const Recording& recording,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
   const int left = recording.frame_count() - start;
-  std::vector<int> looked_at(std::max(frames, std::min(kMedianFrames, left)));
-  std::iota(looked_at.begin(), looked_at.end(), start);
-  const BoardViews views = look_at(recording, looked_at, stop, progress);
-  const std::span<const int> all = looked_at;
+  std::vector<int> considered(std::max(frames, std::min(kMedianFrames, left)));
+  std::iota(considered.begin(), considered.end(), start);
+  const BoardViews views = views_of(recording, considered, stop, progress);
+  const std::span<const int> all = considered;
   const double most_rms_px = largest_rms_px(views, all.first(std::min(kMedianFrames, left)));
   return in_one_frame(views, all.first(frames), *recording.board, most_rms_px);
 }
@@ -202,12 +187,11 @@ GroundTruth board_truth(const Recording& recording,
 std::optional<PoseUncertainty> median_uncertainty(
     std::span<const std::optional<PoseUncertainty>> uncertainties) {
   const auto known = [](const auto& one) { return one.has_value(); };
-  if (std::none_of(uncertainties.begin(), uncertainties.end(), known)) return std::nullopt;
+  if (std::ranges::none_of(uncertainties, known)) return std::nullopt;
   const auto of = [&](double PoseUncertainty::*number) {
     std::vector<double> values;
-    for (const auto& one : uncertainties) {
+    for (const auto& one : uncertainties)
       if (one) values.push_back((*one).*number);
-    }
     return median(std::move(values));
   };
   return PoseUncertainty{of(&PoseUncertainty::rms_px),
@@ -217,12 +201,11 @@ std::optional<PoseUncertainty> median_uncertainty(
 }
 
 std::string uncertainty_text(const PoseUncertainty& uncertainty) {
-  return fmt::format(
-      "{:.2g} mm, {:.2g} deg, its normal {:.2g} deg (one standard deviation; fit {:.2f} px RMS)",
-      1e3 * uncertainty.position_sigma_m,
-      uncertainty.rotation_sigma_deg,
-      uncertainty.normal_sigma_deg,
-      uncertainty.rms_px);
+  return fmt::format("{:.2g} mm, {:.2g} deg, board normal {:.2g} deg (1 sigma; fit {:.2f} px RMS)",
+                     1e3 * uncertainty.position_sigma_m,
+                     uncertainty.rotation_sigma_deg,
+                     uncertainty.normal_sigma_deg,
+                     uncertainty.rms_px);
 }
 
 std::optional<fs::path> board_cache_file(const Recording& recording) {
@@ -260,7 +243,7 @@ BoardViews load_board_views(const fs::path& file) {
        i += sizeof(StoredView)) {
     StoredView one;
     std::memcpy(&one, body.data() + i, sizeof(one));
-    views[one.frame] = restored(one);
+    views[static_cast<int>(one[0])] = restored(one);
   }
   return views;
 }
@@ -276,7 +259,7 @@ void save_board_views(const fs::path& file, const BoardViews& views) {
   try {
     write_file(file, bytes);
   } catch (const InputError&) {
-    // Not worth a word: nobody asked for it.
+    // The cache is optional.
   }
 }
 

@@ -16,54 +16,55 @@
 
 namespace gpo {
 
-/// Called for each frame that was looked at, by one thread at a time.
+/// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Camera poses in the board's frame (z into the board), one for each of `frames`, which ascend. A
-/// frame has none where the board is not found, or where its fit's RMS is above 0.5 px and above
-/// four times the median of them all.
+/// Computes camera poses in the board's frame (z into the board), one for each of `frames`, which
+/// ascend. A frame has none if the board is not found, or if the RMS of its fit exceeds both 0.5 px
+/// and four times the median of all frames.
 ///
-/// Each frame is looked at by itself, on all processors, and once only: the recording's cache
-/// folder, if it has one, keeps what was found. Of a board that looks the same turned, the pose
-/// nearest in rotation to the last one found is taken then; in the first frame the one whose rows
-/// run to the right.
+/// All processors work on different frames. The recording's cache folder, if any, keeps the results
+/// so that each frame is processed once only. If the board has symmetries, a frame gets the pose
+/// nearest in rotation to the previous one, and the first frame the one whose rows run to the
+/// right.
 ///
-/// The recording must have pictures and a board. Once stopped it returns what it has within about
-/// one frame's time. Throws InputError for pictures that cannot be decoded.
+/// The recording must have images and a board. After a stop request it returns the poses so far,
+/// within about one frame's time. Throws InputError if an image cannot be decoded.
 GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// The same for `frames` frames from `start` on. The median is that of 30 frames from `start` on
-/// (fewer where the recording ends), so that a frame's pose does not depend on the window's length.
+/// The same for `frames` frames from `start` on, with the median of the first 30 frames from
+/// `start` (fewer at the end of the recording), so that a pose does not depend on the window's
+/// length.
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// The median of each number over the frames that have a pose; nothing where none has.
+/// Returns the median of each number over the frames that have a pose; nullopt if none has.
 std::optional<PoseUncertainty> median_uncertainty(
     std::span<const std::optional<PoseUncertainty>> uncertainties);
 
-/// "0.31 mm, 0.05 deg, its normal 0.04 deg (one standard deviation; fit 0.21 px RMS)".
+/// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
 std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
-/// What was found in the frames looked at so far, by frame; nothing where it was no board. Each
-/// frame by itself: which of the board's symmetric poses it is, is not decided yet.
+/// Results of the processed frames, before one of the board's symmetric poses is chosen; nullopt if
+/// the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// The file in the recording's cache folder for these pictures (their absolute paths, sizes and
-/// times of change), this camera and this board. Nothing where there is no such folder, or the
-/// pictures are not from files.
+/// Returns the file in the recording's cache folder for these images (absolute paths, sizes, times
+/// of change), this camera and this board. nullopt if there is no cache folder or the images are
+/// not from files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
-/// Empty where there is no such file, or it is not one of ours, cut or damaged.
+/// Empty if the file is missing, foreign, truncated or damaged.
 BoardViews load_board_views(const std::filesystem::path& file);
 
-/// Adds them to what is in the file by now. A folder that cannot be written to is no error: what
-/// is missing will be computed again.
+/// Adds views to the file. A folder that cannot be written to is no error: the views will be
+/// computed again.
 void save_board_views(const std::filesystem::path& file, const BoardViews& views);
 
 }  // namespace gpo

@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/board/opencv_aruco.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,69 +13,54 @@
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
-constexpr double kMostApart = 0.2;  // what two markers say of one corner, of a square's side
+/// Largest distance between two markers' predictions of a corner, of a square's side.
+constexpr double kMostApart = 0.2;
 
-struct NamedDictionary {
-  const char* name;
-  int dictionary;
-};
-
-constexpr std::array kDictionaries = {
-    NamedDictionary{"DICT_4X4_50", cv::aruco::DICT_4X4_50},
-    NamedDictionary{"DICT_4X4_100", cv::aruco::DICT_4X4_100},
-    NamedDictionary{"DICT_4X4_250", cv::aruco::DICT_4X4_250},
-    NamedDictionary{"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
-    NamedDictionary{"DICT_5X5_50", cv::aruco::DICT_5X5_50},
-    NamedDictionary{"DICT_5X5_100", cv::aruco::DICT_5X5_100},
-    NamedDictionary{"DICT_5X5_250", cv::aruco::DICT_5X5_250},
-    NamedDictionary{"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
-    NamedDictionary{"DICT_6X6_50", cv::aruco::DICT_6X6_50},
-    NamedDictionary{"DICT_6X6_100", cv::aruco::DICT_6X6_100},
-    NamedDictionary{"DICT_6X6_250", cv::aruco::DICT_6X6_250},
-    NamedDictionary{"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
-    NamedDictionary{"DICT_7X7_50", cv::aruco::DICT_7X7_50},
-    NamedDictionary{"DICT_7X7_100", cv::aruco::DICT_7X7_100},
-    NamedDictionary{"DICT_7X7_250", cv::aruco::DICT_7X7_250},
-    NamedDictionary{"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
-    NamedDictionary{"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
-    NamedDictionary{"DICT_APRILTAG_16h5", cv::aruco::DICT_APRILTAG_16h5},
-    NamedDictionary{"DICT_APRILTAG_25h9", cv::aruco::DICT_APRILTAG_25h9},
-    NamedDictionary{"DICT_APRILTAG_36h10", cv::aruco::DICT_APRILTAG_36h10},
-    NamedDictionary{"DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11},
-};
-
-int dictionary_of(const std::string& name) {
-  const auto found = std::find_if(kDictionaries.begin(),
-                                  kDictionaries.end(),
-                                  [&](const NamedDictionary& one) { return one.name == name; });
-  CV_Assert(found != kDictionaries.end());
-  return found->dictionary;
+/// Names of the predefined dictionaries in the order of OpenCV's enumeration.
+const std::vector<std::string>& dictionaries() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const char* bits : {"4X4", "5X5", "6X6", "7X7"})
+      for (const int size : {50, 100, 250, 1000})
+        names.push_back(fmt::format("DICT_{}_{}", bits, size));
+    for (const char* other :
+         {"ARUCO_ORIGINAL", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h10", "APRILTAG_36h11"})
+      names.push_back(fmt::format("DICT_{}", other));
+    return names;
+  }();
+  static_assert(cv::aruco::DICT_4X4_50 == 0 && cv::aruco::DICT_7X7_1000 == 15 &&
+                cv::aruco::DICT_APRILTAG_36h11 == 20);
+  return kNames;
 }
 
-/// A marker that is seen: the homography that takes its place on the board [squares, from the
-/// board's outer corner] into the picture, the side of a square there, and its corners.
-struct SeenMarker {
+int dictionary_of(const std::string& name) {
+  const auto found = std::ranges::find(dictionaries(), name);
+  CV_Assert(found != dictionaries().end());
+  return static_cast<int>(found - dictionaries().begin());
+}
+
+/// A visible marker: the homography from the board [squares, from its outer corner] to the image,
+/// the side of a square there, and its corners.
+struct VisibleMarker {
   cv::Matx33d H;
   double square_px = 0;
   std::vector<cv::Point2f> corners;
 };
 
-/// The square (column, row) of each marker, in the order of their numbers.
+/// Returns the square (column, row) of each marker, by the markers' numbers.
 std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
   std::vector<cv::Point> squares;
   for (int row = 0; row <= board.rows; ++row) {
-    for (int column = 0; column <= board.columns; ++column) {
+    for (int column = 0; column <= board.columns; ++column)
       if (((column + row) % 2 == 0) == light_first) squares.emplace_back(column, row);
-    }
   }
   return squares;
 }
 
 /// By square: row * (columns + 1) + column.
-using MarkersBySquare = std::vector<std::optional<SeenMarker>>;
+using MarkersBySquare = std::vector<std::optional<VisibleMarker>>;
 
 MarkersBySquare place_markers(const Board& board, const OpencvMarkers& seen, bool light_first) {
   const auto& [ids, corners] = seen;
@@ -96,18 +81,18 @@ MarkersBySquare place_markers(const Board& board, const OpencvMarkers& seen, boo
     const cv::Mat H = cv::getPerspectiveTransform(on_board, corners[i]);
     const double side_px = cv::arcLength(corners[i], true) / 4;
     markers[square.y * (board.columns + 1) + square.x] =
-        SeenMarker{cv::Matx33d(H), side_px / side, corners[i]};
+        VisibleMarker{cv::Matx33d(H), side_px / side, corners[i]};
   }
   return markers;
 }
 
-/// Where a corner is about, and how far a window about it may reach without touching a marker.
+/// Predicted position of a corner, and the radius of a window around it that touches no marker.
 struct ExpectedCorner {
   cv::Point2f at;
   double reach_px = 0;
 };
 
-/// From both markers beside the corner (column, row), where they agree.
+/// Predicts the corner (column, row) from both markers beside it; nullopt if they disagree.
 std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
                                               const Board& board,
                                               int column,
@@ -122,13 +107,11 @@ std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
     const cv::Vec3d p = marker->H * on_board;
     guesses.emplace_back(static_cast<float>(p[0] / p[2]), static_cast<float>(p[1] / p[2]));
     square_px = marker->square_px;
-    for (const auto& corner : marker->corners) {
+    for (const auto& corner : marker->corners)
       nearest = std::min(nearest, cv::norm(corner - guesses.back()));
-    }
   }
-  if (guesses.size() != 2 || cv::norm(guesses[0] - guesses[1]) > kMostApart * square_px) {
+  if (guesses.size() != 2 || cv::norm(guesses[0] - guesses[1]) > kMostApart * square_px)
     return std::nullopt;
-  }
   return ExpectedCorner{(guesses[0] + guesses[1]) / 2, nearest / std::sqrt(2.0)};
 }
 
@@ -155,34 +138,20 @@ std::vector<Eigen::Vector2d> corners_between(const MarkersBySquare& markers,
   return corners;
 }
 
-std::size_t seen_count(const std::vector<Eigen::Vector2d>& corners) {
-  return std::count_if(
-      corners.begin(), corners.end(), [](const auto& corner) { return corner.allFinite(); });
+std::size_t visible_count(const std::vector<Eigen::Vector2d>& corners) {
+  return std::ranges::count_if(corners, [](const auto& corner) { return corner.allFinite(); });
 }
 
 }  // namespace
 
 std::optional<std::string> dictionary_name(const std::string& name) {
-  for (const NamedDictionary& one : kDictionaries) {
-    for (const std::string& spelled : {name, fmt::format("DICT_{}", name)}) {
-      if (std::equal(spelled.begin(),
-                     spelled.end(),
-                     one.name,
-                     one.name + std::char_traits<char>::length(one.name),
-                     [](char a, char b) { return std::tolower(a) == std::tolower(b); })) {
-        return one.name;
-      }
-    }
-  }
+  for (const std::string& known : dictionaries())
+    for (const std::string& spelled : {name, "DICT_" + name})
+      if (lower_case(spelled) == lower_case(known)) return known;
   return std::nullopt;
 }
 
-std::string dictionary_names() {
-  std::vector<std::string> names;
-  names.reserve(kDictionaries.size());
-  for (const NamedDictionary& one : kDictionaries) names.emplace_back(one.name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
+std::string dictionary_names() { return fmt::format("{}", fmt::join(dictionaries(), ", ")); }
 
 int dictionary_size(const std::string& dictionary) {
   return marker_dictionary_size(dictionary_of(dictionary));
@@ -193,12 +162,12 @@ int marker_count(const Board& board) { return (board.columns + 1) * (board.rows 
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board) {
   const auto markers = detect_markers(gray, dictionary_of(board.markers->dictionary));
   auto corners = corners_between(place_markers(board, markers, false), gray, board);
-  if (board.rows % 2 == 1) {  // an even number of rows of squares
-    // With the markers in the wrong squares no two neighbors agree.
+  if (board.rows % 2 == 1) {  // even number of rows of squares
+    // No two neighbors agree if the markers are assigned to the wrong squares.
     auto older = corners_between(place_markers(board, markers, true), gray, board);
-    if (seen_count(older) > seen_count(corners)) corners = std::move(older);
+    if (visible_count(older) > visible_count(corners)) corners = std::move(older);
   }
-  if (seen_count(corners) == 0) return {};
+  if (visible_count(corners) == 0) return {};
   return corners;
 }
 

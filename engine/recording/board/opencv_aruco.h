@@ -8,9 +8,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/version.hpp>
 
-// OpenCV's ArUco markers: the module `aruco` until 4.6, a part of `objdetect` with another
-// interface since 4.7. Where the two differ stands here and in opencv_aruco.cpp; which library is
-// linked, in the CMakeLists.txt at the top.
+// OpenCV's ArUco markers: the module `aruco` up to 4.6, a part of `objdetect` with another
+// interface since 4.7. This header and opencv_aruco.cpp hide the difference; CMakeLists.txt at the
+// top chooses the library.
 #define GPO_ARUCO_IN_OBJDETECT (CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)
 #if GPO_ARUCO_IN_OBJDETECT
 #include <opencv2/objdetect/aruco_dictionary.hpp>
@@ -20,8 +20,8 @@
 
 namespace gpo {
 
-/// Markers that were seen in a picture: their numbers, and the four corners of each, clockwise from
-/// its own first one [px].
+/// Markers in an image: their numbers, and the four corners of each, clockwise from its own first
+/// one [px].
 struct OpencvMarkers {
   std::vector<int> ids;
   std::vector<std::vector<cv::Point2f>> corners;
@@ -30,18 +30,18 @@ struct OpencvMarkers {
 /// `dictionary` is one of OpenCV's cv::aruco::DICT_..., here and below.
 OpencvMarkers detect_markers(const cv::Mat& gray, int dictionary);
 
-/// Dark quadrilaterals, by the way in which AprilTag finds them: what may be a tag. Clockwise [px].
+/// Returns dark quadrilaterals, the candidates for tags, with AprilTag's algorithm. Clockwise [px].
 std::vector<std::vector<cv::Point2f>> dark_quads(const cv::Mat& gray);
 
-/// A marker's number, and by how many quarters what was read of it is turned.
+/// A marker's number, and the quarter turns by which it is rotated.
 struct MarkerCode {
   int id = 0;
   int quarters = 0;
 };
-/// Of the bits inside of a marker's border, a square of 0 and 1; nothing where it is none.
+/// Decodes the bits inside a marker's border, a square of 0 and 1. nullopt if it is no marker.
 std::optional<MarkerCode> identify_marker(const cv::Mat& bits, int dictionary);
 
-/// How many markers it has.
+/// Number of markers in a dictionary.
 int marker_dictionary_size(int dictionary);
 
 }  // namespace gpo

@@ -5,8 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
 #include "engine/geometry/nearest_rotation.h"
+#include "engine/recording/file_kinds.h"
 
 #include <algorithm>
 #include <array>
@@ -18,13 +18,11 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 using Names = std::initializer_list<const char*>;
 
-/// OpenCV leaves the names to whoever writes the file; these are its samples', ROS' and common
-/// ones.
+/// Names of OpenCV's samples, of ROS, and common ones; OpenCV itself does not define them.
 constexpr Names kMatrix = {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "M1", "mtx"};
 constexpr Names kCoefficients = {"distortion_coefficients",
                                  "Distortion_Coefficients",
@@ -39,15 +37,14 @@ constexpr Names kHeight = {"image_height", "image_Height", "imageHeight", "heigh
 constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
 
 constexpr double kMostShift_s = 3600;
-/// From one picture in 100 s to a high-speed camera: the time stamps of as many pictures as are
-/// read are all different and fit into nanoseconds.
+/// From one image in 100 s to a high-speed camera, so that time stamps fit into nanoseconds and
+/// differ.
 constexpr double kLeastImageRate_hz = 0.01;
 constexpr double kMostImageRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
-  for (const char* name : names) {
+  for (const char* name : names)
     if (auto entry = find(map, name)) return entry;
-  }
   return std::nullopt;
 }
 
@@ -67,12 +64,10 @@ Distortion distortion_model(const YamlEntry& entry) {
   const std::string model = lower_case(text(entry, expected));
   if (model == "none" || model == "no") return Distortion::none;
   for (const char* same :
-       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"}) {
+       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"})
     if (model == same) return Distortion::radial_tangential;
-  }
-  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"}) {
+  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"})
     if (model == same) return Distortion::equidistant;
-  }
   yaml_fail(entry, fmt::format("\"{}\"", model), expected);
 }
 
@@ -80,57 +75,43 @@ void set_coefficients(Camera& camera, const YamlEntry& entry) {
   const std::vector<double> values = numbers(entry);
   const std::size_t n = values.size();
   if (camera.distortion == Distortion::none) {
-    if (std::any_of(values.begin(), values.end(), [](double k) { return k != 0; })) {
+    if (std::ranges::any_of(values, [](double k) { return k != 0; }))
       yaml_fail(entry, count_of(values), "none for distortion model none");
-    }
     return;
   }
-  if (camera.distortion == Distortion::equidistant && n != 4) {
+  if (camera.distortion == Distortion::equidistant && n != 4)
     yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
-  }
   static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
-  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n)) {
+  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n))
     yaml_fail(entry,
               count_of(values),
               "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
-  }
-  if (!are_coefficients(values)) {
-    yaml_fail(entry, "a coefficient that no lens has", "numbers of the order of 1");
-  }
+  if (!are_coefficients(values))
+    yaml_fail(entry, "an implausible coefficient", "magnitudes of the order of 1");
   camera.coefficients = values;
 }
 
 void set_resolution(Camera& camera, const YamlEntry& entry, double width, double height) {
   constexpr double kMost = 1e5;
   const bool whole = width == std::floor(width) && height == std::floor(height);
-  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost) {
-    yaml_fail(entry, "a size that no picture has", "[width, height] in pixels");
-  }
+  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost)
+    yaml_fail(entry, fmt::format("{:g}x{:g}", width, height), "[width, height] in pixels");
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
 }
 
-/// `k`: fx, fy, cx, cy.
 void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
   const auto& [fx, fy, cx, cy] = k;
-  if (fx <= 0 || fy <= 0) {
-    yaml_fail(entry, "a focal length that is not positive", "fx, fy > 0 in pixels");
-  }
-  if (!is_focal_length(fx) || !is_focal_length(fy)) {
-    yaml_fail(entry, "a focal length that no lens has", "fx, fy in pixels");
-  }
+  if (!is_focal_length(fx) || !is_focal_length(fy))
+    yaml_fail(entry, fmt::format("{:g}, {:g}", fx, fy), "plausible fx, fy > 0 in pixels");
   camera.fx = fx;
   camera.fy = fy;
   camera.cx = cx;
   camera.cy = cy;
-  if (!has_near_principal_point(camera)) {
-    yaml_fail(entry,
-              "a principal point far outside of the picture",
-              "cx, cy in pixels, near the middle of it");
-  }
+  if (!has_near_principal_point(camera))
+    yaml_fail(entry, fmt::format("{:g}, {:g}", cx, cy), "cx, cy in pixels, near the image center");
 }
 
-/// Standard deviations as `calibrate` writes them; of coefficients that the file has.
 void set_sigmas(Camera& camera, const YamlEntry& root) {
   const auto intrinsics = find(root, "intrinsics_sigma");
   if (!intrinsics) return;
@@ -143,10 +124,10 @@ void set_sigmas(Camera& camera, const YamlEntry& root) {
   }
   const auto no_sigma = [](double sigma) { return !(sigma >= 0 && sigma < kLargestCoefficient); };
   if (std::ranges::any_of(camera.sigmas, no_sigma))
-    yaml_fail(*intrinsics, "a standard deviation that none can be", "numbers from 0 on");
+    yaml_fail(*intrinsics, "an implausible standard deviation", "numbers from 0 on");
 }
 
-/// EuRoC's keys and Kalibr's, which differ in one name only.
+/// EuRoC's and Kalibr's keys, which differ in one name only.
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
   const auto resolution = at(root, "resolution", "[width, height]");
@@ -159,16 +140,14 @@ Camera euroc_camera(const YamlEntry& root) {
       distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
   const auto euroc_key = find(root, "distortion_coefficients");
   const auto kalibr_key = find(root, "distortion_coeffs");
-  if (euroc_key || kalibr_key) {
+  if (euroc_key || kalibr_key)
     set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
-  } else if (camera.distortion != Distortion::none) {
+  else if (camera.distortion != Distortion::none)
     at(root, "distortion_coefficients", "a list of numbers");
-  }
   set_sigmas(camera, root);
   return camera;
 }
 
-/// Leaves the size at 0 where the file does not tell it.
 void set_opencv_size(Camera& camera, const YamlEntry& root) {
   if (const auto size = find_any(root, kSize)) {
     const auto s = numbers(*size, 2, "2 (width, height)");
@@ -187,23 +166,21 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   Camera camera;
   set_opencv_size(camera, root);
   const auto k = numbers(matrix, 9, "9 (a 3x3 matrix)");
-  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
-  }
   set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
   const auto coefficients = find_any(root, kCoefficients);
   if (!coefficients) return camera;
   const auto fisheye = find(root, "fisheye_model");
   camera.distortion =
       fisheye && number(*fisheye) != 0 ? Distortion::equidistant : Distortion::radial_tangential;
-  if (const auto model = find(root, "distortion_model")) {
+  if (const auto model = find(root, "distortion_model"))
     camera.distortion = distortion_model(*model);
-  }
   set_coefficients(camera, *coefficients);
   return camera;
 }
 
-/// "camera.yaml", ... in the order in which they are looked for.
+/// "camera.yaml", ... in the order of precedence.
 std::vector<std::string> calibration_names() {
   std::vector<std::string> names;
   for (const char* stem : {"camera",
@@ -214,15 +191,13 @@ std::vector<std::string> calibration_names() {
                            "camera_calibration",
                            "calib",
                            "intrinsics",
-                           "out_camera_data"}) {
-    for (const char* extension : {".yaml", ".yml", ".xml", ".json"}) {
+                           "out_camera_data"})
+    for (const char* extension : {".yaml", ".yml", ".xml", ".json"})
       names.push_back(std::string(stem) + extension);
-    }
-  }
   return names;
 }
 
-/// Kalibr prefixes the name of the bag: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
+/// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
 bool is_camchain(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
@@ -235,14 +210,12 @@ Pose rigid_motion(const YamlEntry& entry) {
   const Eigen::Matrix4d T =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  constexpr double kTolerance = 1e-2;  // files are written with few digits
+  constexpr double kTolerance = 1e-2;  // for files with few digits
   if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
-      R.determinant() < 0) {
+      R.determinant() < 0)
     yaml_fail(entry, "a matrix that is no rotation", "an orthonormal right-handed 3x3 part");
-  }
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
     yaml_fail(entry, "another last row", "0, 0, 0, 1");
-  }
   return {nearest_rotation(R), T.topRightCorner<3, 1>()};
 }
 
@@ -263,46 +236,40 @@ Calibration read_calibration(const std::filesystem::path& file) {
   Calibration result;
   const auto matrix = find_any(root, kMatrix);
   result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
-  if (const auto T_BS = find(root, "T_BS")) {
+  if (const auto T_BS = find(root, "T_BS"))
     result.T_body_camera = rigid_motion(*T_BS);
-  } else if (const auto T_cam_imu = find(root, "T_cam_imu")) {
+  else if (const auto T_cam_imu = find(root, "T_cam_imu"))
     result.T_body_camera = inverse(rigid_motion(*T_cam_imu));
-  }
   if (const auto shift = find(root, "timeshift_cam_imu")) {
     const double seconds = number(*shift);
-    if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most an hour");
+    if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most 3600");
     result.time_offset_ns = std::llround(seconds * 1e9);
   }
   if (const auto source = find(root, "source"))
     result.self_calibrated = text(*source, "a name") == "self-calibrated";
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
-    if (*result.rate_hz <= 0) yaml_fail(*rate, "a rate that is not positive", "pictures a second");
-    if (!is_image_rate(*result.rate_hz)) {
+    if (!is_image_rate(*result.rate_hz))
       yaml_fail(
           *rate,
-          fmt::format("{} to {:.0f} pictures a second", kLeastImageRate_hz, kMostImageRate_hz));
-    }
+          fmt::format("{} to {:.0f} images per second", kLeastImageRate_hz, kMostImageRate_hz));
   }
   return result;
 }
 
 std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
-  for (const std::string& name : calibration_names()) {
+  for (const std::string& name : calibration_names())
     if (is_file(folder / name)) return folder / name;
-  }
-  std::set<std::filesystem::path> chains;
-  for (const auto& file : files_in(folder)) {
-    if (is_camchain(file)) chains.insert(file);
-  }
-  return chains.empty() ? std::nullopt : std::optional(*chains.begin());
+  const auto chains = files_of_kind(folder, is_camchain);
+  return chains.empty() ? std::nullopt : std::optional(chains.front());
 }
 
 std::filesystem::path calibration_in(const std::filesystem::path& folder) {
   if (const auto file = find_calibration(folder)) return *file;
-  throw InputError(folder.string() +
-                   ": found no calibration, expected camera.yaml (the names and formats of EuRoC, "
-                   "OpenCV and Kalibr are known, too; `gpo-inspector calibrate` makes one)");
+  throw InputError(
+      folder.string() +
+      ": found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
+      "Kalibr; `gpo-inspector calibrate` makes one");
 }
 
 }  // namespace gpo

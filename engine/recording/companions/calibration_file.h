@@ -12,35 +12,35 @@
 
 namespace gpo {
 
-/// What a calibration file knows about one camera.
+/// One camera's calibration.
 struct Calibration {
   Camera camera;
-  std::optional<Pose>
-      T_body_camera;                ///< x_body = R_wc x_camera + p_wc; Kalibr: the body is the IMU
+  /// x_body = R_wc x_camera + p_wc; with Kalibr the body is the IMU.
+  std::optional<Pose> T_body_camera;
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
-  std::optional<double> rate_hz;    ///< of the pictures
+  std::optional<double> rate_hz;    ///< of the images
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
-/// Reads a camera's calibration: EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also
-/// ROS') or Kalibr's camchain, told apart by their keys. OpenCV's need not tell the size of the
-/// pictures: width and height are 0 then. Throws InputError.
+/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also ROS') or Kalibr's
+/// camchain, distinguished by their keys. Width and height are 0 if OpenCV's file lacks them.
+/// Throws InputError.
 Calibration read_calibration(const std::filesystem::path& file);
 
-/// Whether `read_calibration` takes it as a camera's `rate_hz`.
+/// Whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
 
-/// As EuRoC's files call it.
+/// Name in EuRoC's files.
 const char* distortion_name(Distortion distortion);
 
-/// The calibration in a folder, by the names that people and tools give it: camera.yaml,
-/// sensor.yaml, camchain-imucam.yaml, calibration.xml, ...; nothing where there is none.
+/// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
+/// camchain-imucam.yaml, calibration.xml, ...; nullopt if there is none.
 std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
-/// The same. Throws InputError where there is none.
+/// The same. Throws InputError if there is none.
 std::filesystem::path calibration_in(const std::filesystem::path& folder);
 
-/// EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError
-/// where it is no rigid motion.
+/// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
+/// InputError unless it is a rigid motion.
 Pose rigid_motion(const YamlEntry& entry);
 
 }  // namespace gpo

@@ -21,7 +21,7 @@ double rad_s_per_unit(const CsvTable& table) {
   return degrees ? std::numbers::pi / 180 : 1;
 }
 
-/// Columns 4 to 6 where the header, if there is one, calls them a...
+/// Whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
 bool has_accelerations(const CsvTable& table) {
   return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
 }
@@ -67,7 +67,7 @@ ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
   if (const auto sigma = find(root, "gyroscope_bias_sigma"))
     result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
   if (const auto density = find(root, "gyroscope_noise_density")) {
-    const std::string expected = "a number that is not negative in rad/s/sqrt(Hz)";
+    const std::string expected = "a number >= 0 in rad/s/sqrt(Hz)";
     const double value = number(*density, expected);
     if (value < 0) yaml_fail(*density, expected);
     if (value > 0) result.noise_density = value;

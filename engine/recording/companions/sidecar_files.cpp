@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 int corner_count(const YamlEntry& root, const std::string& key) {
@@ -38,32 +37,29 @@ Board chessboard(const YamlEntry& root) {
   return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
 }
 
-/// `squares` counts the squares as OpenCV's CharucoBoard does, not the corners between them.
+/// `squares` is the number of squares, as in OpenCV's CharucoBoard, not of the corners between
+/// them.
 Board charuco_board(const YamlEntry& root) {
   const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
   const auto squares = at(root, "squares", expected);
   const auto counts = numbers(squares, 2, expected);
-  for (const double count : counts) {
-    if (count < 3 || count > 100 || count != std::floor(count)) {
+  for (const double count : counts)
+    if (count < 3 || count > 100 || count != std::floor(count))
       yaml_fail(squares, fmt::format("{:g}", count), expected);
-    }
-  }
   Board board{static_cast<int>(counts[0]) - 1, static_cast<int>(counts[1]) - 1, square_side(root)};
   const double marker = length_m(root, "marker", "the side of a marker in meters");
-  if (marker >= board.square_m) {
+  if (marker >= board.square_m)
     yaml_fail(at(root, "marker", ""),
               fmt::format("{:g}", marker),
               fmt::format("less than the square's side, {:g}", board.square_m));
-  }
   const auto dictionary = at(root, "dictionary", "one of " + dictionary_names());
   const auto name = dictionary_name(text(dictionary, "a name"));
   if (!name) yaml_fail(dictionary, "one of " + dictionary_names());
   board.markers = BoardMarkers{marker, *name};
-  if (marker_count(board) > dictionary_size(*name)) {
+  if (marker_count(board) > dictionary_size(*name))
     yaml_fail(dictionary,
               fmt::format("{} with {} markers", *name, dictionary_size(*name)),
-              fmt::format("one with {}, as many as the board has", marker_count(board)));
-  }
+              fmt::format("at least {}, one for each marker of the board", marker_count(board)));
   return board;
 }
 
@@ -74,7 +70,7 @@ int tag_count(const YamlEntry& root, const std::string& key) {
   return static_cast<int>(count);
 }
 
-/// Width of a tag's black border, which Kalibr prints twice as wide as others do.
+/// Reads the width of a tag's black border; Kalibr's is twice as wide as others.
 int tag_border(const YamlEntry& root, int otherwise) {
   const auto entry = find(root, "tagBorder");
   if (!entry) return otherwise;
@@ -83,22 +79,19 @@ int tag_border(const YamlEntry& root, int otherwise) {
   return static_cast<int>(border);
 }
 
-/// Kalibr's keys.
 Board april_grid(const YamlEntry& root) {
   Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
-  const auto spacing = at(root, "tagSpacing", "a tag's distance from the next over its side");
+  const auto spacing = at(root, "tagSpacing", "the gap between tags over their side");
   const double ratio = number(spacing);
-  if (ratio <= 0 || ratio > 1) {
+  if (ratio <= 0 || ratio > 1)
     yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
-  }
   board.tags = BoardTags{ratio, tag_border(root, 2), {}};
   const int count = board.columns * board.rows / 4;
-  if (count > april_tag_count()) {
+  if (count > april_tag_count())
     yaml_fail(at(root, "tagCols", ""),
               fmt::format("{} tags", count),
               fmt::format("at most {}", april_tag_count()));
-  }
   return board;
 }
 
@@ -143,9 +136,8 @@ Plane read_plane(const std::filesystem::path& file) {
   const auto n = numbers(normal, 3, "3 (x, y, z)");
   const double distance = number(at(root, "distance", "a number of meters"));
   const double norm = std::hypot(n[0], n[1], n[2]);
-  if (std::abs(norm - 1) > 1e-2) {
+  if (std::abs(norm - 1) > 1e-2)
     yaml_fail(normal, "length " + std::to_string(norm), "a unit vector");
-  }
   return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
 }
 
@@ -167,7 +159,7 @@ std::string board_yaml(const Board& board) {
         tags->spacing,
         tags->border);
   }
-  if (const auto& markers = board.markers) {
+  if (const auto& markers = board.markers)
     return fmt::format(
         "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
         "marker: {}\ndictionary: {}\n",
@@ -176,7 +168,6 @@ std::string board_yaml(const Board& board) {
         board.square_m,
         markers->side_m,
         markers->dictionary);
-  }
   return fmt::format(
       "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
       board.columns,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/truth_file.h"
 
-#include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/window/timestamps.h"
@@ -14,10 +13,9 @@
 #include <Eigen/Geometry>
 
 namespace gpo {
-
 namespace {
 
-constexpr int kBiasColumn = 11;  // of b_w in: t, p (3), q (4), v (3), b_w (3), b_a (3)
+constexpr int kBiasColumn = 11;  // of: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
 
@@ -26,9 +24,8 @@ Pose pose_of(const CsvTable& table, const CsvRow& row, const std::array<int, 4>&
   const auto value = [&](int column) { return csv_number(table, row, column); };
   const Eigen::Quaterniond rotation(value(q[0]), value(q[1]), value(q[2]), value(q[3]));
   const double norm = rotation.norm();
-  if (!(std::abs(norm - 1) <= 1e-2)) {
+  if (!(std::abs(norm - 1) <= 1e-2))
     csv_fail(table, row.line, "a quaternion of norm " + std::to_string(norm), "a unit quaternion");
-  }
   return {rotation.normalized().toRotationMatrix(), {value(1), value(2), value(3)}};
 }
 
@@ -44,9 +41,8 @@ PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>&
 std::optional<Eigen::Vector3d> mean_bias(const CsvTable& table) {
   if (table.columns != kColumnsWithBias) return std::nullopt;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& row : table.rows) {
+  for (const auto& row : table.rows)
     for (int i = 0; i < 3; ++i) sum[i] += csv_number(table, row, kBiasColumn + i);
-  }
   return sum / static_cast<double>(table.rows.size());
 }
 

@@ -15,53 +15,52 @@
 
 namespace gpo {
 
-/// Poses over time of the frame that a truth file measures: the body, a camera, a set of markers.
+/// Poses over time of the frame that a truth file measures: the body, a camera or markers.
 struct PosePath {
   std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
   std::vector<Pose> poses;                              ///< in the truth's world [m]
-  std::int64_t longest_gap_ns = 0;                      ///< over which it is interpolated
-  std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< where the file has the columns
+  std::int64_t longest_gap_ns = 0;                      ///< largest gap to interpolate
+  std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
 };
 
-/// EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz, and in
-/// EuRoC's own files v, b_w, b_a. Gaps of up to three median periods may be interpolated. Throws
-/// InputError.
+/// Reads EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz,
+/// and in EuRoC's own files v, b_w, b_a. Throws InputError.
 PosePath read_euroc_path(const std::filesystem::path& file);
 
-/// TUM's groundtruth.txt: seconds, p, q_xyzw, separated by blanks; others have another unit. Throws
+/// Reads TUM's groundtruth.txt: seconds (or `unit`), p, q_xyzw, separated by blanks. Throws
 /// InputError.
 PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
 
-/// The pose at a time, slerp and linear between the two samples around it; nothing where these are
-/// further apart than the longest gap, or the time is outside of the path.
+/// Interpolates the pose at a time (slerp and linear); nullopt outside of the path and in gaps that
+/// are too long.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 
-/// Where the measured frame is, and how its clock runs.
+/// Transform to the measured frame and clock offset.
 struct TruthMounting {
   Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
   std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
 };
 
-/// Three median periods: over longer gaps poses are not interpolated unless a file says so.
+/// Three median periods, the default of the longest gap to interpolate.
 std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns);
 
-/// Camera poses at the frames' times. `source` is for people.
+/// Returns camera poses at the frames' times. `source` is for people.
 GroundTruth camera_truth(const PosePath& path,
                          const TruthMounting& mounting,
                          std::string source,
                          const std::vector<std::int64_t>& frame_times_ns);
 
-/// The optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth file.
-/// Throws InputError.
+/// Reads the optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth
+/// file. Throws InputError.
 void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
 
-/// The same keys and the hand-eye calibration `T_truth_camera` of the groundtruth.yaml in a folder,
-/// if there is one. Throws InputError.
+/// Reads the same keys and the hand-eye calibration `T_truth_camera` of the optional
+/// groundtruth.yaml in a folder. Throws InputError.
 void read_mounting_beside(const std::filesystem::path& folder,
                           PosePath& path,
                           TruthMounting& mounting);
 
-/// Of a groundtruth.txt beside the recording, with what groundtruth.yaml says; nothing without
+/// Reads the groundtruth.txt and groundtruth.yaml beside a recording; nullopt without
 /// groundtruth.txt. Throws InputError.
 std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns);

@@ -5,12 +5,14 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/file_kinds.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -25,9 +27,17 @@ using Header = std::optional<ImageHeader>;
 constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
 
-/// Walks the segments of a JPEG up to its end marker. The marker is not merely searched for: the
-/// thumbnail that a camera stores inside has one too.
+std::int64_t little(Bytes bytes, std::int64_t place, int count) {
+  return static_cast<std::int64_t>(little_endian(bytes, place, count));
+}
+std::int64_t big(Bytes bytes, std::int64_t place, int count) {
+  return static_cast<std::int64_t>(big_endian(bytes, place, count));
+}
+
+/// Walks through the segments of a JPEG to its end marker. Searching for the marker would find the
+/// one of an embedded thumbnail.
 bool is_whole_jpeg(Bytes bytes) {
   std::size_t i = 2;
   while (i + 1 < bytes.size()) {
@@ -52,25 +62,23 @@ bool is_whole_jpeg(Bytes bytes) {
 
 struct PngChunk {
   Bytes kind;
-  Bytes all;  ///< with its length and its sum
+  Bytes all;  ///< with its length and checksum
   bool sum_agrees = false;
 };
 
-/// The one that begins at `place`, unless it is cut.
 std::optional<PngChunk> png_chunk(Bytes bytes, std::size_t place) {
-  constexpr std::size_t kAround = 12;  // length, kind, sum
+  constexpr std::size_t kAround = 12;  // length, kind, checksum
   if (place + kAround > bytes.size()) return std::nullopt;
   const std::size_t length = big_endian(bytes, place, 4);
   if (length > bytes.size() - place - kAround) return std::nullopt;
   const Bytes summed = bytes.substr(place + 4, length + 4);
-  const auto sum =
-      crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<uInt>(summed.size()));
+  const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(summed.data()), summed.size());
   return PngChunk{bytes.substr(place + 4, 4),
                   bytes.substr(place, length + kAround),
                   sum == big_endian(bytes, place + 8 + length, 4)};
 }
 
-/// Up to IEND; libpng would complain of a wrong sum on stderr.
+/// Checks all chunks up to IEND; libpng would report a wrong checksum on stderr.
 bool is_whole_png(Bytes bytes) {
   std::size_t i = kPngSignature.size();
   while (const auto chunk = png_chunk(bytes, i)) {
@@ -81,28 +89,29 @@ bool is_whole_png(Bytes bytes) {
   return false;
 }
 
-/// Whether the pixels that the header of a binary PGM or PPM announces are all there.
-bool is_whole_pnm(Bytes bytes) {
-  std::array<std::size_t, 3> header{};  // width, height, largest value
+/// Reads decimal numbers, up to about `most`, from the header of a PNM from byte 2 on. Returns the
+/// place behind them.
+std::size_t read_pnm_numbers(Bytes bytes, std::span<std::int64_t> numbers, std::int64_t most) {
   std::size_t i = 2;
-  for (auto& number : header) {
-    while (i < bytes.size() && std::isdigit(byte_at(bytes, i)) == 0) {
+  for (std::int64_t& number : numbers) {
+    while (i < bytes.size() && !is_digit(bytes, i))
       i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
-    }
-    for (; i < bytes.size() && std::isdigit(byte_at(bytes, i)) != 0 && number < 1'000'000; ++i) {
-      number = number * 10 + (byte_at(bytes, i) - '0');
-    }
+    for (; i < bytes.size() && is_digit(bytes, i) && number < most; ++i)
+      number = number * 10 + (bytes[i] - '0');
   }
-  const std::size_t channels = bytes[1] == '6' ? 3 : 1;
-  const std::size_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
-  return bytes.size() >= i + 1 + header[0] * header[1] * bytes_a_pixel;
+  return i;
 }
 
-/// Whether a picture's file is there to its end and a PNG's sums agree, before a library decodes
-/// half of it or complains on stderr. TIFF and unknown formats pass.
-/// A PNG's bytes with nothing but its pixels, transparency and orientation: libpng prints a line on
-/// stderr for a color profile that it does not like, and programs write many of those. Other
-/// formats stay as they are.
+bool is_whole_pnm(Bytes bytes) {
+  std::array<std::int64_t, 3> header{};  // width, height, largest value
+  const std::size_t pixels = read_pnm_numbers(bytes, header, 1'000'000) + 1;
+  const std::int64_t channels = bytes[1] == '6' ? 3 : 1;
+  const std::int64_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
+  return bytes.size() >= pixels + static_cast<std::size_t>(header[0] * header[1] * bytes_a_pixel);
+}
+
+/// Whether the file is complete and a PNG's checksums agree, so that no library decodes half of it
+/// or complains on stderr. Not checked for TIFF and unknown formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;
@@ -114,6 +123,8 @@ bool is_whole_image(Bytes bytes) {
   return true;
 }
 
+/// Returns a PNG with only its pixels, transparency and orientation: libpng reports color profiles
+/// that it dislikes on stderr, and many programs write those. Returns other formats unchanged.
 std::string without_remarks(Bytes bytes) {
   if (!bytes.starts_with(kPngSignature)) return std::string(bytes);
   std::string needed(kPngSignature);
@@ -127,28 +138,17 @@ std::string without_remarks(Bytes bytes) {
 }
 
 [[noreturn]] void refuse_format(const std::string& name) {
-  throw InputError(name + ": found something that cannot be decoded, expected a picture");
+  throw InputError(name + ": cannot decode: not an image of a supported format");
 }
 
-/// Refuses what would not fit into memory, and formats whose decoders nobody asked for.
 void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_image_header(bytes);
   if (!header) refuse_format(name);
   check_image_size(name, header->width, header->height);
-  if (header->bits > 16) {
+  if (header->bits > 16)
     throw InputError(
-        fmt::format("{}: found {} bits a channel, expected 8 or 16", name, header->bits));
-  }
+        fmt::format("{}: found {} bits per channel, expected 8 or 16", name, header->bits));
 }
-
-std::int64_t little(Bytes bytes, std::int64_t place, int count) {
-  return static_cast<std::int64_t>(little_endian(bytes, place, count));
-}
-std::int64_t big(Bytes bytes, std::int64_t place, int count) {
-  return static_cast<std::int64_t>(big_endian(bytes, place, count));
-}
-
-Header png_header(Bytes bytes) { return ImageHeader{big(bytes, 16, 4), big(bytes, 20, 4)}; }
 
 /// The first segment SOF0 to SOF15; C4, C8 and CC are others.
 Header jpeg_header(Bytes bytes) {
@@ -167,26 +167,17 @@ Header jpeg_header(Bytes bytes) {
 
 Header bmp_header(Bytes bytes) {
   if (little(bytes, 14, 4) == 12) return ImageHeader{little(bytes, 18, 2), little(bytes, 20, 2)};
-  const auto height = static_cast<std::int32_t>(little(bytes, 22, 4));  // negative: from the top
+  const auto height = static_cast<std::int32_t>(little(bytes, 22, 4));  // negative: top down
   return ImageHeader{little(bytes, 18, 4), std::abs(std::int64_t{height})};
 }
 
 Header pnm_header(Bytes bytes) {
-  ImageHeader header;
-  std::size_t i = 2;
-  const auto at_digit = [&] { return std::isdigit(static_cast<unsigned char>(bytes[i])) != 0; };
-  for (std::int64_t* number : {&header.width, &header.height}) {
-    while (i < bytes.size() && !at_digit()) {
-      i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
-    }
-    for (; i < bytes.size() && at_digit() && *number < 1'000'000'000; ++i) {
-      *number = *number * 10 + (bytes[i] - '0');
-    }
-  }
-  return header;
+  std::array<std::int64_t, 2> size{};
+  read_pnm_numbers(bytes, size, 1'000'000'000);
+  return ImageHeader{size[0], size[1]};
 }
 
-/// The tags of the first directory that say how large a part of the picture may be.
+/// Reads the tags of the first directory that determine the memory for the image or a tile.
 Header tiff_header(Bytes bytes, ByteOrder order) {
   const auto at = [&](std::int64_t place, int count) {
     return static_cast<std::int64_t>(number_at(bytes, place, count, order));
@@ -198,26 +189,15 @@ Header tiff_header(Bytes bytes, ByteOrder order) {
     const bool two_bytes = at(entry + 2, 2) == 3;
     const bool elsewhere = at(entry + 4, 4) > (two_bytes ? 2 : 1);
     const std::int64_t value = at(elsewhere ? at(entry + 8, 4) : entry + 8, two_bytes ? 2 : 4);
-    switch (at(entry, 2)) {
-      case 256:  // the picture's
-      case 322:  // a tile's
-        header.width = std::max(header.width, value);
-        break;
-      case 257:
-      case 323:
-        header.height = std::max(header.height, value);
-        break;
-      case 258:
-        header.bits = static_cast<int>(std::min<std::int64_t>(value, 1000));
-        break;
-      default:
-        break;
-    }
+    const std::int64_t tag = at(entry, 2);
+    if (tag == 256 || tag == 322) header.width = std::max(header.width, value);  // image, tile
+    if (tag == 257 || tag == 323) header.height = std::max(header.height, value);
+    if (tag == 258) header.bits = static_cast<int>(std::min<std::int64_t>(value, 1000));
   }
   return header;
 }
 
-/// Its three kinds write the size in three ways.
+/// WebP has three kinds, each with its own encoding of the size.
 Header webp_header(Bytes bytes) {
   const Bytes kind = bytes.substr(12, 4);
   if (kind == "VP8X") return ImageHeader{little(bytes, 24, 3) + 1, little(bytes, 27, 3) + 1};
@@ -230,15 +210,42 @@ Header webp_header(Bytes bytes) {
 }
 
 Header any_header(Bytes bytes) {
-  if (bytes.starts_with(kPngSignature)) return png_header(bytes);
+  if (bytes.starts_with(kPngSignature)) return ImageHeader{big(bytes, 16, 4), big(bytes, 20, 4)};
   if (bytes.starts_with("\xFF\xD8\xFF")) return jpeg_header(bytes);
   if (bytes.starts_with("BM")) return bmp_header(bytes);
   if (bytes.starts_with(Bytes("II*\0", 4))) return tiff_header(bytes, ByteOrder::little);
   if (bytes.starts_with(Bytes("MM\0*", 4))) return tiff_header(bytes, ByteOrder::big);
   if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return webp_header(bytes);
   const bool pnm = bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
-                   std::isspace(static_cast<unsigned char>(bytes[2])) != 0;
+                   std::isspace(static_cast<int>(byte_at(bytes, 2))) != 0;
   return pnm ? pnm_header(bytes) : std::nullopt;
+}
+
+/// Compares numbers in names by their values.
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  const auto digits_at = [](const std::string& text, std::size_t from) {
+    std::size_t end = from;
+    while (end < text.size() && is_digit(text, end)) ++end;
+    return text.substr(from, end - from);
+  };
+  while (i < a.size() && j < b.size()) {
+    std::string number_a = digits_at(a, i);
+    std::string number_b = digits_at(b, j);
+    if (number_a.empty() || number_b.empty()) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    i += number_a.size();
+    j += number_b.size();
+    number_a.erase(0, std::min(number_a.find_first_not_of('0'), number_a.size()));
+    number_b.erase(0, std::min(number_b.find_first_not_of('0'), number_b.size()));
+    if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+    if (number_a != number_b) return number_a < number_b;
+  }
+  if (i < a.size() || j < b.size()) return i == a.size();
+  return a < b;
 }
 
 }  // namespace
@@ -247,7 +254,7 @@ void check_image_size(const std::string& name, std::int64_t width, std::int64_t 
   constexpr std::int64_t kMostPixels = 64'000'000;
   constexpr std::int64_t kLongestSide = 65'535;
   if (width <= kLongestSide && height <= kLongestSide && width * height <= kMostPixels) return;
-  throw InputError(fmt::format("{}: found a picture of {}x{}, expected at most {} million pixels",
+  throw InputError(fmt::format("{}: found an image of {}x{}, expected at most {} million pixels",
                                name,
                                width,
                                height,
@@ -259,9 +266,7 @@ cv::Mat read_image(const std::filesystem::path& file) {
 }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
-  if (!is_whole_image(bytes)) {
-    throw InputError(name + ": found a cut or broken picture, expected a whole one");
-  }
+  if (!is_whole_image(bytes)) throw InputError(name + ": the image is truncated or broken");
   check_header(name, bytes);
   cv::Mat image;
   try {
@@ -271,9 +276,7 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   } catch (const cv::Exception&) {
     image.release();
   }
-  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S) {
-    refuse_format(name);
-  }
+  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S) refuse_format(name);
   return image;
 }
 
@@ -281,9 +284,8 @@ int significant_bits(const cv::Mat& image) {
   if (image.depth() == CV_8U) return 8;
   double largest = 0;
   cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-  for (const int bits : {10, 12, 14}) {
+  for (const int bits : {10, 12, 14})
     if (largest < std::exp2(bits)) return bits;
-  }
   return 16;
 }
 
@@ -305,6 +307,44 @@ cv::Mat to_8_bits(const cv::Mat& image, int bits) {
 std::optional<ImageHeader> read_image_header(std::string_view bytes) {
   const Header header = bytes.size() < 12 ? std::nullopt : any_header(bytes);
   return header && header->width > 0 && header->height > 0 ? header : std::nullopt;
+}
+
+void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera) {
+  if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
+  throw InputError(
+      fmt::format("{}: found an image of {}x{}, expected the calibrated resolution {}x{}",
+                  file.string(),
+                  size.width,
+                  size.height,
+                  camera.width,
+                  camera.height));
+}
+
+void add_image_files(Recording& recording,
+                       std::vector<std::filesystem::path> files,
+                       std::size_t cache_bytes) {
+  const int count = static_cast<int>(files.size());
+  const cv::Mat first = read_image(files.front());
+  Camera& camera = recording.camera;
+  check_size(files.front(), first.size(), camera);
+  camera.width = first.cols;
+  camera.height = first.rows;
+  recording.image_files = files;
+  const auto decode = [files = std::move(files), camera, bits = significant_bits(first)](int i) {
+    const cv::Mat image = read_image(files[i]);
+    check_size(files[i], image.size(), camera);
+    return to_8_bits(image, bits);
+  };
+  recording.images = std::make_shared<const FrameCache>(count, decode, cache_bytes);
+}
+
+std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files = files_of_kind(folder, is_image_name);
+  std::erase_if(files, [](const std::filesystem::path& file) {
+    return file.stem().string().find_first_of("0123456789") == std::string::npos;
+  });
+  std::ranges::sort(files, natural_less, [](const auto& file) { return file.filename().string(); });
+  return files;
 }
 
 }  // namespace gpo

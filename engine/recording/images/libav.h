@@ -33,22 +33,21 @@ using Frame = std::unique_ptr<AVFrame, Closer<av_frame_free>>;
 using Scaler = std::unique_ptr<SwsContext, ScalerCloser>;
 using Format = std::unique_ptr<AVFormatContext, Closer<avformat_close_input>>;
 
-/// A file of one of these containers (FFmpeg's names, with commas); null where it is none of them.
-/// Others, such as playlists, would open further files and addresses.
+/// Opens a file of one of these containers (FFmpeg's names, with commas); null for any other.
+/// Others, such as playlists, could open further files and URLs.
 inline Format open_input(const std::filesystem::path& file, const char* containers) {
   AVFormatContext* opened = nullptr;
   AVDictionary* options = nullptr;
   av_dict_set(&options, "format_whitelist", containers, 0);
-  // Without the protocol's name a path with a colon would be taken for an address.
+  // Without the protocol a path with a colon would be taken for a URL.
   const std::string address = "file:" + file.string();
   const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
   av_dict_free(&options);
   return Format(error < 0 ? nullptr : opened);
 }
 
-/// Where the versions of FFmpeg that the program is built with differ, 5.1 (Debian 12) to 7.1
-/// (Debian 13): what a container says about how to turn a stream's pictures, for
-/// av_display_rotation_get; null where it says nothing.
+/// Returns the container's rotation of a stream's images, for av_display_rotation_get; null if
+/// there is none. FFmpeg 5.1 (Debian 12) and 7.1 (Debian 13) have different functions.
 inline const std::int32_t* display_matrix(const AVStream& stream) {
 #if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)
   const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);

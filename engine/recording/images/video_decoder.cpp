@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/images/libav.h"
-#include "engine/recording/images/image_files.h"
+#include "engine/recording/images/image_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
-constexpr int kStepsWorthDecoding = 8;  // rather than going to a key frame that lies between
+constexpr int kStepsWorthDecoding = 8;  // rather than seeking to a key frame in between
 
 using libav::Codec;
 using libav::Format;
@@ -36,11 +36,10 @@ using libav::Packet;
 using libav::Scaler;
 
 [[noreturn]] void fail_to_open(const fs::path& file) {
-  throw InputError(file.string() +
-                   ": found something that cannot be decoded (cut, or no video), expected a video");
+  throw InputError(file.string() + ": cannot decode: truncated, or not a video");
 }
 
-/// How often the shown picture is turned clockwise by 90 degrees: phones store what the sensor saw.
+/// Returns the clockwise quarter turns from the stored to the shown image.
 int quarter_turns(const AVStream& stream) {
   const std::int32_t* matrix = libav::display_matrix(stream);
   if (matrix == nullptr) return 0;
@@ -48,9 +47,9 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
-/// Whether the container promises clearly more than it holds. With a variable frame rate it may
-/// declare a count made up from the duration, so the time must be short as well.
-bool is_cut(const VideoIndex& index) {
+/// Whether the container declares clearly more than it has. With a variable frame rate the declared
+/// count may be derived from the duration, so the duration must be too short as well.
+bool is_truncated(const VideoIndex& index) {
   const double missing = index.declared_count - static_cast<double>(index.times.size());
   if (missing <= std::max(2.0, index.declared_count / 100)) return false;
   if (index.times.empty() || index.rate_hz <= 0) return true;
@@ -59,20 +58,16 @@ bool is_cut(const VideoIndex& index) {
   return index.declared_count - (duration_s * index.rate_hz + 1) > missing / 2;
 }
 
-/// From the first frame on.
 std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
   std::vector<std::int64_t> times;
-  times.reserve(index.times.size());
-  for (const std::int64_t time : index.times) {
+  for (const std::int64_t time : index.times)
     times.push_back(
         std::llround(static_cast<double>(time - index.times.front()) * index.unit_s * 1e9));
-  }
   return times;
 }
 
 }  // namespace
 
-/// A container that is being read, its video stream and its decoder.
 struct VideoDecoder::Input {
   Format format;
   AVStream* stream = nullptr;
@@ -87,19 +82,17 @@ struct VideoDecoder::Input {
     const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
     stream = format->streams[best];
-    for (unsigned i = 0; i < format->nb_streams; ++i) {
+    for (unsigned i = 0; i < format->nb_streams; ++i)
       if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
-    }
     codec.reset(avcodec_alloc_context3(decoder));
     codec->thread_count = 0;
     codec->max_pixels = kMostPixels;
     if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
-        avcodec_open2(codec.get(), decoder, nullptr) < 0) {
+        avcodec_open2(codec.get(), decoder, nullptr) < 0)
       fail_to_open(file);
-    }
   }
 
-  /// The next packet of the stream; false at the end, and where the file is cut.
+  /// Reads the next packet of the stream; false at the end of the file, also if truncated.
   bool read_packet() {
     for (;;) {
       av_packet_unref(packet.get());
@@ -108,18 +101,18 @@ struct VideoDecoder::Input {
     }
   }
 
-  /// The next frame in the order of time; false at the end.
+  /// Decodes the next frame in the order of time; false at the end.
   bool decode_frame() {
     for (;;) {
       const int received = avcodec_receive_frame(codec.get(), frame.get());
       if (received == 0) return true;
       if (received != AVERROR(EAGAIN)) return false;
-      // A packet that cannot be decoded is passed over, as players do.
+      // Skips broken packets, as players do.
       avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
     }
   }
 
-  /// Whether it stands at a key frame, at or before that time.
+  /// Seeks to a key frame at or before a time; false on failure.
   bool seek(std::int64_t time) {
     if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
     avcodec_flush_buffers(codec.get());
@@ -152,11 +145,10 @@ struct VideoDecoder::Input {
 
 namespace {
 
-/// Times of all packets; nothing where one has none, or two the same.
 struct PacketTimes {
   std::vector<std::int64_t> all;
   std::vector<std::int64_t> keys;
-  bool exact = true;
+  bool exact = true;  ///< all known and different
 
   void add(const AVPacket& packet, bool reordered) {
     if ((packet.flags & (AV_PKT_FLAG_DISCARD | AV_PKT_FLAG_CORRUPT)) != 0) return;
@@ -204,9 +196,8 @@ VideoDecoder::VideoDecoder(fs::path file)
   numbering_ = Numbering::by_count;
   index_.times.clear();
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
-  for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
+  for (int frame = next_frame(); frame >= 0; frame = next_frame())
     index_.times.push_back(std::llround(frame * period));
-  }
   restart();
 }
 
@@ -217,7 +208,7 @@ void VideoDecoder::restart() {
   state_ = State::begin;
 }
 
-/// Decodes the next frame; its number, or -1 at the end.
+/// Decodes the next frame. Returns its number, or -1 at the end.
 int VideoDecoder::next_frame() {
   if (!input_) input_ = std::make_unique<Input>(file_);
   while (input_->decode_frame()) {
@@ -235,8 +226,8 @@ int VideoDecoder::next_frame() {
   return -1;
 }
 
-/// Goes where decoding on leads to the frame; returns the first that is whole from there on: what a
-/// decoder gives out between a key frame and the frames shown before it may lack its references.
+/// Seeks so that decoding leads to the frame. Returns the first frame that is complete from there
+/// on: frames between a key frame and those shown before it may lack their references.
 int VideoDecoder::go_to(int frame) {
   const auto& keys = index_.key_times;
   const std::int64_t time = index_.times[frame];
@@ -249,11 +240,10 @@ int VideoDecoder::go_to(int frame) {
   }
   kept_.clear();
   const bool seekable = timed && key != keys.end() && *key <= time;
-  if (seekable && input_ && input_->seek(*key)) {
-    state_ = State::sought;
-  } else {
+  if (seekable && input_ && input_->seek(*key))
+    state_ = State::seeking;
+  else
     restart();
-  }
   if (!seekable) return 0;
   return static_cast<int>(std::ranges::lower_bound(index_.times, *key) - index_.times.begin());
 }
@@ -264,16 +254,15 @@ cv::Mat VideoDecoder::decode(int frame) {
   const int whole = go_to(frame);
   const int first_kept = backward ? std::max(whole, frame - kKept) : frame;
   while (true) {
-    const bool sought = state_ == State::sought;
+    const bool seeking = state_ == State::seeking;
     const int decoded = next_frame();
-    if (sought && decoded > frame) {
-      restart();  // it led too far
+    if (seeking && decoded > frame) {
+      restart();  // the seek went too far
       continue;
     }
     if (decoded < 0 || decoded > frame) {
       restart();
-      throw InputError(fmt::format(
-          "{}: frame {}: found nothing to decode, expected a picture", file_.string(), frame));
+      throw InputError(fmt::format("{}: frame {} cannot be decoded", file_.string(), frame));
     }
     if (decoded < first_kept) continue;
     cv::Mat image = input_->image(file_);
@@ -286,11 +275,11 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
   if (!is_file(file)) throw InputError(file.string() + ": no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file);
   const VideoIndex& index = decoder->index();
-  if (index.times.empty() || is_cut(index)) {
-    throw InputError(file.string() + ": found " + std::to_string(index.times.size()) +
-                     " frames that can be decoded (the file seems cut), expected " +
-                     std::to_string(std::max(1L, std::lround(index.declared_count))));
-  }
+  if (index.times.empty() || is_truncated(index))
+    throw InputError(fmt::format("{}: found {} frames (the file seems truncated), expected {}",
+                                 file.string(),
+                                 index.times.size(),
+                                 std::max(1L, std::lround(index.declared_count))));
   check_size(file, index.size, camera);
   camera.width = index.size.width;
   camera.height = index.size.height;
@@ -304,7 +293,7 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
     check_size(file, image.size(), camera);
     return image;
   };
-  // What the decoder keeps is part of the limit.
+  // The decoder's frames count towards the limit.
   const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
   const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
   const int count = static_cast<int>(index.times.size());

@@ -16,23 +16,23 @@
 
 namespace gpo {
 
-/// When each frame of a video is shown, in units of `unit_s` and in the order of time.
+/// Times of a video's frames, in units of `unit_s` and ascending.
 struct VideoIndex {
-  std::vector<std::int64_t> times;      ///< one a frame, strictly ascending
-  std::vector<std::int64_t> key_times;  ///< of the frames from which decoding can begin
+  std::vector<std::int64_t> times;      ///< of all frames, strictly ascending
+  std::vector<std::int64_t> key_times;  ///< of the frames at which decoding can begin
   double unit_s = 0;
-  cv::Size size;              ///< [px] as shown, that is rotated as the container asks for
-  double declared_count = 0;  ///< frames that the container promises; 0: it does not tell
-  double rate_hz = 0;         ///< average by the container; 0: it does not tell
-  int quarter_turns = 0;      ///< by which the container has the stored picture turned clockwise
+  cv::Size size;              ///< [px] as shown, that is after the container's rotation
+  double declared_count = 0;  ///< frames according to the container; 0 if unknown
+  double rate_hz = 0;         ///< average according to the container; 0 if unknown
+  int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
 };
 
-/// Any frame of a video file, in whatever order they are asked for: each is exactly what decoding
-/// the whole file from its beginning gives. One thread at a time.
+/// Decodes frames of a video file in any order, with the same result as decoding the whole file
+/// from its beginning. Not thread-safe.
 class VideoDecoder {
  public:
-  /// Reads the container from end to end and decodes nothing; where it does not time its frames,
-  /// each is decoded once to count them. Throws InputError.
+  /// Reads the whole container without decoding; if it lacks the frames' times, decodes each frame
+  /// once to count them. Throws InputError.
   explicit VideoDecoder(std::filesystem::path file);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
@@ -42,19 +42,18 @@ class VideoDecoder {
   /// CV_8UC3. Throws InputError.
   cv::Mat decode(int frame);
 
-  /// On the way back so many frames before the one asked for are kept, since stepping backward will
-  /// ask for them next.
+  /// Number of frames before the requested one that are kept when stepping backward.
   static constexpr int kKept = 12;
 
  private:
   struct Input;
-  /// What the next frame will be.
+  /// Determines the next frame.
   enum class State {
-    begin,    ///< the first one; the file is opened for it
-    sought,   ///< one about a key frame, which is known once it is decoded
+    begin,    ///< the first one, after opening the file
+    seeking,  ///< one near a key frame, unknown until it is decoded
     decoding  ///< the one after `last_`
   };
-  /// By what the number of a frame is known: its time, or the frames before it.
+  /// How a frame's number is determined.
   enum class Numbering { by_time, by_count };
 
   int next_frame();
@@ -71,15 +70,15 @@ class VideoDecoder {
 };
 
 struct VideoFile {
-  std::vector<std::int64_t> timestamps_ns;  ///< one a frame, strictly ascending, the first is 0
+  std::vector<std::int64_t> timestamps_ns;  ///< of all frames, strictly ascending, the first is 0
   std::shared_ptr<const FrameCache> images;
-  double first_frame_s = 0;  ///< when the container has it
-  int quarter_turns = 0;     ///< of the pictures, clockwise, from how they lie in the file
+  double first_frame_s = 0;  ///< according to the container
+  int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
 };
 
-/// Opens a video without decoding it; times are the container's, also of a variable frame rate. The
-/// camera's size is the video's where the calibration does not tell it. Throws InputError where it
-/// cannot be opened, is cut, or has another size than the camera.
+/// Opens a video without decoding it; its times are the container's. Sets the camera's size if the
+/// calibration lacks it. Throws InputError if the video is unreadable, truncated, or of another
+/// size than the camera.
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
 
 }  // namespace gpo

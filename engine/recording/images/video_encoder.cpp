@@ -11,17 +11,15 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
-/// What was written to is closed with it.
 void close_output(AVFormatContext** format) {
   avio_closep(&(*format)->pb);
   avformat_free_context(*format);
 }
 
-constexpr int kQuality = 3;  ///< of 1 to 31, the best being 1: no blocks to be seen in flat colors
-constexpr int kLargestRate = 65'535;  ///< as a fraction's numerator, says MPEG-4
+constexpr int kQuality = 3;           ///< 1 (best) to 31: no visible blocks in uniform areas
+constexpr int kLargestRate = 65'535;  ///< numerator of the rate, limited by MPEG-4
 
 }  // namespace
 
@@ -36,9 +34,8 @@ struct VideoEncoder::Output {
 VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
-  if (encoder == nullptr) {
+  if (encoder == nullptr)
     throw InputError(file_.string() + ": cannot be written: FFmpeg has no MPEG-4 encoder");
-  }
   auto& [format, codec, packet, frame, scaler] = *output_;
   const std::string path = unfinished_.path().string();
   AVFormatContext* made = nullptr;
@@ -77,7 +74,7 @@ VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size 
 VideoEncoder::~VideoEncoder() = default;
 
 void VideoEncoder::check(int result) const {
-  // Only the file knows of a full disk where the muxer keeps what it is given.
+  // A full disk shows only in the file's state while the muxer buffers.
   const AVIOContext* stream = output_->format ? output_->format->pb : nullptr;
   const int error = result >= 0 && stream != nullptr ? stream->error : result;
   if (error >= 0) return;
@@ -90,14 +87,14 @@ void VideoEncoder::drain() {
   auto& [format, codec, packet, frame, scaler] = *output_;
   const AVStream& stream = *format->streams[0];
   while (avcodec_receive_packet(codec.get(), packet.get()) == 0) {
-    packet->duration = 1;  // or the last frame would be cut off
+    packet->duration = 1;  // otherwise the last frame is lost
     av_packet_rescale_ts(packet.get(), codec->time_base, stream.time_base);
     check(av_write_frame(format.get(), packet.get()));
   }
 }
 
 void VideoEncoder::add(const cv::Mat& image) {
-  if (image.size() != size_) throw InputError(file_.string() + ": the picture's size changed");
+  if (image.size() != size_) throw InputError(file_.string() + ": the image's size changed");
   auto& [format, codec, packet, frame, scaler] = *output_;
   check(av_frame_make_writable(frame.get()));
   const std::array<const std::uint8_t*, 1> rows{image.data};
@@ -111,7 +108,7 @@ void VideoEncoder::add(const cv::Mat& image) {
 }
 
 void VideoEncoder::finish() {
-  if (count_ == 0) throw InputError(file_.string() + ": not written: there is no picture");
+  if (count_ == 0) throw InputError(file_.string() + ": not written: there is no image");
   check(avcodec_send_frame(output_->codec.get(), nullptr));
   drain();
   check(av_write_trailer(output_->format.get()));

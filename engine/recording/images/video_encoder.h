@@ -11,19 +11,19 @@
 
 namespace gpo {
 
-/// An MP4 (MPEG-4 part 2) that is written picture by picture: the whole file or none of it.
+/// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
 class VideoEncoder {
  public:
-  /// Width and height of the pictures are even. Throws InputError where the file cannot be written
-  /// or FFmpeg has no encoder.
+  /// `size` must be even. Throws InputError if the file cannot be written or FFmpeg lacks the
+  /// encoder.
   VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
 
-  /// CV_8UC3, BGR, as large as said before. Throws InputError.
+  /// Adds an image, CV_8UC3 (BGR) of the given size. Throws InputError.
   void add(const cv::Mat& image);
-  /// Gives the file its name. Throws InputError where nothing whole was written.
+  /// Completes the file. Throws InputError if it cannot be written or has no image.
   void finish();
 
   const std::filesystem::path& file() const { return file_; }
@@ -40,7 +40,7 @@ class VideoEncoder {
   std::unique_ptr<Output> output_;
 };
 
-/// The next even size: what the encoder can write.
+/// Rounds up to an even size, as the encoder requires.
 cv::Size even_size(cv::Size size);
 
 }  // namespace gpo

@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/bags/bag_image.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/bags/topic_roles.h"
-#include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/images/image_file.h"
-#include "engine/recording/images/image_files.h"
 
 #include <algorithm>
 #include <utility>
@@ -25,21 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> bags_in(const fs::path& folder) {
-  std::vector<fs::path> bags = files_in(folder);
-  std::erase_if(bags, [](const fs::path& file) { return !is_bag_name(file); });
-  std::ranges::sort(bags);
-  return bags;
-}
-
-/// What is opened, and what it has for which purpose.
+/// An opened bag, the roles of its topics, and its small messages.
 struct OpenedBag {
   std::shared_ptr<const Bag> bag;
   TopicRoles roles;
   BagContents contents;
 
   const BagTopic& topic(TopicRole role) const { return bag->topics[*roles.of(role)]; }
-  /// "room.bag: /imu0", of a topic that has the role.
+  /// "room.bag: /imu0", for a role that has a topic.
   std::string name(TopicRole role) const {
     return fmt::format("{}: {}", bag->file.string(), topic(role).name);
   }
@@ -53,15 +44,14 @@ OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
   return opened;
 }
 
-/// Decodes the first picture: it tells how many bits are significant, and the camera's size where
-/// the calibration does not.
+/// Decodes the first image, which determines the number of significant bits, and the camera's size
+/// if the calibration lacks it.
 std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
                                               Camera& camera,
                                               std::size_t cache_bytes) {
   const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image)](
                         const BagMessage& message, int frame) {
-    const std::string name =
-        fmt::format("{}: {}: picture {}", bag->file.string(), topic.name, frame);
+    const std::string name = fmt::format("{}: {}: image {}", bag->file.string(), topic.name, frame);
     return std::pair(bag_image(bag->read(message, kWholeMessage), topic, name), name);
   };
   const auto& messages = opened.contents.images;
@@ -77,18 +67,16 @@ std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
   return std::make_shared<const FrameCache>(static_cast<int>(messages.size()), decode, cache_bytes);
 }
 
-/// A camera.yaml beside the bag was put there to be used; else what the bag says; else whatever
-/// calibration lies beside it; nothing where none does.
+/// Returns the calibration of camera.yaml beside the bag, of the bag, or of another file beside it,
+/// in this order; nullopt if there is none.
 std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           const fs::path& folder,
                                           std::vector<std::string>& notes) {
   const auto& info = opened.contents.camera_info;
   const bool calibrated = info && is_calibrated(*info);
   if (const auto file = if_file(folder / "camera.yaml")) {
-    if (calibrated) {
-      notes.push_back(
-          fmt::format("camera.yaml is read, not {}", opened.topic(TopicRole::camera_info).name));
-    }
+    if (calibrated)
+      notes.push_back("using camera.yaml instead of " + opened.topic(TopicRole::camera_info).name);
     return read_calibration(*file);
   }
   if (!calibrated) {
@@ -104,11 +92,10 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   Gyroscope gyroscope;
   gyroscope.file = opened.bag->file;
   for (const ImuMessage& sample : opened.contents.imu) {
-    if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite()) {
-      throw InputError(fmt::format("{}: found a sample that is no number at {} ns, expected rad/s",
+    if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite())
+      throw InputError(fmt::format("{}: the sample at {} ns is not finite",
                                    opened.name(TopicRole::imu),
                                    sample.header.stamp_ns));
-    }
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
     gyroscope.rates_rad_s.push_back(sample.angular_velocity);
@@ -117,7 +104,6 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
-/// The body is the IMU.
 void add_gyroscope(Recording& recording,
                    const OpenedBag& opened,
                    const Calibration& calibration,
@@ -126,16 +112,14 @@ void add_gyroscope(Recording& recording,
   if (!opened.roles.of(TopicRole::imu)) return;
   const auto& contents = opened.contents;
   const std::string& imu_frame = contents.imu.front().header.frame_id;
-  if (!recording.T_body_camera) {
+  if (!recording.T_body_camera)
     recording.T_body_camera =
         transform_between(contents.transforms, imu_frame, contents.camera_frame);
-  }
-  if (!recording.T_body_camera) {
-    recording.notes.push_back(
-        fmt::format("no /tf_static from {} to {}: the gyroscope's axes are taken as the camera's",
-                    legible(imu_frame, 60),
-                    legible(contents.camera_frame, 60)));
-  }
+  if (!recording.T_body_camera)
+    recording.notes.push_back(fmt::format(
+        "no /tf_static from {} to {}: assuming that the gyroscope has the camera's axes",
+        legible(imu_frame, 60),
+        legible(contents.camera_frame, 60)));
   Gyroscope gyroscope = gyroscope_of(opened);
   gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
   gyroscope.time_offset_ns = calibration.time_offset_ns;
@@ -148,14 +132,12 @@ PosePath path_of(const OpenedBag& opened) {
   PosePath path;
   for (const PoseMessage& one : opened.contents.truth) {
     const auto pose = one.pose();
-    if (!pose) {
+    if (!pose)
       throw InputError(
-          fmt::format("{}: found a pose at {} ns whose quaternion has the norm {:g}, "
-                      "expected a unit quaternion",
+          fmt::format("{}: at {} ns: found a quaternion of norm {:g}, expected a unit quaternion",
                       opened.name(TopicRole::truth),
                       one.header.stamp_ns,
                       one.quaternion_xyzw.norm()));
-    }
     path.timestamps_ns.push_back(one.header.stamp_ns);
     path.poses.push_back(*pose);
   }
@@ -177,7 +159,7 @@ void add_truth(Recording& recording, const OpenedBag& opened, const fs::path& fo
     mounting.T_measured_camera = *T;
   } else if (!is_file(folder / "groundtruth.yaml")) {
     recording.notes.push_back(
-        fmt::format("no /tf_static from what {} measures{} to {}: it is taken as the camera",
+        fmt::format("no /tf_static from the frame of {}{} to {}: assuming that it is the camera's",
                     name,
                     measured.empty() ? "" : ", " + legible(measured, 60) + ",",
                     legible(contents.camera_frame, 60)));
@@ -189,19 +171,14 @@ void add_truth(Recording& recording, const OpenedBag& opened, const fs::path& fo
 }  // namespace
 
 std::optional<fs::path> find_bag(const fs::path& path) {
-  const bool found = is_folder(path) ? !bags_in(path).empty() : is_bag_name(path);
+  const bool found =
+      is_folder(path) ? !files_of_kind(path, is_bag_name).empty() : is_bag_name(path);
   return found ? std::optional(path) : std::nullopt;
 }
 
 fs::path bag_at(const fs::path& path) {
   if (!is_folder(path)) return path;
-  const auto bags = bags_in(path);
-  if (bags.size() == 1) return bags.front();
-  throw InputError(fmt::format("{}: found {} bags ({}, {}), expected one; name the file to open",
-                               path.string(),
-                               bags.size(),
-                               bags[0].filename().string(),
-                               bags[1].filename().string()));
+  return only_file(files_of_kind(path, is_bag_name), "bags", path).value();
 }
 
 Recording read_bag(const fs::path& path, const OpenOptions& options) {

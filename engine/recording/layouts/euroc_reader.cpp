@@ -8,26 +8,23 @@
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/layouts/layouts.h"
-#include "engine/recording/images/image_files.h"
+#include "engine/recording/images/image_file.h"
 
 #include <algorithm>
 #include <vector>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Pictures that a table lists, or where there is none those of a folder, named by their time
-/// stamps.
+/// Images from a table, or from a folder of files named by time stamps.
 struct ImageList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;
   std::optional<CsvTable> table;
 };
 
-/// `folder` is where the table's names begin.
 ImageList listed_images(CsvTable table, TimeUnit unit, const fs::path& folder) {
   ImageList list;
   list.timestamps_ns = csv_time_stamps(table, unit);
@@ -42,11 +39,10 @@ ImageList named_images(const fs::path& cam) {
   list.files = numbered_images(cam / "data");
   for (const auto& file : list.files) {
     const auto time = parse_integer(file.stem().string());
-    if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back())) {
+    if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back()))
       throw InputError(file.string() +
-                       ": found another name, expected a time stamp in nanoseconds, since there is "
-                       "no cam0/data.csv");
-    }
+                       ": cam0/data.csv is missing, so that the name must be a time stamp in "
+                       "nanoseconds, later than the one before");
     list.timestamps_ns.push_back(*time);
   }
   return list;
@@ -54,16 +50,14 @@ ImageList named_images(const fs::path& cam) {
 
 ImageList read_image_list(const fs::path& folder) {
   const fs::path cam = folder / "cam0";
-  if (!is_file(cam / "data.csv") && is_folder(cam / "data")) {
-    auto named = named_images(cam);
-    if (!named.files.empty()) return named;
-  }
+  if (!is_file(cam / "data.csv") && is_folder(cam / "data"))
+    if (auto named = named_images(cam); !named.files.empty()) return named;
   return listed_images(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
                          TimeUnit::nanoseconds,
                          cam / "data");
 }
 
-/// With the tracks that are asked for; with these pictures may be missing.
+/// Adds the images, which may be missing if there are tracks, and the tracks.
 void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
@@ -72,21 +66,19 @@ void add_images(Recording& recording, ImageList list, const OpenOptions& options
   } else if (!options.tracks) {
     csv_fail(*list.table,
              list.table->rows[missing - list.files.begin()].line,
-             "the name of a missing picture",
+             "a missing image",
              "the file " + missing->string());
   }
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
 }
 
-/// What EuRoC's, TUM-VI's and Vicon's folders hold, in the order in which it is looked for.
+/// Returns the folder of EuRoC's, TUM-VI's or Vicon's ground truth, in this order of precedence.
 std::optional<fs::path> truth_folder(const fs::path& folder) {
-  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
+  for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"})
     if (is_file(folder / name / "data.csv")) return folder / name;
-  }
   return std::nullopt;
 }
 
-/// Returns the mean of the gyroscope's bias, where the truth has it.
 std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& folder) {
   const auto source = truth_folder(folder);
   if (!source) {
@@ -97,13 +89,12 @@ std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& f
   TruthMounting mounting{recording.T_body_camera.value_or(Pose{})};
   if (const auto sensor = if_file(*source / "sensor.yaml")) {
     read_truth_clock(*sensor, path, mounting);
-    if (const auto T_BS = find(load_yaml(*sensor), "T_BS")) {
+    if (const auto T_BS = find(load_yaml(*sensor), "T_BS"))
       mounting.T_measured_camera = inverse(rigid_motion(*T_BS)) * mounting.T_measured_camera;
-    }
   }
   recording.truth = camera_truth(
       path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
-  recording.truth->upright = true;  // as motion capture has it
+  recording.truth->upright = true;  // convention of motion capture
   return path.mean_gyro_bias_rad_s;
 }
 
@@ -119,7 +110,7 @@ void add_gyroscope(Recording& recording,
     imu = read_imu_calibration(*sensor);
   } else {
     recording.notes.emplace_back(
-        "no imu0/sensor.yaml: the gyroscope's axes are taken as the body's");
+        "no imu0/sensor.yaml: assuming that the gyroscope has the body's axes");
   }
   const Eigen::Matrix3d R_body_gyro = imu.R_body_gyro.value_or(Eigen::Matrix3d::Identity());
   gyroscope.R_gyro_camera = R_body_gyro.transpose() * recording.T_body_camera.value_or(Pose{}).R_wc;
@@ -128,28 +119,26 @@ void add_gyroscope(Recording& recording,
   if (!imu.bias_rad_s && true_mean_bias_rad_s) {
     gyroscope.bias_rad_s = *true_mean_bias_rad_s;
     gyroscope.bias_known = true;
-    gyroscope.bias_source = "mean of the ground truth's";
+    gyroscope.bias_source = "mean of the ground truth";
   }
   recording.gyroscope = std::move(gyroscope);
 }
 
-/// TUM-VI keeps Kalibr's calibration in `dso`, beside mav0.
+/// Returns the calibration's file; TUM-VI has Kalibr's in `dso`, beside mav0.
 fs::path calibration_of(const fs::path& folder) {
   fs::path cam = folder / "cam0" / "sensor.yaml";
   const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
   for (const fs::path& file :
-       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"}) {
+       {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"})
     if (is_file(file)) return file;
-  }
   return cam;
 }
 
 }  // namespace
 
 std::optional<fs::path> find_euroc(const fs::path& folder) {
-  for (const fs::path& base : {folder, folder / "mav0"}) {
+  for (const fs::path& base : {folder, folder / "mav0"})
     if (is_folder(base / "cam0")) return base;
-  }
   return std::nullopt;
 }
 
@@ -167,10 +156,9 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   add_images(recording, read_image_list(folder), options);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
-  if (!calibration.T_body_camera && (recording.gyroscope || recording.truth)) {
+  if (!calibration.T_body_camera && (recording.gyroscope || recording.truth))
     recording.notes.push_back("no T_BS in " + calibration_file.filename().string() +
-                              ": the camera's axes are taken as the body's");
-  }
+                              ": assuming that the camera has the body's axes");
   return recording;
 }
 

@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/companions/gyroscope_file.h"
 #include "engine/recording/companions/truth_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/layouts.h"
-#include "engine/recording/layouts/metadata_field_of_view.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/image_files.h"
+#include "engine/recording/images/image_file.h"
 #include "engine/recording/images/video_decoder.h"
 
 #include <algorithm>
@@ -22,21 +21,13 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr double kAssumedRateHz = 30;
 
-std::vector<fs::path> videos_in(const fs::path& folder) {
-  std::vector<fs::path> videos = files_in(folder);
-  std::erase_if(videos, [](const fs::path& file) { return !is_video_name(file); });
-  std::ranges::sort(videos);
-  return videos;
-}
-
-/// Numbered pictures of the folder itself, or of the folder in it where people keep them.
+/// Returns the numbered images of the folder itself, or of a usual folder in it.
 std::vector<fs::path> images_in(const fs::path& folder) {
   for (const char* name : {"", "images", "frames", "rgb", "data"}) {
     if (!is_folder(folder / name)) continue;
@@ -45,22 +36,16 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   return {};
 }
 
-/// The one video to open, or nothing.
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
-  auto videos = videos_in(path);
+  auto videos = files_of_kind(path, is_video_name);
   const auto is_other = [](const fs::path& file) { return file.stem() != "data"; };
   if (is_file(path / "data.jsonl") && !std::ranges::all_of(videos, is_other))
-    std::erase_if(videos, is_other);  // of a second camera
-  if (videos.size() > 1) {
-    throw InputError(path.string() + ": found " + std::to_string(videos.size()) + " videos (" +
-                     videos[0].filename().string() + ", " + videos[1].filename().string() +
-                     "), expected one; name the file to open");
-  }
-  return videos.empty() ? std::nullopt : std::optional(videos[0]);
+    std::erase_if(videos, is_other);  // the other camera's
+  return only_file(videos, "videos", path);
 }
 
-/// A phone's logger may add further clocks in further columns.
+/// Reads time stamps; a phone's logger may add other clocks in further columns.
 std::optional<std::vector<std::int64_t>> stored_times(const fs::path& file) {
   if (!is_file(file)) return std::nullopt;
   return csv_time_stamps(read_csv(file, {"timestamp"}, CsvColumns::at_least),
@@ -74,7 +59,6 @@ std::vector<std::int64_t> regular_times(int count, double rate_hz) {
   return times;
 }
 
-/// What else may tell the frames' times.
 struct OtherTimes {
   const std::optional<Log>& log;
   const std::vector<std::int64_t>& video_ns;
@@ -88,10 +72,10 @@ void check_count(const fs::path& file,
                  std::optional<int> count) {
   if (!count || static_cast<int>(found) == *count) return;
   throw InputError(fmt::format(
-      "{}: found {} {}, expected {}, one a picture", file.string(), found, things, *count));
+      "{}: found {} {}, expected {}, one for each image", file.string(), found, things, *count));
 }
 
-/// Times of the frames: the file's, else the log's, else the video's, else regular ones.
+/// Returns the frames' times: from the file, the log, the video, or at a constant rate.
 std::vector<std::int64_t> frame_times(Recording& recording,
                                       const fs::path& folder,
                                       std::optional<int> count,
@@ -107,15 +91,15 @@ std::vector<std::int64_t> frame_times(Recording& recording,
   }
   if (!other.video_ns.empty()) return other.video_ns;
   const auto& rate_hz = other.calibration.rate_hz;
-  if (!rate_hz) {
-    recording.notes.push_back("no frame_timestamps.txt and no rate_hz in " +
-                              other.calibration_name + ": 30 frames a second are assumed");
-  }
+  if (!rate_hz)
+    recording.notes.push_back(
+        fmt::format("no frame_timestamps.txt and no rate_hz in {}: assuming 30 frames per second",
+                    other.calibration_name));
   const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
   return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
 }
 
-/// A gyroscope's table, where its maker knows nothing of the camera.
+/// Reads the table of a gyroscope whose axes relative to the camera are unknown.
 std::optional<Gyroscope> plain_gyroscope(const fs::path& folder) {
   for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"})
     if (const auto file = if_file(folder / name))
@@ -132,10 +116,10 @@ void add_gyroscope(Recording& recording,
   recording.gyroscope = std::move(gyroscope);
   if (recording.T_body_camera) return;
   recording.notes.push_back("no T_BS in " + calibration_name +
-                            ": the gyroscope's axes are taken as the camera's");
+                            ": assuming that the gyroscope has the camera's axes");
 }
 
-/// A log's camera has the axes of the stored picture, a recording's those of the shown one.
+/// Converts a log's camera, which has the axes of the stored image, to those of the shown image.
 Pose of_shown_image(const Pose& T_body_stored, int quarter_turns) {
   const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
   return T_body_stored * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
@@ -150,14 +134,15 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
   recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
 }
 
+/// A calibration and its file, or the file where it could be.
 struct FoundCalibration {
   Calibration calibration;
   fs::path file;
   bool found = true;
 };
 
-/// A calibration that somebody made goes before what a log says of the camera. Throws InputError
-/// where there is neither and one is required.
+/// Returns the user's calibration, or else the log's camera. Throws InputError if both are missing
+/// and one is required.
 FoundCalibration calibration_of(const fs::path& folder,
                                 const std::optional<Log>& log,
                                 bool required) {
@@ -171,19 +156,21 @@ FoundCalibration calibration_of(const fs::path& folder,
   return {read_calibration(calibration_in(folder)), calibration_in(folder)};
 }
 
-/// The calibration may leave the size to the pictures; without pictures it may not.
+/// A calibration may omit the image size only if there are images.
 void check_size_is_known(const Camera& camera, const fs::path& calibration) {
   if (camera.width > 0) return;
-  throw InputError(calibration.string() +
-                   ": key `image_width`: found nothing, expected a number of pixels, since there "
-                   "are no pictures to take it from");
+  throw InputError(
+      calibration.string() +
+      ": key `image_width`: found nothing, expected a number of pixels, since there are "
+      "no images");
 }
 
 }  // namespace
 
 std::optional<fs::path> find_images(const fs::path& path) {
-  const bool found = is_folder(path) ? !videos_in(path).empty() || !images_in(path).empty()
-                                     : is_video_name(path);
+  const bool found = is_folder(path)
+                         ? !files_of_kind(path, is_video_name).empty() || !images_in(path).empty()
+                         : is_video_name(path);
   return found ? std::optional(path) : std::nullopt;
 }
 
@@ -191,10 +178,10 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
                                                 std::size_t cache_bytes,
                                                 const TopicChoices& topics) {
   if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
-  Recording recording;  // not calibrated: of any size
+  Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {
     if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).images;
-    throw InputError(path.string() + ": found a file that is no video, expected a folder or " +
+    throw InputError(path.string() + ": unsupported file, expected a folder or a file of type " +
                      recording_endings());
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
@@ -204,7 +191,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
     add_image_files(recording, std::move(files), cache_bytes);
     return recording.images;
   }
-  throw InputError(path.string() + ": found no pictures, expected a video or numbered pictures");
+  throw InputError(path.string() + ": found no images, expected a video or numbered images");
 }
 
 Recording read_images(const fs::path& path, const OpenOptions& options) {
@@ -213,7 +200,6 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   const auto video = video_at(path);
   std::optional<Log> log = log_beside(folder, video);
   Recording recording;
-  // Of pictures the size is known, and so, roughly, what camera it may be.
   const auto [calibration, calibration_file, found] =
       calibration_of(folder, log, tracks.has_value());
   const std::string name = calibration_file.filename().string();
@@ -229,7 +215,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   }
   if (!found) {
     const auto& files = recording.image_files;
-    guess_camera(recording, files.empty() ? std::nullopt : metadata_field_of_view(files.front()));
+    guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
   } else if (calibration.self_calibrated) {
     set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
@@ -238,9 +224,8 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =
       frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
-  if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count()) {
-    read_tracks(*tracks, recording.frame_count());  // names the line
-  }
+  if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count())
+    read_tracks(*tracks, recording.frame_count());  // throws with the line
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
   if (!gyroscope && !log && video) {

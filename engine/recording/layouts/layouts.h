@@ -19,84 +19,81 @@ namespace gpo {
 struct OpenOptions {
   std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
-  /// Where what was found in the pictures is kept for the next time; empty: nowhere.
-  std::filesystem::path cache_folder{};
-  TopicChoices topics{};  ///< of a bag
+  std::filesystem::path cache_folder{};  ///< for detections in images; empty: do not cache
+  TopicChoices topics{};                 ///< for a bag
 };
 
 /// One way in which recordings are stored.
 struct Layout {
   const char* title = "";     ///< for people: "EuRoC"
-  const char* expected = "";  ///< by what it is recognized, in a list: "cam0/data.csv (EuRoC)"
-  const char* file = "";  ///< the name of a file in it that stands for the folder; empty: none does
-  /// What `read` wants, where the path (a folder, or one file) has this layout.
+  const char* expected = "";  ///< for a list of layouts: "cam0/data.csv (EuRoC)"
+  const char* file = "";      ///< name of a file that may be opened in place of its folder
+  /// Returns the argument of `read` if the path (a folder or a file) has this layout.
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
-  /// Whether it has pictures, so that tracks beside them are not wanted unless asked for.
-  bool (*has_images)(const std::filesystem::path& found);
-  /// Throws InputError. With tracks pictures may be missing.
+  /// Throws InputError. With tracks, images may be missing.
   Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
-  bool has_topics = false;    ///< to choose from
-  bool tracks_alone = false;  ///< a folder that has tracks and no other layout
+  /// Whether there are no images, so that tracks beside the recording are used. null: never.
+  bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
+  bool has_topics = false;
+  bool tracks_alone = false;  ///< a folder with tracks and no other layout
 };
 
-/// All of them, in the order in which they are tried.
+/// All layouts in the order of their precedence.
 std::span<const Layout> layouts();
 
-/// What a folder or a file is, as far as its list of frames tells: no picture is decoded, no truth
-/// computed.
+/// Summary of a folder or a file from its list of frames, without decoding or computing anything.
 struct PathProbe {
   std::string layout;  ///< "EuRoC"; empty: no recording
-  int frames = 0;      ///< 0: cannot be told
+  int frames = 0;      ///< 0: unreadable
   double seconds = 0;
 };
 
-/// Never throws: what cannot be read has no frames.
+/// Never throws.
 PathProbe probe_path(const std::filesystem::path& path);
 
-// The layouts' readers, each with what finds it. All throw InputError.
+// The layouts' readers and their finders. All throw InputError.
 
-/// The folder that holds cam0: this one, or mav0 in it.
+/// Returns the folder that contains cam0: this one, or mav0 in it.
 std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
-/// The EuRoC / ASL layout, from the folder that holds cam0. Where any picture is missing, there are
-/// none.
+/// Reads the EuRoC / ASL layout from the folder that contains cam0. With tracks, images may be
+/// missing; a single missing image then drops them all.
 Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
-/// Whether none of the pictures that cam0/data.csv lists exists.
+/// Whether none of the images in cam0/data.csv exists.
 bool euroc_lacks_images(const std::filesystem::path& folder);
 
-/// The folder, where it holds rgb.txt.
+/// Returns the folder if it contains rgb.txt.
 std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
-/// The layout of the TUM RGB-D benchmark: rgb.txt, the pictures that it lists, groundtruth.txt (the
-/// camera's poses) and a calibration beside them; depth is passed over.
+/// Reads the layout of the TUM RGB-D benchmark: rgb.txt and its images, groundtruth.txt (the
+/// camera's poses) and a calibration. Depth is ignored.
 Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
 
-/// The path itself, where it is a video or a folder with a video or with numbered pictures.
+/// Returns the path if it is a video or a folder with a video or with numbered images.
 std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
-/// A video, or a folder with a video or with numbered pictures (in it, or in its folder images,
-/// frames, rgb or data), and beside them a calibration, gyro.csv or gyro_accel.csv,
-/// frame_timestamps.txt and groundtruth.txt. With tracks there need be no pictures; without, no
-/// calibration: the camera is a guess then (camera_source.h).
+/// Reads a video, or a folder with a video or with numbered images (in it, or in its folder images,
+/// frames, rgb or data), with the optional calibration, gyro.csv or gyro_accel.csv,
+/// frame_timestamps.txt and groundtruth.txt beside it. Images are optional if there are tracks, the
+/// calibration if there are none: the camera is guessed then (camera_source.h).
 Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
-/// Only the pictures of a video, of a folder with one or with numbered pictures, or of any layout's
-/// folder, or of a bag; of whatever size, without a calibration.
+/// Opens only the images of any layout, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
                                                 std::size_t cache_bytes,
                                                 const TopicChoices& topics = {});
 
-/// The path itself, where it is a bag by its name, or a folder with one.
+/// Returns the path if it has the name of a bag or is a folder with one.
 std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
-/// The one bag at a path that `find_bag` found; a folder may have several, which is refused.
+/// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
 std::filesystem::path bag_at(const std::filesystem::path& path);
-/// A bag of ROS: one topic of pictures, and where there are such topics the calibration, the
-/// gyroscope and the truth; beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
-/// Pictures stay in the bag until they are looked at.
+/// Reads a ROS bag: one topic of images, and the optional topics of calibration, gyroscope and
+/// truth; beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml. Images are read on
+/// demand.
 Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
-/// Only the pictures, of whatever size, without a calibration.
+/// Opens only the images, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
                                                     std::size_t cache_bytes,
                                                     const TopicChoices& choices);
 
-/// tracks.csv (`frame,track,x,y`, raw pixels, then what you like), sorted by frame, then track. A
-/// frame must be below `frame_count` where that is known.
+/// Reads tracks.csv (`frame,track,x,y` in raw pixels, then optional columns), sorted by frame, then
+/// track. Frames must be below `frame_count` if it is known.
 std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                                           std::optional<int> frame_count);
 

@@ -24,23 +24,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What there is to open, once it is known which layout it has.
+constexpr double kBlock_s = 0.25;
+constexpr int kLeastBlocks = 3;
+constexpr double kQuiet_rad_s = 0.02;   // standard deviation within a block, each axis
+constexpr double kSteady_rad_s = 0.01;  // difference of a block's mean from the first block's
+constexpr double kStill_px = 0.5;       // median image motion
+constexpr double kHidden_px = 0.1;      // image motion that cannot be detected
+constexpr std::size_t kLeastPoints = 15;
+
 struct Found {
   const Layout* layout;
-  fs::path path;    ///< of the layout: the folder that holds cam0 or rgb.txt, a video, a folder
-  fs::path folder;  ///< where the optional files are looked for first
+  fs::path path;    ///< argument of the layout's reader
+  fs::path folder;  ///< searched first for optional files
   std::optional<fs::path> tracks;
 };
 
-/// Tracks beside pictures are used only where they are asked for.
+/// Returns the tracks to use: those that the user names, or those beside a recording without
+/// images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
+  const Layout& layout = *found.layout;
+  const bool lacks_images =
+      layout.tracks_alone || (layout.lacks_images && layout.lacks_images(found.path));
+  if (!lacks_images) return std::nullopt;
   auto tracks = if_file(found.folder / "tracks.csv");
-  if (!tracks) tracks = if_file(found.path / "tracks.csv");
-  return tracks && !found.layout->has_images(found.path) ? tracks : std::nullopt;
+  return tracks ? tracks : if_file(found.path / "tracks.csv");
 }
 
-/// A folder, or a file that is a recording by itself; nothing where it has no layout.
+/// Finds the layout of a folder, or of a file that is a recording by itself; nullopt if none fits.
 std::optional<Found> find_layout(const fs::path& path, const OpenOptions& options) {
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   for (const Layout& layout : layouts()) {
@@ -69,7 +80,7 @@ Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   throw InputError(folder.string() + ": found no recording, expected " + expected_layouts());
 }
 
-/// The file stands for its folder; tracks that are named are wanted, even where there are pictures.
+/// Opens the folder of a file such as rgb.txt. A tracks.csv that the user names is always used.
 Found find_around(const fs::path& file, OpenOptions options) {
   if (file.filename() == "tracks.csv" && !options.tracks) options.tracks = file;
   return find_in_folder(folder_of(file), options);
@@ -83,35 +94,29 @@ bool stands_for_folder(const fs::path& file) {
 Found find_recording(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
+  if (status.type() == fs::file_type::not_found)
     throw InputError(path.string() + ": no such file or folder");
-  }
-  if (error) {
-    throw InputError(path.string() + ": found something that cannot be read (" + error.message() +
-                     "), expected a recording");
-  }
+  if (error) throw InputError(path.string() + ": cannot be read: " + error.message());
   if (fs::is_directory(status)) return find_in_folder(path, options);
   if (fs::is_regular_file(status)) {
     if (stands_for_folder(path)) return find_around(path, options);
     if (const auto found = find_layout(path, options)) return *found;
   }
   throw InputError(path.string() +
-                   ": found a file that is no video, expected a folder, tracks.csv, rgb.txt or " +
+                   ": unsupported file, expected a folder, tracks.csv, rgb.txt or a file of type " +
                    recording_endings());
 }
 
 Recording read(const Found& found, const OpenOptions& options) {
-  if (!found.layout->has_topics && !options.topics.empty()) {
-    throw InputError(fmt::format("{}: found {} and no topics, expected a bag for --topic",
-                                 found.path.string(),
-                                 found.layout->title));
-  }
+  if (!found.layout->has_topics && !options.topics.empty())
+    throw InputError(
+        fmt::format("{}: found the layout {} without topics, expected a bag for --topic",
+                    found.path.string(),
+                    found.layout->title));
   OpenOptions with_tracks = options;
   with_tracks.tracks = found.tracks;
   return found.layout->read(found.path, with_tracks);
 }
-
-bool is_recording_file(const fs::path& path) { return is_video_name(path) || is_bag_name(path); }
 
 void add_sidecars(Recording& recording, const Found& found) {
   const auto beside = [&](const char* name) {
@@ -120,13 +125,11 @@ void add_sidecars(Recording& recording, const Found& found) {
   };
   if (const auto file = beside("board.yaml")) recording.board = read_board(*file);
   if (const auto file = beside("plane.yaml")) recording.plane = read_plane(*file);
-  // Truth that comes from the board has the board's frame, z into the board.
-  if (!recording.truth && recording.board && recording.images) {
+  // Truth from the board is in the board's frame, z into the board.
+  if (!recording.truth && recording.board && recording.images)
     recording.plane = Plane{{0, 0, -1}, 0};
-  }
 }
 
-/// Of a gyroscope of which no file says more than that it has one.
 void take_bias_from_rest(Recording& recording) {
   if (!recording.gyroscope || recording.gyroscope->bias_known) return;
   const auto rest = find_stationary_interval(recording);
@@ -134,32 +137,28 @@ void take_bias_from_rest(Recording& recording) {
   Gyroscope& gyroscope = *recording.gyroscope;
   gyroscope.bias_rad_s = rest->mean_rad_s;
   gyroscope.bias_sigma_rad_s = rest->sigma_rad_s;
-  gyroscope.bias_source = fmt::format("a rest of {:.1f} s, certain to {:.4f} rad/s",
+  gyroscope.bias_source = fmt::format("stationary for {:.1f} s, uncertainty {:.4f} rad/s",
                                       1e-9 * static_cast<double>(rest->last_ns - rest->first_ns),
                                       rest->sigma_rad_s);
 }
 
-bool has_value(const std::optional<Pose>& pose) { return pose.has_value(); }
-
 void add_notes(Recording& recording) {
   auto& notes = recording.notes;
-  if (!recording.images)
-    notes.emplace_back("no pictures: tracks are drawn on a plain background");
+  if (!recording.images) notes.emplace_back("no images: tracks are drawn on a plain background");
   if (!recording.tracks.empty() && recording.tracks.front().frame > 0)
     notes.push_back(fmt::format("tracks begin in frame {}", recording.tracks.front().frame));
-  if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from the pictures alone");
+  if (!recording.gyroscope) notes.emplace_back("no gyroscope: rotations from the images alone");
+  const auto has_pose = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   const bool from_board = !recording.truth && recording.board && recording.images;
-  if (from_board) {
-    notes.emplace_back(fmt::format("no stored ground truth: it is computed from the {}",
-                                   board_title(*recording.board)));
-  }
-  if (!from_board && !recording.truth) {
+  if (from_board)
+    notes.push_back(fmt::format("no stored ground truth: computing it from the {}",
+                                board_title(*recording.board)));
+  if (!from_board && !recording.truth)
     notes.emplace_back("no ground truth: no metrics");
-  } else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_value)) {
-    notes.push_back("no frame is within the times of the ground truth, " + recording.truth->source);
-  } else if (!recording.plane) {
+  else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_pose))
+    notes.push_back("the ground truth covers no frame: " + recording.truth->source);
+  else if (!recording.plane)
     notes.emplace_back("no plane.yaml: no errors of the plane");
-  }
 }
 
 std::string name_of(const fs::path& path) {
@@ -167,15 +166,6 @@ std::string name_of(const fs::path& path) {
   return (clean.has_filename() ? clean : clean.parent_path()).filename().string();
 }
 
-constexpr double kBlock_s = 0.25;
-constexpr int kLeastBlocks = 3;
-constexpr double kQuiet_rad_s = 0.02;   // standard deviation within a block, each axis
-constexpr double kSteady_rad_s = 0.01;  // of a block's mean from that of the first one
-constexpr double kStill_px = 0.5;       // median motion of the pictures
-constexpr double kHidden_px = 0.1;      // what that cannot tell
-constexpr std::size_t kLeastPoints = 15;
-
-/// Consecutive samples of a gyroscope.
 struct Block {
   std::size_t begin = 0, end = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -206,7 +196,7 @@ std::vector<Block> blocks_of(const Gyroscope& gyroscope) {
   return blocks;
 }
 
-/// The samples of the longest run of blocks in which nothing varies; empty: there is none.
+/// Returns the samples of the longest run of quiet and steady blocks; empty if it is too short.
 Block quietest(const Gyroscope& gyroscope) {
   const std::vector<Block> blocks = blocks_of(gyroscope);
   std::size_t best_begin = 0, best_end = 0;
@@ -251,7 +241,7 @@ std::vector<double> images_moved_px(const Recording& recording, int first, int s
   return lengths;
 }
 
-/// Median motion between two frames [px]; nothing where there is too little to see.
+/// Returns the median motion between two frames [px]; nullopt if there are too few points.
 std::optional<double> moved_px(const Recording& recording, int first, int second) {
   auto lengths = recording.tracks.empty() && recording.images
                      ? images_moved_px(recording, first, second)
@@ -270,11 +260,12 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
                          : std::ranges::find(layouts(), true, &Layout::tracks_alone)->title;
   recording.path = path;
   recording.cache_folder = options.cache_folder;
-  recording.name = name_of(is_recording_file(path) || is_folder(path) ? path : found.folder);
+  const bool whole_path = is_video_name(path) || is_bag_name(path) || is_folder(path);
+  recording.name = name_of(whole_path ? path : found.folder);
   add_sidecars(recording, found);
   take_bias_from_rest(recording);
   add_notes(recording);
-  if (recording.images) recording.images->bgr(0);  // a wrong size or format shows here
+  if (recording.images) recording.images->bgr(0);  // detects a wrong size or format
   return std::make_shared<const Recording>(std::move(recording));
 }
 
@@ -287,10 +278,10 @@ std::optional<StationaryInterval> find_stationary_interval(const Recording& reco
             gyroscope.timestamps_ns[quiet.end - 1] - gyroscope.time_offset_ns,
             quiet.mean};
   const auto& frames_ns = recording.timestamps_ns;
-  const int first =
-      static_cast<int>(std::ranges::lower_bound(frames_ns, rest.first_ns) - frames_ns.begin());
-  const int last =
-      static_cast<int>(std::ranges::upper_bound(frames_ns, rest.last_ns) - frames_ns.begin()) - 1;
+  const auto begin = std::ranges::lower_bound(frames_ns, rest.first_ns);
+  const auto end = std::ranges::upper_bound(frames_ns, rest.last_ns);
+  const int first = static_cast<int>(begin - frames_ns.begin());
+  const int last = static_cast<int>(end - frames_ns.begin()) - 1;
   if (last - first < kLeastBlocks) return std::nullopt;
   double most_px = kHidden_px;
   for (const int frame : {(first + last) / 2, last}) {

@@ -30,12 +30,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The frames of the bags that we write.
 constexpr const char* kCamera = "camera";
 constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
-/// As `kTopics` counts them.
 enum class Topic { images, camera_info, imu, truth, tf_static };
 const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/camera_info", kCameraInfoType},
@@ -51,18 +49,13 @@ PoseMessage transform(std::int64_t time_ns,
   return {{time_ns, parent}, child, p, q.coeffs()};
 }
 
-/// A message without its time.
 struct Planned {
   Topic topic;
   std::int64_t time_ns;  ///< camera's clock
-  int number;            ///< of the picture, pose or sample
+  int number;            ///< index of the image, pose or sample
 };
 
-bool lacks_truth(const GroundTruth& truth) {
-  return !std::ranges::all_of(truth.poses, [](const auto& pose) { return pose.has_value(); });
-}
-
-/// What is written, in the order of time. What never changes comes first.
+/// Returns the messages in the order of time, constant ones first.
 std::vector<Planned> plan_of(const Recording& recording, const std::optional<GroundTruth>& poses) {
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -83,7 +76,6 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-/// Bytes of the planned messages.
 class Messages {
  public:
   Messages(const Recording& recording,
@@ -137,7 +129,6 @@ class Messages {
     return imu_bytes(message, encoding_);
   }
 
-  /// The camera in the axes of the gyroscope.
   PoseMessage mounting(std::int64_t time_ns) const {
     const Eigen::Matrix3d& R_gyro_camera = recording_.gyroscope->R_gyro_camera;
     const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
@@ -152,7 +143,7 @@ class Messages {
   SteadyQuaternions steady_;
 };
 
-/// What no message has a field for: file names and texts.
+/// Returns the names and texts of files with data for which ROS has no message.
 std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);
@@ -161,11 +152,13 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
                                      gyroscope->noise_density != Gyroscope{}.noise_density);
   if (gyroscope && (unusual || !gyroscope->bias_rad_s.isZero(0)))
     files["imu.yaml"] = bias_yaml(*gyroscope);
-  if (poses && lacks_truth(*poses)) files["groundtruth.yaml"] = kNoInterpolation;
+  const auto has_pose = [](const auto& pose) { return pose.has_value(); };
+  if (poses && !std::ranges::all_of(poses->poses, has_pose))
+    files["groundtruth.yaml"] = kNoInterpolation;
   return files;
 }
 
-/// Files that are read with a bag must be this bag's.
+/// Throws InputError if there are files that would be read with this bag but are not its own.
 void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
   for (const char* name : {"plane.yaml",
                            "board.yaml",
@@ -177,10 +170,8 @@ void check_beside(const fs::path& folder, const std::map<std::string, std::strin
     const auto ours = files.find(name);
     const auto there = if_file(folder / name);
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
-    throw InputError(
-        fmt::format("{}: found the file of another recording, expected none beside a bag "
-                    "that is to be written",
-                    there->string()));
+    throw InputError(fmt::format("{}: belongs to another recording; choose a folder without it",
+                                 there->string()));
   }
 }
 
@@ -190,7 +181,6 @@ struct BagFormat {
   std::int64_t earliest_ns;
 };
 
-/// As `RecordingFormat` counts them after the first.
 constexpr std::array<BagFormat, 2> kBagFormats = {
     {{".bag", ros1_writer, 0},
      {".mcap",
@@ -203,20 +193,17 @@ void check_bag(const Recording& recording,
                const fs::path& output) {
   const std::string name = output.string();
   if (output.extension() != format.ending)
-    throw InputError(fmt::format("{}: found another ending, expected {}", name, format.ending));
+    throw InputError(fmt::format("{}: wrong ending, expected {}", name, format.ending));
   std::error_code none;
-  if (fs::exists(output, none))
-    throw InputError(name + ": found something there already, expected no file");
+  if (fs::exists(output, none)) throw InputError(name + ": already exists; choose a new file");
   if (!recording.images)
-    throw InputError(recording.path.string() + ": found no pictures, expected some for a bag");
+    throw InputError(recording.path.string() + ": has no images, which a bag needs");
   const std::int64_t first = plan.front().time_ns;
-  if (first < format.earliest_ns) {
+  if (first < format.earliest_ns)
     throw InputError(
-        fmt::format("{}: found the time {} ns, expected none before 1970 in a bag of "
-                    "ROS 1; --format mcap takes it",
+        fmt::format("{}: time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
                     recording.path.string(),
                     first));
-  }
 }
 
 void write_bag(const Recording& recording,
@@ -287,7 +274,6 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
   return text;
 }
 
-/// The pictures that the recording has, and the list of all frames.
 void write_images(const Recording& recording,
                     const fs::path& cam,
                     const std::function<void(int done, int of)>& progress) {

@@ -13,7 +13,7 @@
 
 namespace gpo {
 
-/// What a recording is written as.
+/// Output formats of a recording.
 enum class RecordingFormat { euroc, rosbag, mcap };
 template <>
 struct ChoiceKeys<RecordingFormat> {
@@ -22,22 +22,21 @@ struct ChoiceKeys<RecordingFormat> {
 };
 
 /// Writes a recording that opens as the same recording: as an EuRoC folder (see `write_euroc`), or
-/// as a bag, a file with its sidecar files beside it. In a bag are the pictures (of 8 bits, not
-/// compressed), /camera_info, /imu by the camera's clock, /ground_truth (of the camera) and
-/// /tf_static. Written whole or not at all. Throws InputError: as `write_euroc`, a bag's file that
-/// is there already or ends otherwise, sidecar files of something else beside it, no pictures,
-/// times before 1970 in a bag of ROS 1.
+/// as a bag with sidecar files beside it. The bag contains the images (8 bits, uncompressed),
+/// /camera_info, /imu by the camera's clock, /ground_truth (of the camera) and /tf_static. On
+/// failure no partial file remains. Throws InputError for all failures of `write_euroc`, a bag that
+/// exists or has the wrong ending, foreign sidecar files beside it, a recording without images, and
+/// times before 1970 in a ROS 1 bag.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
                      const std::filesystem::path& output,
                      const std::function<void(int done, int of)>& progress = {});
 
-/// Writes a recording as an EuRoC folder that opens as the same recording: pictures as PNG (without
-/// loss, but of 8 bits), calibration, gyroscope, tracks, board, plane, and `truth` as the poses of
-/// the body at the frames' times, not interpolated where a frame has none. Written whole or not at
-/// all. Throws InputError: pictures that cannot be decoded, a folder that is not empty, a full
-/// disk.
+/// Writes a recording as an EuRoC folder that opens as the same recording: images as PNG (lossless,
+/// but 8 bits), calibration, gyroscope, tracks, board, plane, and `truth` as the body's poses at
+/// the frames' times, without interpolation. On failure no partial folder remains. Throws
+/// InputError if an image cannot be decoded, the folder is not empty, or the disk is full.
 void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,
                  const std::filesystem::path& folder,

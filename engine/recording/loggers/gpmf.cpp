@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/loggers/log.h"
 
 #include <algorithm>
 #include <array>
@@ -21,13 +20,12 @@ namespace {
 
 using Bytes = std::string_view;
 
-/// A key of letters, digits and blanks as it stands, anything else as its bytes.
+/// Returns a printable key as it is, any other as hexadecimal.
 std::string printable(Bytes key) {
   const bool plain = std::ranges::all_of(key, [](char c) { return c >= ' ' && c <= '~'; });
   return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
 }
 
-/// "SOURCE: KEY: found FOUND, expected EXPECTED".
 [[noreturn]] void gpmf_fail(const std::string& source,
                             const GpmfItem& item,
                             const std::string& found,
@@ -36,29 +34,13 @@ std::string printable(Bytes key) {
       fmt::format("{}: {}: found {}, expected {}", source, printable(item.key), found, expected));
 }
 
-/// Of a number [bytes]; 0: it is none.
 int gpmf_size(char type) {
-  switch (type) {
-    case 'b':
-    case 'B':
-      return 1;
-    case 's':
-    case 'S':
-      return 2;
-    case 'l':
-    case 'L':
-    case 'f':
-      return 4;
-    case 'd':
-    case 'j':
-    case 'J':
-      return 8;
-    default:
-      return 0;
-  }
+  if (type == 'b' || type == 'B') return 1;
+  if (type == 's' || type == 'S') return 2;
+  if (type == 'l' || type == 'L' || type == 'f') return 4;
+  return type == 'd' || type == 'j' || type == 'J' ? 8 : 0;
 }
 
-/// A stream's items by their keys.
 struct Stream {
   std::map<Bytes, GpmfItem> items;
 
@@ -82,7 +64,8 @@ std::optional<double> number_of(const Stream& stream, Bytes key, const std::stri
   return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
 }
 
-/// `key` holds the stream's samples, of which `before` came before where the camera does not count.
+/// `key` has the stream's samples; `before` is the number of previous ones if the camera has no
+/// count.
 GpmfStamp stamp_of(const Stream& stream,
                    Bytes key,
                    std::int64_t& before,
@@ -106,27 +89,20 @@ GpmfStamp stamp_of(const Stream& stream,
   return stamp;
 }
 
-/// Axes as they are stored, by the names that cameras give themselves; older ones do not say it.
+/// Stored axes of models that do not describe them.
 std::string stored_axes(Bytes model) {
-  struct Model {
-    Bytes name;
-    const char* axes;
-  };
-  static constexpr std::array<Model, 3> kModels = {
-      {{"Hero6", "YxZ"}, {"Hero7 Silver", "XZy"}, {"Fusion", "yXZ"}}};
-  for (const Model& known : kModels)
-    if (model.starts_with(known.name)) return known.axes;
-  return "ZXY";
+  if (model.starts_with("Hero6")) return "YxZ";
+  if (model.starts_with("Hero7 Silver")) return "XZy";
+  return model.starts_with("Fusion") ? "yXZ" : "ZXY";
 }
 
-/// From what is stored to GoPro's axes.
 Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& source) {
   const GpmfItem* matrix = stream.find("MTRX");
   const GpmfItem* output = stream.find("ORIO");
   const GpmfItem* input = stream.find("ORIN");
   const auto named = [&](const GpmfItem& item) {
     const auto axes = signed_axes(gpmf_text(item));
-    if (!axes) gpmf_fail(source, item, "no axes", "three axes that turn to the right, such as ZXY");
+    if (!axes) gpmf_fail(source, item, "no axes", "three right-handed axes such as ZXY");
     return *axes;
   };
   if (matrix != nullptr && output != nullptr) {
@@ -144,7 +120,6 @@ Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& so
   return signed_axes(stored_axes(model))->transpose();
 }
 
-/// What one unit of the samples is in rad/s, axis by axis.
 Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (const GpmfItem* divisors = stream.find("SCAL")) {
@@ -171,7 +146,7 @@ void add_gyroscope(GpmfPayload& payload,
   const GpmfItem& samples = *stream.find("GYRO");
   const int size = gpmf_size(samples.type);
   if (size == 0 || samples.size != 3 * size)
-    gpmf_fail(source, samples, "samples that are not three numbers", "the rates about three axes");
+    gpmf_fail(source, samples, "samples that are not three numbers", "rates about three axes");
   const auto numbers = gpmf_numbers(samples, source);
   const Eigen::Matrix3d axes = axes_of(stream, model, source);
   const Eigen::Vector3d scale = scale_of(stream, source);
@@ -184,7 +159,6 @@ void add_gyroscope(GpmfPayload& payload,
   payload.gyroscope = stamp_of(stream, "GYRO", counted.rates, source);
 }
 
-/// Of one device; whether it has a gyroscope.
 bool add_device(GpmfPayload& payload,
                 const GpmfItem& device,
                 const std::string& source,
@@ -233,7 +207,7 @@ std::optional<Line> fitted(const std::vector<Eigen::Vector2d>& sample_and_time) 
   return Line{mean.y() - step * mean.x(), step};
 }
 
-/// Of the stamps that payloads have [us]; nothing where fewer than two have one.
+/// Fits the payloads' stamps [us]; nullopt if fewer than two have one.
 template <class StampOf>
 std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const StampOf& stamp_of) {
   std::vector<Eigen::Vector2d> points;
@@ -245,7 +219,6 @@ std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const 
   return fitted(points);
 }
 
-/// In seconds from the first frame.
 std::optional<Line> sample_line(const std::vector<GpmfPayload>& payloads,
                                 const std::vector<double>& payload_times_s) {
   const auto with_rates = [](const GpmfPayload& p) {
@@ -291,6 +264,16 @@ double number_at(const GpmfItem& item, std::size_t index) {
 
 }  // namespace
 
+std::optional<Eigen::Matrix3d> signed_axes(Bytes text) {
+  if (text.size() != 3) return std::nullopt;
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t axis = Bytes("XYZxyz").find(text[i]);
+    if (axis == Bytes::npos) return std::nullopt;
+    rows(i, static_cast<int>(axis % 3)) = axis < 3 ? 1 : -1;
+  }
+  return rows.determinant() > 0.5 ? std::optional(rows) : std::nullopt;
+}
 GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counted) {
   GpmfPayload payload;
   GpmfItems devices(bytes, source);
@@ -328,9 +311,8 @@ std::optional<GpmfItem> GpmfItems::next() {
                 {}};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;
-  if (length > left) {
-    gpmf_fail(source_, item, fmt::format("{} bytes (cut)", left), std::to_string(length));
-  }
+  if (length > left)
+    gpmf_fail(source_, item, fmt::format("{} bytes (truncated)", left), std::to_string(length));
   item.data = rest_.substr(kHead, length);
   rest_.remove_prefix(std::min(rest_.size(), kHead + (length + 3) / 4 * 4));
   return item;
@@ -338,8 +320,7 @@ std::optional<GpmfItem> GpmfItems::next() {
 
 std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source) {
   const int size = gpmf_size(item.type);
-  if (size == 0 || item.size % size != 0)
-    gpmf_fail(source, item, "no numbers that are known", "numbers");
+  if (size == 0 || item.size % size != 0) gpmf_fail(source, item, "another type", "numbers");
   std::vector<double> numbers(item.data.size() / static_cast<std::size_t>(size));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = number_at(item, i);

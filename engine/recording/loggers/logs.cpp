@@ -9,9 +9,8 @@
 
 #include <array>
 #include <cmath>
-#include <string>
+#include <numeric>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,47 +21,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostSamples = 8'000'000;
 
-/// One kind of a log beside a video.
-struct Logger {
-  /// What `read` wants, where the folder has such a log.
-  std::optional<fs::path> (*find)(const fs::path& folder, const std::optional<fs::path>& video);
-  Log (*read)(const fs::path& found);
-};
-
-std::optional<fs::path> find_stray_scanner(const fs::path& folder,
-                                           const std::optional<fs::path>& /*video*/) {
-  const bool found = is_file(folder / "odometry.csv") && is_file(folder / "camera_matrix.csv");
-  return found ? std::optional(folder) : std::nullopt;
-}
-
-/// Others, too, call their data that.
-std::optional<fs::path> find_spectacular(const fs::path& folder,
-                                         const std::optional<fs::path>& video) {
-  return video && video->stem() == "data" ? if_file(folder / "data.jsonl") : std::nullopt;
-}
-
-std::optional<fs::path> find_gcsv(const fs::path& /*folder*/,
-                                  const std::optional<fs::path>& video) {
-  return video ? if_file(fs::path(*video).replace_extension(".gcsv")) : std::nullopt;
-}
-
-std::optional<fs::path> find_sensor_logger(const fs::path& folder,
-                                           const std::optional<fs::path>& /*video*/) {
-  return if_file(folder / "Gyroscope.csv");
-}
-
-constexpr std::array<Logger, 4> kLoggers = {{{find_stray_scanner, read_stray_scanner},
-                                             {find_spectacular, read_spectacular},
-                                             {find_gcsv, read_gcsv},
-                                             {find_sensor_logger, read_sensor_logger}}};
-
-/// GoPro's axes (x left, y back, z up, as seen from behind) <- camera.
+/// GoPro's axes (x left, y back, z up, seen from behind) <- camera.
 Pose camera_in_gopro() {
   return {(Eigen::Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(), Eigen::Vector3d::Zero()};
 }
 
-/// Of the settings of the whole video, which some models have; of what they cannot be read nothing
-/// is known.
+/// Returns the readout time from the settings of the whole video, which some models have; nullopt
+/// if they lack it or are unreadable.
 std::optional<double> readout_of_settings(const fs::path& video) {
   try {
     GpmfCount counted;
@@ -77,11 +42,10 @@ std::optional<double> readout_of_settings(const fs::path& video) {
       fmt::format("{}: telemetry: found {}, expected {}", log.file.string(), found, expected));
 }
 
-/// Nothing about the gyroscope where it has no samples.
 void take_samples(Log& log, Gyroscope gyroscope) {
   const auto& times = gyroscope.timestamps_ns;
   if (gyroscope.rates_rad_s.empty()) return;
-  if (times.size() != gyroscope.rates_rad_s.size()) fail(log, "no times", "a clock that runs");
+  if (times.size() != gyroscope.rates_rad_s.size()) fail(log, "no times", "a running clock");
   for (std::size_t k = 1; k < times.size(); ++k) {
     if (times[k] > times[k - 1]) continue;
     fail(log,
@@ -90,13 +54,13 @@ void take_samples(Log& log, Gyroscope gyroscope) {
   }
   gyroscope.file = log.file;
   gyroscope.lines.resize(times.size());
-  for (std::size_t k = 0; k < times.size(); ++k) gyroscope.lines[k] = static_cast<int>(k) + 1;
+  std::iota(gyroscope.lines.begin(), gyroscope.lines.end(), 1);
   log.gyroscope = std::move(gyroscope);
 }
 
 void check_count(const Log& log, const Gyroscope& gyroscope) {
   if (gyroscope.rates_rad_s.size() <= kMostSamples) return;
-  fail(log, "one more sample", fmt::format("at most {}", kMostSamples));
+  fail(log, "too many samples", fmt::format("at most {}", kMostSamples));
 }
 
 void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {
@@ -141,8 +105,15 @@ void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
 }  // namespace
 
 std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video) {
-  for (const Logger& logger : kLoggers)
-    if (const auto found = logger.find(folder, video)) return logger.read(*found);
+  if (is_file(folder / "odometry.csv") && is_file(folder / "camera_matrix.csv"))
+    return read_stray_scanner(folder);
+  // The name data.jsonl alone is too common.
+  if (video && video->stem() == "data")
+    if (const auto file = if_file(folder / "data.jsonl")) return read_spectacular(*file);
+  if (video)
+    if (const auto file = if_file(fs::path(*video).replace_extension(".gcsv")))
+      return read_gcsv(*file);
+  if (const auto file = if_file(folder / "Gyroscope.csv")) return read_sensor_logger(*file);
   return std::nullopt;
 }
 

@@ -27,10 +27,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 
-/// Where something stands, for messages.
 struct Place {
   const fs::path& file;
-  int line = 0;  ///< 0: the file as a whole
+  int line = 0;  ///< 0: the whole file
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
     const std::string at = line > 0 ? fmt::format(":{}", line) : "";
@@ -66,7 +65,7 @@ std::int64_t time_ns(const Json& line, const Place& place) {
   return std::llround(1e9 * time_s);
 }
 
-/// A lens by its name, whatever its case: "kannala-brandt4", "KANNALA_BRANDT4".
+/// Adds a lens by its name in any case: "kannala-brandt4", "KANNALA_BRANDT4".
 void add_lens(Camera& camera, std::string model, std::vector<double> k, const Place& place) {
   std::ranges::replace(model = lower_case(model), '_', '-');
   const std::size_t count = k.size();
@@ -79,10 +78,9 @@ void add_lens(Camera& camera, std::string model, std::vector<double> k, const Pl
   if (none && (model.empty() || model == "pinhole" || model == "brown-conrady")) return;
   if (model == "pinhole" && count == 3) k = {k[0], k[1], 0, 0, k[2]};  // k1, k2, k3
   const bool opencv = k.size() == 4 || k.size() == 5 || k.size() == 8;
-  if ((model != "pinhole" && model != "brown-conrady") || !opencv) {
+  if ((model != "pinhole" && model != "brown-conrady") || !opencv)
     place.fail(fmt::format("another lens, with {} coefficients", count),
                "pinhole with 3, kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8");
-  }
   camera.distortion = Distortion::radial_tangential;
   camera.coefficients = std::move(k);
 }
@@ -100,16 +98,15 @@ Camera camera_of(const Json& json, const char* model_key, const Place& place) {
   if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
   const Json* model = find(json, model_key);
   const Json* coefficients = find(json, "distortionCoefficients");
-  if (coefficients != nullptr) {
+  if (coefficients != nullptr)
     add_lens(camera,
              model != nullptr && model->is_string() ? model->get<std::string>() : "pinhole",
              numbers(coefficients, "distortionCoefficients", place),
              place);
-  }
   return camera;
 }
 
-/// imuToCamera, row by row: p_camera = T p_imu.
+/// Reads imuToCamera, row by row: p_camera = T p_imu.
 std::optional<Pose> body_of(const Json& json, const Place& place) {
   const Json* rows = find(json, "imuToCamera");
   if (rows == nullptr) return std::nullopt;
@@ -121,7 +118,7 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
     T_camera_imu.R_wc.row(i) << row[0], row[1], row[2];
     T_camera_imu.p_wc[i] = row[3];
   }
-  constexpr double kMostOff = 0.05;  // written with few digits, as documentation does
+  constexpr double kMostOff = 0.05;  // for examples with few digits
   Eigen::Matrix3d& R = T_camera_imu.R_wc;
   const Eigen::Matrix3d nearest = nearest_rotation(R);
   if (!((nearest - R).norm() < kMostOff))
@@ -136,7 +133,7 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
   if (const auto body = body_of(json, place)) log.T_body_camera = body;
 }
 
-/// A gyroscope's samples as they stand; they may not be in the order of time.
+/// A gyroscope's samples in the order of the file, not necessarily of time.
 struct Samples {
   std::vector<std::int64_t> times_ns;
   std::vector<Eigen::Vector3d> rates_rad_s;
@@ -190,7 +187,6 @@ Gyroscope sorted(const Samples& samples, const fs::path& file) {
   return gyroscope;
 }
 
-/// Of the first camera; the file is optional.
 void add_calibration(Log& log, const fs::path& file) {
   if (!is_file(file)) return;
   const Json json = read_json(file);

@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
 
-/// The letters of a codec's tag.
 std::string tag_of(const AVStream& stream) {
   const unsigned tag = stream.codecpar->codec_tag;
   std::string letters;
@@ -27,22 +26,21 @@ std::string tag_of(const AVStream& stream) {
   return letters;
 }
 
-/// The first telemetry track; all others are passed over when packets are read.
+/// Returns the first telemetry track, and disables all others.
 AVStream* telemetry_stream(AVFormatContext& format) {
   AVStream* found = nullptr;
   for (unsigned i = 0; i < format.nb_streams; ++i) {
     AVStream* stream = format.streams[i];
     const std::string tag = tag_of(*stream);
-    if (found == nullptr && (tag == "gpmd" || tag == "camm")) {
+    if (found == nullptr && (tag == "gpmd" || tag == "camm"))
       found = stream;
-    } else {
+    else
       stream->discard = AVDISCARD_ALL;
-    }
   }
   return found;
 }
 
-constexpr std::size_t kHead = 4;  // two bytes that are reserved, two that tell the kind
+constexpr std::size_t kHead = 4;  // two reserved bytes, two with the kind
 constexpr std::uint64_t kExposure = 1;
 constexpr std::uint64_t kGyroscope = 2;
 
@@ -53,13 +51,13 @@ constexpr int kMostBoxes = 10'000;
 
 std::uint64_t number_of(Bytes bytes) { return big_endian(bytes, 0, bytes.size()); }
 
-/// Its length and its kind, or of a key its namespace, go before what a box holds.
+/// A box in memory; for a key the kind is its namespace.
 struct MemoryBox {
   Bytes kind;
   Bytes data;
 };
 
-/// Takes a box off the front of what holds it; nothing at the end, and where it is cut.
+/// Takes a box off the front of its container; nullopt at the end, and if it is truncated.
 std::optional<MemoryBox> take_box(Bytes& rest) {
   constexpr std::size_t kHead = 8;
   if (rest.size() < kHead) return std::nullopt;
@@ -70,14 +68,13 @@ std::optional<MemoryBox> take_box(Bytes& rest) {
   return box;
 }
 
-/// Empty where there is none.
 Bytes data_in(Bytes outer, Bytes kind) {
   while (const auto box = take_box(outer))
     if (box->kind == kind) return box->data;
   return {};
 }
 
-/// Whose place in the list of keys, counted from 1, is the kind of its value's box; 0: not there.
+/// Returns a key's place in the list, from 1, which is the kind of its value's box; 0 if missing.
 std::uint64_t place_of(Bytes keys, Bytes key) {
   constexpr std::size_t kVersionAndCount = 8;
   if (keys.size() < kVersionAndCount) return 0;
@@ -87,7 +84,7 @@ std::uint64_t place_of(Bytes keys, Bytes key) {
   return 0;
 }
 
-/// By the table of "well-known types".
+/// Converts a value according to the table of "well-known types".
 std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   enum { kUtf8 = 1, kSigned = 21, kUnsigned = 22, kFloat = 23, kDouble = 24 };
   const std::uint64_t bits = number_of(value.substr(0, 8));
@@ -117,11 +114,9 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
-    if (bytes > kMostBytes) {
-      throw InputError(fmt::format("{}: found more than {} MiB of telemetry, expected less",
-                                   video.string(),
-                                   kMostBytes >> 20));
-    }
+    if (bytes > kMostBytes)
+      throw InputError(
+          fmt::format("{}: the telemetry is larger than {} MiB", video.string(), kMostBytes >> 20));
     const auto begin = static_cast<double>(packet->pts);
     track.packets.push_back(
         {unit_s * begin,
@@ -141,7 +136,7 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
   const auto need = [&](std::size_t length) {
     if (bytes.size() >= length) return;
     throw InputError(fmt::format(
-        "{}: found a sample of {} bytes (cut), expected {}", source, bytes.size(), length));
+        "{}: found a sample of {} bytes (truncated), expected {}", source, bytes.size(), length));
   };
   need(kHead);
   CammSample sample;
@@ -158,10 +153,7 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
       const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
       rates[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
     }
-    if (!rates.allFinite()) {
-      throw InputError(
-          fmt::format("{}: found a rate that is not finite, expected three numbers", source));
-    }
+    if (!rates.allFinite()) throw InputError(source + ": a rate is not finite");
     sample.rates_rad_s = rates;
   }
   return sample;
@@ -210,7 +202,7 @@ std::string MovieFile::bytes_of(MovieBox box) {
 }
 
 std::optional<std::string> metadata_value(Bytes meta, Bytes key) {
-  // QuickTime's begins with its first box, MPEG's with a version.
+  // QuickTime's content begins with its first box, MPEG's with a version.
   if (meta.size() >= 12 && meta.substr(4, 4) != "hdlr" && meta.substr(8, 4) == "hdlr")
     meta.remove_prefix(4);
   const std::uint64_t place = place_of(data_in(meta, "keys"), key);

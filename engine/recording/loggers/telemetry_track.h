@@ -15,52 +15,52 @@
 
 namespace gpo {
 
-/// A piece of a telemetry track, and when the container says that it is.
+/// A piece of a telemetry track and its time in the container.
 struct TelemetryPacket {
   double begin_s = 0;
   double end_s = 0;
   std::string bytes;
 };
 
-/// What cameras store beside the pictures in an MP4 or MOV.
+/// Telemetry that a camera stores beside the images in an MP4 or MOV.
 struct TelemetryTrack {
   std::string format;  ///< "gpmd" (GoPro) or "camm" (Camera Motion Metadata)
   std::vector<TelemetryPacket> packets;
 };
 
-/// The first such track of a video, decoding nothing; nothing where there is none. Throws
-/// InputError where it is larger than can be kept.
+/// Reads the first such track of a video without decoding images; nullopt if there is none. Throws
+/// InputError if it is too large.
 std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& video);
 
-/// What a GoPro says of the whole video, the box moov/udta/GPMF; empty where there is none.
+/// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
 std::string gopro_settings(const std::filesystem::path& video);
 
-/// What a sample of a Camera Motion Metadata (CAMM) track says; most say one thing.
+/// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {
   std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
   std::optional<double> readout_s;             ///< from the first row to the last
 };
 
-/// Kinds of samples that are not known are passed over. Throws InputError, which names `source`:
-/// one that is cut, or rates that are no numbers.
+/// Ignores unknown kinds of samples. Throws InputError with `source` for truncated samples and
+/// rates that are not finite.
 CammSample parse_camm(std::string_view bytes, const std::string& source);
 
-/// Where a box of an MP4 or MOV holds what it holds [bytes of the file].
+/// Content of a box of an MP4 or MOV [bytes of the file].
 struct MovieBox {
   std::uint64_t begin = 0, end = 0;
 };
 
-/// The boxes of an MP4 or MOV that FFmpeg passes over. Any other file has none.
+/// Finds boxes of an MP4 or MOV that FFmpeg ignores. Other files have none.
 class MovieFile {
  public:
   explicit MovieFile(const std::filesystem::path& file);
 
   MovieBox all() const { return all_; }
-  /// The first box of that kind inside of another one.
+  /// Finds the first box of a kind inside another one.
   std::optional<MovieBox> box_in(MovieBox outer, std::string_view kind);
-  /// By the kinds of the boxes that hold each other, from the outermost on.
+  /// Finds a nested box by the kinds of all boxes from the outermost on.
   std::optional<MovieBox> box_at(std::initializer_list<std::string_view> kinds);
-  /// Empty where it is larger than 1 MiB, or cannot be read.
+  /// Empty if it is larger than 1 MiB or unreadable.
   std::string bytes_of(MovieBox box);
 
  private:
@@ -68,8 +68,8 @@ class MovieFile {
   MovieBox all_;
 };
 
-/// A value, by its key, of what a box `meta` holds (QuickTime File Format, "Metadata"); a number as
-/// text. Nothing where it has none, or cannot be read.
+/// Finds a value by its key in the content of a box `meta` (QuickTime File Format, "Metadata");
+/// returns numbers as text. nullopt if it is missing or unreadable.
 std::optional<std::string> metadata_value(std::string_view meta, std::string_view key);
 
 }  // namespace gpo

@@ -18,7 +18,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A folder of two pictures.
 class Content : public ::testing::Test {
  protected:
   Content() { write("one"); }
@@ -37,7 +36,7 @@ class Content : public ::testing::Test {
   const TestFolder folder_;
 };
 
-TEST_F(Content, IsTheSameInACopyAndByAnotherSpelling) {
+TEST_F(Content, IsEqualForACopyAndAnotherPath) {
   write("two");
   EXPECT_EQ(content("one"), content("two"));
   EXPECT_EQ(content("one"), content("two/../one/."));
@@ -60,14 +59,14 @@ TEST_F(Content, NamesThePartThatDiffers) {
   write("one");
   cv::Mat noise(48, 64, CV_8UC3);
   cv::randu(noise, 0, 255);
-  folder_.write("one/2.png", noise);  // of another size in bytes
+  folder_.write("one/2.png", noise);  // of another file size
   EXPECT_THAT(differs(), ElementsAre("pictures"));
   write("one");
   folder_.write("one/plane.yaml", std::string("normal: [0, 0, 1]\ndistance: 1\n"));
   EXPECT_THAT(differs(), ElementsAre("plane"));
 }
 
-TEST_F(Content, OfARecipeIsItsTextToo) {
+TEST_F(Content, IncludesARecipesText) {
   Recording made = *open_recording(folder_.path() / "one");
   made.path = folder_.write("one.yaml", std::string("seed: 1"));
   const RecordingContent first = content_of(made);
@@ -75,13 +74,13 @@ TEST_F(Content, OfARecipeIsItsTextToo) {
   EXPECT_THAT(differing_parts(first, content_of(made)), ElementsAre("recipe"));
 }
 
-TEST_F(Content, SaysWhichImageHasGone) {
+TEST_F(Content, NamesAMissingImage) {
   const auto recording = open_recording(folder_.path() / "one");
   fs::remove(folder_.path() / "one" / "2.png");
   EXPECT_THAT(error_of([&] { content_of(*recording); }), HasSubstr("2.png: cannot be read"));
 }
 
-TEST_F(Content, KnowsTheGyroscope) {
+TEST_F(Content, IncludesTheGyroscope) {
   const std::string desk = std::string(GPO_SOURCE_DIR) + "/sequences/desk";
   Recording recording = *open_recording(desk);
   const RecordingContent before = content_of(recording);

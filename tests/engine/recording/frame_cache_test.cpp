@@ -4,13 +4,17 @@
 
 #include "engine/base/error.h"
 
+#include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <semaphore>
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -33,7 +37,7 @@ struct Counted {
             limit) {}
 };
 
-TEST(FrameCache, DecodesAImageOnce) {
+TEST(FrameCache, DecodesAnImageOnce) {
   const Counted counted(10 * kImageBytes);
   EXPECT_EQ(counted.cache.count(), 100);
   const cv::Mat first = counted.cache.bgr(7);
@@ -53,9 +57,9 @@ TEST(FrameCache, StaysWithinItsLimit) {
   EXPECT_EQ(counted.cache.bytes(), 10 * kImageBytes);
 }
 
-TEST(FrameCache, ForgetsTheLeastRecentlyUsed) {
+TEST(FrameCache, DropsTheLeastRecentlyUsed) {
   const Counted counted(3 * kImageBytes);
-  for (const int i : {0, 1, 2, 0, 3}) counted.cache.bgr(i);  // 3 drives out 1
+  for (const int i : {0, 1, 2, 0, 3}) counted.cache.bgr(i);  // 3 replaces 1
   EXPECT_EQ(*counted.decoded, 4);
   for (const int i : {0, 2, 3}) counted.cache.bgr(i);
   EXPECT_EQ(*counted.decoded, 4);
@@ -63,7 +67,7 @@ TEST(FrameCache, ForgetsTheLeastRecentlyUsed) {
   EXPECT_EQ(*counted.decoded, 5);
 }
 
-TEST(FrameCache, HoldsTheNewestImageWhateverTheLimit) {
+TEST(FrameCache, KeepsTheNewestImageBeyondTheLimit) {
   const Counted counted(1);
   counted.cache.bgr(4);
   counted.cache.bgr(5);
@@ -72,7 +76,7 @@ TEST(FrameCache, HoldsTheNewestImageWhateverTheLimit) {
   EXPECT_EQ(counted.cache.bytes(), kImageBytes);
 }
 
-TEST(FrameCache, LetsGoOfAllAndDecodesAgain) {
+TEST(FrameCache, DecodesAgainAfterForget) {
   const Counted counted(10 * kImageBytes);
   for (const int i : {0, 1, 2}) counted.cache.bgr(i);
   const cv::Mat held = counted.cache.bgr(2);
@@ -83,7 +87,7 @@ TEST(FrameCache, LetsGoOfAllAndDecodesAgain) {
   EXPECT_EQ(*counted.decoded, 4);
 }
 
-TEST(FrameCache, GivesManyThreadsTheRightImages) {
+TEST(FrameCache, ReturnsTheRightImagesToManyThreads) {
   const Counted counted(5 * kImageBytes);
   std::atomic<int> wrong = 0;
   {
@@ -101,7 +105,7 @@ TEST(FrameCache, GivesManyThreadsTheRightImages) {
   EXPECT_LE(counted.cache.bytes(), 5 * kImageBytes);
 }
 
-/// Decodes picture 1 only when it is let go; all others at once.
+/// Delays decoding image 1 until `let_go`.
 struct Held {
   std::counting_semaphore<> begun{0}, let_go{0};
   std::atomic<int> decoded = 0;
@@ -115,22 +119,22 @@ struct Held {
                    }};
 };
 
-TEST(FrameCache, GivesOthersWhileOneIsDecoded) {
+TEST(FrameCache, ReturnsOtherImagesWhileOneIsDecoded) {
   Held held;
   held.cache.bgr(0);
   std::jthread slow([&] { held.cache.bgr(1); });
   held.begun.acquire();
   auto others = std::async(std::launch::async, [&] {
-    return held.cache.bgr(0).at<cv::Vec3b>(0, 0)[0] == 0 &&  // kept
-           held.cache.bgr(2).at<cv::Vec3b>(0, 0)[0] == 2 &&  // decoded beside it
+    return held.cache.bgr(0).at<cv::Vec3b>(0, 0)[0] == 0 &&  // cached
+           held.cache.bgr(2).at<cv::Vec3b>(0, 0)[0] == 2 &&  // decoded meanwhile
            !held.cache.find(2).empty() && held.cache.find(1).empty() && held.cache.bytes() > 0;
   });
-  // Were it held up by the slow one this would never be; the test's own time limit says so then.
+  // Times out if the slow thread blocks the others.
   EXPECT_TRUE(others.get());
   held.let_go.release();
 }
 
-TEST(FrameCache, DecodesOnceWhatTwoThreadsAskFor) {
+TEST(FrameCache, DecodesOnceForTwoThreads) {
   Held held;
   {
     std::jthread first([&] { held.cache.bgr(1); });
@@ -142,7 +146,7 @@ TEST(FrameCache, DecodesOnceWhatTwoThreadsAskFor) {
   EXPECT_FALSE(held.begun.try_acquire());
 }
 
-TEST(FrameCache, FindsOnlyWhatIsKept) {
+TEST(FrameCache, FindsOnlyCachedImages) {
   const Counted counted(3 * kImageBytes);
   EXPECT_TRUE(counted.cache.find(7).empty());
   EXPECT_EQ(*counted.decoded, 0);
@@ -151,7 +155,7 @@ TEST(FrameCache, FindsOnlyWhatIsKept) {
   EXPECT_EQ(*counted.decoded, 1);
 }
 
-TEST(FrameCache, LetsTheNextOneTryWhatFailed) {
+TEST(FrameCache, RetriesAfterAnotherThreadFailed) {
   std::counting_semaphore<> begun{0}, let_go{0};
   std::atomic<int> calls = 0;
   const FrameCache cache(3, [&](int index) {
@@ -169,7 +173,7 @@ TEST(FrameCache, LetsTheNextOneTryWhatFailed) {
   EXPECT_EQ(calls, 2);
 }
 
-TEST(FrameCache, ForgetsNothingWhenDecodingFails) {
+TEST(FrameCache, KeepsCachedImagesWhenDecodingFails) {
   int calls = 0;
   const FrameCache cache(
       3,
@@ -182,6 +186,91 @@ TEST(FrameCache, ForgetsNothingWhenDecodingFails) {
   EXPECT_THROW(cache.bgr(1), InputError);
   EXPECT_EQ(cache.bytes(), kImageBytes);
   EXPECT_EQ(cache.bgr(1).at<cv::Vec3b>(0, 0)[0], 1);
+}
+
+constexpr int kCount = 12;
+
+/// Images as bright as their index, which record the order of decoding; `broken` fails.
+class Numbered {
+ public:
+  explicit Numbered(int broken = -1)
+      : cache_(
+            kCount, [this, broken](int index) { return decode(index, broken); }, 1) {}
+
+  const FrameCache& cache() const { return cache_; }
+  std::vector<int> decoded() {
+    const std::scoped_lock lock(mutex_);
+    return decoded_;
+  }
+  void wait_for(int count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&]() { return std::ssize(decoded_) >= count; });
+  }
+
+ private:
+  cv::Mat decode(int index, int broken) {
+    const std::scoped_lock lock(mutex_);
+    decoded_.push_back(index);
+    changed_.notify_all();
+    if (index == broken) throw InputError(fmt::format("picture {}", index));
+    return {4, 4, CV_8UC3, cv::Scalar::all(index)};
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<int> decoded_;
+  FrameCache cache_;
+};
+
+int number(const cv::Mat& gray) {
+  EXPECT_EQ(gray.type(), CV_8UC1);
+  return gray.at<unsigned char>(0, 0);
+}
+
+TEST(ImagesAhead, DecodesEachRequestedImageOnce) {
+  Numbered images;
+  {
+    ImagesAhead ahead(images.cache(), 2, kCount);
+    for (int i = 2; i < kCount; ++i) EXPECT_EQ(number(ahead.gray(i)), i);
+  }
+  EXPECT_EQ(images.decoded(), (std::vector<int>{2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+}
+
+TEST(ImagesAhead, DecodesAFewImagesInAdvance) {
+  Numbered images;
+  {
+    ImagesAhead ahead(images.cache(), 0, kCount);
+    images.wait_for(ImagesAhead::kAhead);
+    EXPECT_EQ(number(ahead.gray(0)), 0);
+    images.wait_for(ImagesAhead::kAhead + 1);
+  }
+  EXPECT_EQ(std::ssize(images.decoded()), ImagesAhead::kAhead + 1);
+}
+
+TEST(ImagesAhead, FailsOnlyForTheBrokenImage) {
+  Numbered images(5);
+  ImagesAhead ahead(images.cache(), 3, kCount);
+  EXPECT_EQ(number(ahead.gray(3)), 3);
+  EXPECT_EQ(number(ahead.gray(4)), 4);
+  EXPECT_THROW(ahead.gray(5), InputError);
+  EXPECT_THROW(ahead.gray(5), InputError);
+  EXPECT_EQ(number(ahead.gray(6)), 6);
+}
+
+TEST(ImagesAhead, ReturnsImagesOutOfOrder) {
+  Numbered images;
+  ImagesAhead ahead(images.cache(), 0, 4);
+  EXPECT_EQ(number(ahead.gray(7)), 7);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(number(ahead.gray(i)), i);
+  EXPECT_EQ(number(ahead.gray(4)), 4);
+  EXPECT_EQ(number(ahead.gray(0)), 0);
+}
+
+TEST(ImagesAhead, EndsAtOnceWithoutRequests) {
+  Numbered images;
+  for (int round = 0; round < 50; ++round) ImagesAhead(images.cache(), 0, kCount);
+  EXPECT_LE(std::ssize(images.decoded()), 50 * ImagesAhead::kAhead);
+  ImagesAhead(images.cache(), 3, 3);
 }
 
 }  // namespace

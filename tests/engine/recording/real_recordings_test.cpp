@@ -16,7 +16,7 @@
 namespace gpo {
 namespace {
 
-/// Recordings that are not ours to publish; each test skips where they are absent.
+/// Recordings that we may not publish. Tests without them are skipped.
 class RealRecordings : public testing::Test {
  protected:
   static std::filesystem::path folder(const std::string& name) {
@@ -36,7 +36,7 @@ TEST_F(RealRecordings, ChessboardFloorHasTruthInEveryFrame) {
   EXPECT_EQ(recording->layout, "pictures");
   ASSERT_EQ(recording->frame_count(), 260);
   EXPECT_NEAR(1e-9 * double(recording->timestamps_ns[24]), 1.0, 1e-6);
-  // Found in each, the fit near the calibration's (0.54 px), the path continuous.
+  // The RMS is near the calibration's (0.54 px), and the path is continuous.
   const auto truth = board_truth(*recording, 0, 260);
   for (int i = 0; i < 260; ++i) {
     ASSERT_TRUE(truth.poses[i]) << i;
@@ -51,7 +51,7 @@ TEST_F(RealRecordings, ChessboardFloorHasTruthInEveryFrame) {
 TEST_F(RealRecordings, ChessboardDarkHasTimesToItsEnd) {
   const auto recording = open("chessboard-dark");
   SKIP_IF_ABSENT(recording);
-  ASSERT_EQ(recording->frame_count(), 386);  // the last two come without a time
+  ASSERT_EQ(recording->frame_count(), 386);  // the last two have no time
   EXPECT_NEAR(1e-9 * double(recording->timestamps_ns.back()), 385 / 29.75, 1e-6);
   const auto truth = board_truth(*recording, 285, 30);
   const auto known =

@@ -12,9 +12,9 @@
 namespace gpo {
 namespace {
 
-const Eigen::Vector3d kBias(-0.0022, 0.0215, 0.0776);  // of EuRoC's gyroscope
+const Eigen::Vector3d kBias(-0.0022, 0.0215, 0.0776);  // EuRoC's
 
-/// Gray noise with some structure, moved by so many pixels.
+/// Smoothed noise, shifted horizontally.
 cv::Mat image(double shift_px) {
   cv::Mat noise(240, 320, CV_8UC3);
   cv::RNG random(3);
@@ -29,8 +29,8 @@ cv::Mat image(double shift_px) {
 struct Made {
   double rest_s = 2;             ///< from the beginning of 4 s
   double noise_rad_s = 0.004;    ///< of a sample
-  double images_px_per_s = 0;  ///< while the gyroscope rests
-  Eigen::Vector3d rate = kBias;  ///< that the gyroscope tells then
+  double images_px_per_s = 0;  ///< during the rest
+  Eigen::Vector3d rate = kBias;  ///< measured during the rest
   std::uint64_t seed = 1;
 };
 
@@ -57,7 +57,7 @@ Recording made(const Made& options) {
   return recording;
 }
 
-TEST(StationaryInterval, TellsTheBias) {
+TEST(StationaryInterval, EstimatesTheBias) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Recording recording = made({.seed = seed});
     const auto rest = find_stationary_interval(recording);
@@ -68,22 +68,22 @@ TEST(StationaryInterval, TellsTheBias) {
   }
 }
 
-TEST(StationaryInterval, IsNoneWhereTheImagesTurn) {
-  // A turntable: the gyroscope says one rate all the time, and it is not its bias.
+TEST(StationaryInterval, IsRejectedIfTheImagesMove) {
+  // On a turntable the constant rate is not the bias.
   EXPECT_FALSE(find_stationary_interval(made({.images_px_per_s = 10})));
 }
 
-TEST(StationaryInterval, IsNoneWhereTheGyroscopeShakes) { EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05}))); }
+TEST(StationaryInterval, IsRejectedIfTheGyroscopeVaries) { EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05}))); }
 
-TEST(StationaryInterval, IsNoneWhereItIsShort) { EXPECT_FALSE(find_stationary_interval(made({.rest_s = 0.5}))); }
+TEST(StationaryInterval, IsRejectedIfItIsShort) { EXPECT_FALSE(find_stationary_interval(made({.rest_s = 0.5}))); }
 
-TEST(StationaryInterval, IsNoneWithoutAGyroscope) {
+TEST(StationaryInterval, IsMissingWithoutAGyroscope) {
   Recording recording = made({});
   recording.gyroscope.reset();
   EXPECT_FALSE(find_stationary_interval(recording));
 }
 
-TEST(StationaryInterval, IsToldByTracksWhereThereAreNoImages) {
+TEST(StationaryInterval, UsesTracksIfThereAreNoImages) {
   Recording recording = made({});
   recording.images.reset();
   EXPECT_FALSE(find_stationary_interval(recording));

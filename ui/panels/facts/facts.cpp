@@ -7,7 +7,7 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board_truth.h"
-#include "engine/recording/camera_source.h"
+#include "engine/recording/layouts/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/result_row.h"

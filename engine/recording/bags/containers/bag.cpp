@@ -3,7 +3,6 @@
 #include "engine/recording/bags/containers/bag.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <numeric>
@@ -24,13 +23,7 @@ void TopicList::add(std::int64_t id,
           : fmt::format("{}/{}", type.substr(0, at), type.substr(at + kOfRos2.size()));
   const auto [found, is_new] =
       by_name_.emplace(std::pair(std::string(name), of_ros_1), static_cast<int>(by_name_.size()));
-  if (is_new) {
-    BagTopic topic;
-    topic.name = name;
-    topic.type = of_ros_1;
-    topic.encoding = encoding;
-    bag_.topics.push_back(std::move(topic));
-  }
+  if (is_new) bag_.topics.push_back({std::string(name), of_ros_1, encoding});
   by_id_[id] = found->second;
 }
 
@@ -40,7 +33,7 @@ void TopicList::add_message(std::int64_t id,
                             std::uint64_t place) {
   const auto found = by_id_.find(id);
   if (found == by_id_.end()) return;
-  // Differences of times fit into their type.
+  // Limited so that differences of times do not overflow.
   const std::int64_t time = std::clamp(recorded_ns, std::int64_t{0}, std::int64_t{1} << 61);
   bag_.messages.push_back({found->second, time, chunk, place});
   ++bag_.topics[found->second].messages;
@@ -73,19 +66,27 @@ void TopicList::finish() {
   });
 }
 
+Bag BagOpening::finish(std::string (*read_message)(const ChunkReader&,
+                                                   const BagMessage&,
+                                                   std::uint64_t)) {
+  topics.finish();
+  bag.read = [chunks = std::shared_ptr<const ChunkReader>(chunks), read_message](
+                 const BagMessage& message, std::uint64_t most_bytes) {
+    return read_message(*chunks, message, most_bytes);
+  };
+  return std::move(bag);
+}
 Bag open_bag(const std::filesystem::path& file) {
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
   if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
   if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
-  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG")) {
+  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
     throw InputError(file.string() +
-                     ": found a bag of an old format, expected version 2.0 (rosbag fix makes one)");
-  }
-  throw InputError(
-      file.string() +
-      ": found no bag, expected one of ROS 1 (version 2.0), MCAP or SQLite's database");
+                     ": found an old bag format, expected version 2.0 (rosbag fix converts)");
+  throw InputError(file.string() +
+                   ": not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");
 }
 
 }  // namespace gpo

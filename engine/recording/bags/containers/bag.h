@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,58 +18,57 @@
 
 namespace gpo {
 
-/// How the bytes of a message are to be read: as ROS 1 writes them, or as ROS 2 does.
+/// Encoding of messages in ROS 1 and in ROS 2.
 enum class MessageEncoding { ros1, cdr, unknown };
 
 struct BagTopic {
   std::string name;  ///< "/cam0/image_raw"
-  std::string type;  ///< "sensor_msgs/Image", of ROS 2 too
+  std::string type;  ///< "sensor_msgs/Image", also for ROS 2
   MessageEncoding encoding = MessageEncoding::unknown;
   std::int64_t messages = 0;
 };
 
-/// Where one message lies.
+/// Place of one message.
 struct BagMessage {
-  int topic = 0;                 ///< of `Bag::topics`
-  std::int64_t recorded_ns = 0;  ///< when it was written, by the recorder's clock
-  std::uint32_t chunk = 0;       ///< what these two mean is the container's secret
+  int topic = 0;                 ///< index in `Bag::topics`
+  std::int64_t recorded_ns = 0;  ///< by the recorder's clock
+  std::uint32_t chunk = 0;       ///< `chunk` and `place` depend on the container
   std::uint64_t place = 0;
 };
 
-/// The index of a bag, whichever container it is. Nothing but it is in memory.
+/// Index of a bag in any container; the messages stay in the file.
 struct Bag {
   std::filesystem::path file;
-  std::vector<BagTopic> topics;      ///< by name
-  std::vector<BagMessage> messages;  ///< as they lie in the file, so that going along is fast
-  std::vector<std::string> notes;    ///< "cut at byte 1000: ..."
-  /// The bytes of a message, or the first `most_bytes` of them. From several threads at once.
-  /// Throws InputError where they are broken.
+  std::vector<BagTopic> topics;      ///< sorted by name
+  std::vector<BagMessage> messages;  ///< in the order of the file, for fast sequential reading
+  std::vector<std::string> notes;    ///< "truncated or broken at byte 1000 of ..."
+  /// Returns the bytes of a message, or the first `most_bytes` of them. Thread-safe. Throws
+  /// InputError if they are broken.
   std::function<std::string(const BagMessage& message, std::uint64_t most_bytes)> read;
 };
 
 inline constexpr std::uint64_t kWholeMessage = UINT64_MAX;
 
-/// Of a picture of 64 million pixels, and then some.
+/// More than an image of 64 million pixels.
 inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{256} << 20;
 
-/// Makes one topic of all connections that have its name and type, and puts topics in order.
+/// Collects a bag's topics: connections with the same name and type are one topic.
 class TopicList {
  public:
   explicit TopicList(Bag& bag) : bag_(bag) {}
 
-  /// What a file calls `id` is this topic; the first word on an id counts. ROS 2's
-  /// "sensor_msgs/msg/Image" is "sensor_msgs/Image" to us.
+  /// Assigns the file's `id` to a topic, unless it is known already. Converts ROS 2's
+  /// "sensor_msgs/msg/Image" to "sensor_msgs/Image".
   void add(std::int64_t id, std::string_view name, std::string_view type, MessageEncoding encoding);
   bool knows(std::int64_t id) const { return by_id_.contains(id); }
-  /// Nothing where the id is unknown.
+  /// Ignores messages with unknown ids.
   void add_message(std::int64_t id,
                    std::int64_t recorded_ns,
                    std::uint32_t chunk,
                    std::uint64_t place);
   void drop_last();
-  /// Forgets the messages.
   void clear_messages();
-  /// Sorts the bag's topics by name, its messages as they lie in the file; the last call.
+  /// Sorts the bag's topics by name and its messages in the order of the file; the last call.
   void finish();
 
  private:
@@ -75,25 +77,122 @@ class TopicList {
   std::map<std::pair<std::string, std::string>, int> by_name_;
 };
 
-class FileBytes;
+/// A file for thread-safe random access.
+class FileBytes {
+ public:
+  /// Throws InputError if it is unreadable or not a regular file.
+  explicit FileBytes(const std::filesystem::path& path);
+  ~FileBytes();
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
 
-/// Opens a bag of any container, told apart by its first bytes. Throws InputError.
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  /// Reads `count` bytes, fewer at the end of the file. Throws InputError.
+  std::string read(std::uint64_t place, std::uint64_t count) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_ = 0;
+};
+
+/// Note for people about a file that is truncated or broken at `place`.
+std::string cut_note(const FileBytes& file, std::uint64_t place);
+
+/// Compression of a bag's chunks.
+enum class Compression { none, bz2, lz4, zstd };
+
+/// Returns the compression by its name in bags; nullopt if unknown.
+std::optional<Compression> compression_named(std::string_view name);
+
+struct Decompressed {
+  std::string bytes;   ///< up to where the input is truncated or broken
+  bool whole = false;  ///< to the end
+};
+
+/// Stops after `most_bytes`, since a few bytes can decompress to very many.
+Decompressed decompress(std::string_view stored, Compression compression, std::size_t most_bytes);
+
+/// A section of a bag with messages.
+struct Chunk {
+  std::uint64_t place = 0;   ///< in the file
+  std::uint64_t stored = 0;  ///< bytes in the file
+  std::uint64_t size = 0;    ///< bytes when decompressed, according to the file
+  Compression compression = Compression::none;
+  std::uint32_t crc32 = 0;  ///< of the decompressed bytes; 0: unknown
+  bool cut = false;         ///< truncated, but read as far as possible
+};
+
+/// Reads parts of a bag's chunks. The last few decompressed ones are cached, so that neighboring
+/// messages cost one decompression. Thread-safe.
+class ChunkReader {
+ public:
+  explicit ChunkReader(std::shared_ptr<const FileBytes> file) : file_(std::move(file)) {}
+
+  std::uint32_t add(const Chunk& chunk);
+  const Chunk& chunk(std::uint32_t number) const { return chunks_[number]; }
+  void clear() { chunks_.clear(); }
+
+  /// Reads `count` bytes, fewer at the end of the chunk. `check_sum` verifies the checksum of an
+  /// uncompressed chunk, too, for which all of it must be read. Throws InputError for a broken
+  /// compressed chunk and a wrong checksum.
+  std::string read(std::uint32_t chunk,
+                   std::uint64_t place,
+                   std::uint64_t count,
+                   bool check_sum = false) const;
+  /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
+  /// complete but has a wrong checksum.
+  Decompressed contents(std::uint32_t chunk) const;
+  /// Throws the InputError for a message that is incomplete.
+  [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
+  /// Accepts that a chunk is truncated.
+  void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
+
+ private:
+  using Cached = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
+
+  std::shared_ptr<const std::string> kept(std::uint32_t chunk) const;
+
+  std::shared_ptr<const FileBytes> file_;
+  std::vector<Chunk> chunks_;
+  mutable std::mutex mutex_;
+  mutable std::list<Cached> recent_;  ///< most recently used first
+};
+
+/// State while the index of a bag with chunks is built.
+struct BagOpening {
+  explicit BagOpening(const std::shared_ptr<const FileBytes>& from)
+      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
+    bag.file = from->path();
+  }
+  /// Completes the bag, whose messages `read_message` reads.
+  Bag finish(std::string (*read_message)(const ChunkReader& chunks,
+                                         const BagMessage& message,
+                                         std::uint64_t most_bytes));
+
+  std::shared_ptr<const FileBytes> file;
+  std::shared_ptr<ChunkReader> chunks;
+  Bag bag;
+  TopicList topics;
+};
+
+/// Opens a bag of any container, recognized by its first bytes. Throws InputError.
 Bag open_bag(const std::filesystem::path& file);
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-/// The index of a ROS 1 bag or of an MCAP file: its own, or, where there is none or it is of no
-/// use, what going through the whole file finds, up to where it is cut or broken. Throws
-/// InputError.
+/// Reads the index of a ROS 1 bag or of an MCAP file. If it is missing or unusable, builds one from
+/// the whole file, up to where it is truncated or broken. Throws InputError.
 Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file);
 Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
 
-/// The index of a ROS 2 bag in a database, `topics` and `messages`; where the file is cut, of what
-/// can be read of it. Throws InputError.
+/// Reads the index of a ROS 2 bag in a database, the tables `topics` and `messages`, as far as a
+/// truncated file is readable. Throws InputError.
 Bag open_sqlite_bag(const std::filesystem::path& file);
 
-/// The kinds of records in an MCAP file.
+/// Kinds of records in an MCAP file.
 enum class McapOp : std::uint8_t {
   header = 1,
   footer = 2,
@@ -107,9 +206,9 @@ enum class McapOp : std::uint8_t {
   data_end = 15
 };
 
-inline constexpr std::uint64_t kMcapRecordHead = 9;  ///< the kind, the length of the content
+inline constexpr std::uint64_t kMcapRecordHead = 9;  ///< kind and length of the content
 
-/// The kinds of records in a ROS 1 bag.
+/// Kinds of records in a ROS 1 bag.
 enum class Ros1Op : std::uint8_t {
   message = 2,
   bag_header = 3,

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/chunk_reader.h"
-
 #include "engine/base/error.h"
+#include "engine/recording/bags/containers/bag.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,7 @@ namespace gpo {
 namespace {
 
 constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
-/// A black picture compresses to next to nothing, a hostile file to less.
+/// Allowance for black images, which compress extremely well.
 constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{32} << 20;
 constexpr std::uint64_t kMostRatio = 256;
 constexpr std::size_t kKeptBytes = std::size_t{64} << 20;
@@ -37,7 +36,7 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
   const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   if (sum == chunk.crc32) return;
   throw InputError(
-      fmt::format("{}: found a broken chunk at byte {}: its sum is {:08x}, expected {:08x}",
+      fmt::format("{}: broken chunk at byte {}: found checksum {:08x}, expected {:08x}",
                   file.path().string(),
                   chunk.place,
                   sum,
@@ -46,15 +45,14 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
 
 constexpr std::size_t kStep = std::size_t{1} << 18;
 
-/// What one step of a library's decoder did.
 struct Step {
   std::size_t read = 0;
   std::size_t written = 0;
-  bool ended = false;  ///< the stream; there is nothing after it
+  bool ended = false;  ///< end of the stream
   bool broken = false;
 };
 
-/// Calls `step(input, output)` until the stream ends, breaks or stands still.
+/// Calls `step(input, output)` until the stream ends, breaks or makes no progress.
 template <class Decoder>
 Decompressed run(std::string_view stored, std::size_t most_bytes, Decoder&& step) {
   Decompressed result;
@@ -83,7 +81,7 @@ Decompressed from_bz2(std::string_view stored, std::size_t most_bytes) {
   const std::unique_ptr<bz_stream, int (*)(bz_stream*)> end(&stream, BZ2_bzDecompressEnd);
   return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
     const auto all = static_cast<unsigned>(std::min(input.size(), kStep));
-    stream.next_in = const_cast<char*>(input.data());  // the library's, only read
+    stream.next_in = const_cast<char*>(input.data());  // bzlib only reads it
     stream.avail_in = all;
     stream.next_out = output.data();
     stream.avail_out = static_cast<unsigned>(output.size());
@@ -127,7 +125,6 @@ struct Method {
   Decompressed (*decompress)(std::string_view stored, std::size_t most_bytes);
 };
 
-/// As `Compression` counts them.
 constexpr std::array<Method, 4> kMethods = {
     {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
 
@@ -152,7 +149,7 @@ Decompressed ChunkReader::contents(std::uint32_t number) const {
 }
 
 std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const {
-  const std::scoped_lock lock(mutex_);  // also while it decompresses: others want the same one
+  const std::scoped_lock lock(mutex_);  // held while decompressing: others wait for the same chunk
   const auto found = std::ranges::find(recent_, number, &Cached::first);
   if (found != recent_.end()) {
     recent_.splice(recent_.begin(), recent_, found);
@@ -160,12 +157,11 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
   }
   Decompressed made = contents(number);
   const Chunk& chunk = chunks_[number];
-  if (!made.whole && !chunk.cut) {
-    throw InputError(fmt::format("{}: found a broken chunk at byte {}, expected one of {} bytes",
+  if (!made.whole && !chunk.cut)
+    throw InputError(fmt::format("{}: broken chunk at byte {}, expected {} bytes",
                                  file_->path().string(),
                                  chunk.place,
                                  chunk.size));
-  }
   recent_.emplace_front(number, std::make_shared<const std::string>(std::move(made.bytes)));
   std::size_t bytes = 0;
   for (auto i = recent_.begin(); i != recent_.end(); ++i) {
@@ -178,7 +174,7 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
 }
 
 void ChunkReader::fail_message(std::uint32_t number, std::uint64_t place) const {
-  throw InputError(fmt::format("{}: found no whole message at byte {} of the chunk at {}",
+  throw InputError(fmt::format("{}: incomplete message at byte {} of the chunk at byte {}",
                                file_->path().string(),
                                place,
                                chunks_[number].place));
@@ -199,10 +195,9 @@ std::string ChunkReader::read(std::uint32_t number,
 }
 
 std::optional<Compression> compression_named(std::string_view name) {
-  if (name.empty()) return Compression::none;  // MCAP's way to say it
-  for (std::size_t i = 0; i < kMethods.size(); ++i) {
+  if (name.empty()) return Compression::none;  // MCAP
+  for (std::size_t i = 0; i < kMethods.size(); ++i)
     if (name == kMethods[i].name) return static_cast<Compression>(i);
-  }
   return std::nullopt;
 }
 
@@ -210,7 +205,7 @@ Decompressed decompress(std::string_view stored, Compression compression, std::s
   return kMethods[static_cast<std::size_t>(compression)].decompress(stored, most_bytes);
 }
 
-// Without O_NONBLOCK opening a pipe would wait for who writes to it.
+// O_NONBLOCK avoids waiting for the writer of a pipe.
 FileBytes::FileBytes(const std::filesystem::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) fail(path);
@@ -218,13 +213,13 @@ FileBytes::FileBytes(const std::filesystem::path& path)
   const bool known = fstat(descriptor_, &about) == 0;
   if (known && S_ISREG(about.st_mode)) {
     size_ = static_cast<std::uint64_t>(about.st_size);
-    // Opening jumps from message to message: what lies between is not wanted.
+    // Opening skips from message to message; readahead would be wasted.
     posix_fadvise(descriptor_, 0, 0, POSIX_FADV_RANDOM);
     return;
   }
   close(descriptor_);
   if (!known) fail(path);
-  throw InputError(path.string() + ": found no regular file, expected a bag");
+  throw InputError(path.string() + ": not a regular file, expected a bag");
 }
 
 FileBytes::~FileBytes() { close(descriptor_); }
@@ -238,7 +233,7 @@ std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
         descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(path_);
-    if (got == 0) break;  // it has become shorter
+    if (got == 0) break;  // the file was shortened
     done += static_cast<std::size_t>(got);
   }
   bytes.resize(done);
@@ -247,7 +242,7 @@ std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
 
 std::string cut_note(const FileBytes& file, std::uint64_t place) {
   return fmt::format(
-      "the bag is cut or broken in what begins at byte {} of {}: it is read up to there",
+      "the bag is truncated or broken in the record at byte {} of {}: later messages are ignored",
       place,
       file.size());
 }

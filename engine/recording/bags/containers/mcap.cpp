@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <functional>
@@ -23,17 +22,16 @@ constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two times
 
-/// A record in a file; its content need not be there to its end.
+/// A record in a file; its content may be truncated.
 struct McapRecord {
   McapOp op{};
-  std::uint64_t place = 0;  ///< of its content
-  std::uint64_t size = 0;   ///< of its content
+  std::uint64_t place = 0;  ///< of the content
+  std::uint64_t size = 0;   ///< of the content
 
   std::uint64_t end() const { return place + size; }
 };
 
-/// The one that begins at `place`; nothing where the file ends before its content, or the content
-/// is larger than any file.
+/// Reads the head of the record at `place`; nullopt if it is truncated or implausibly large.
 std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 62;
   const std::string head = file.read(place, kMcapRecordHead);
@@ -46,7 +44,7 @@ std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place
   return record;
 }
 
-/// False where the last one is cut; it is not handed on.
+/// Calls `look` for each complete record. Returns false if the last one is truncated.
 bool for_each_mcap_record(std::string_view records,
                           const std::function<void(McapOp op, std::string_view content)>& look) {
   ByteCursor cursor(records);
@@ -59,11 +57,10 @@ bool for_each_mcap_record(std::string_view records,
   return true;
 }
 
-/// What the summary says of a chunk.
 struct ChunkEntry {
   std::uint64_t place = 0;
-  std::uint64_t length = 0;        ///< of the record, all of it
-  std::uint64_t index_length = 0;  ///< of the records of its index, which follow it
+  std::uint64_t length = 0;        ///< of the whole record
+  std::uint64_t index_length = 0;  ///< of the index records behind it
 };
 
 struct Summary {
@@ -71,19 +68,12 @@ struct Summary {
   std::optional<std::uint64_t> messages;  ///< in the whole file
 };
 
-/// While its index is made.
-struct Opening {
-  explicit Opening(const std::shared_ptr<const FileBytes>& from)
-      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
-    bag.file = from->path();
-    chunks->add({0, from->size(), from->size()});  // messages may lie outside of all chunks
+struct Opening : BagOpening {
+  explicit Opening(const std::shared_ptr<const FileBytes>& from) : BagOpening(from) {
+    chunks->add({0, from->size(), from->size()});  // for messages outside of all chunks
   }
 
-  std::shared_ptr<const FileBytes> file;
-  std::shared_ptr<ChunkReader> chunks;
-  Bag bag;
-  TopicList topics;
-  std::map<std::uint16_t, std::string> schemas;  ///< their names
+  std::map<std::uint16_t, std::string> schemas;  ///< names
 };
 
 MessageEncoding encoding_named(std::string_view name) {
@@ -115,12 +105,12 @@ ChunkEntry chunk_entry(std::string_view content) {
   ChunkEntry entry;
   entry.place = cursor.number<std::uint64_t>();
   entry.length = cursor.number<std::uint64_t>();
-  cursor.text();  // where each channel's index is
+  cursor.text();  // places of the channels' indices
   entry.index_length = cursor.number<std::uint64_t>();
   return cursor.ok() ? entry : ChunkEntry{};
 }
 
-/// Where the summary lies, or nothing: there is no footer, or no summary.
+/// Reads the summary; nullopt if there is no footer or no valid summary.
 std::optional<std::string> summary_bytes(const FileBytes& file) {
   const std::uint64_t tail = kMcapRecordHead + kFooterBytes + kMcapMagic.size();
   if (file.size() < kMcapMagic.size() + tail) return std::nullopt;
@@ -135,7 +125,7 @@ std::optional<std::string> summary_bytes(const FileBytes& file) {
   const auto expected_sum = cursor.number<std::uint32_t>();
   if (!is_footer || start == 0 || start > footer || footer - start > kMostSummaryBytes)
     return std::nullopt;
-  // The sum is of all from the summary's beginning up to itself.
+  // The checksum covers the summary and the footer up to the checksum itself.
   std::string bytes = file.read(start, file.size() - kMcapMagic.size() - 4 - start);
   const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   if (expected_sum != 0 && sum != expected_sum) return std::nullopt;
@@ -154,7 +144,6 @@ Summary read_summary(Opening& opening, const std::string& bytes) {
   return summary;
 }
 
-/// The head of a chunk's record; nothing where it is cut.
 std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) {
   const std::string head =
       opening.file->read(record.place, std::min<std::uint64_t>(record.size, 256));
@@ -168,16 +157,14 @@ std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) 
   chunk.place = record.place + cursor.place();
   if (!cursor.ok() || chunk.stored > record.size) return std::nullopt;
   const auto compression = compression_named(name);
-  if (!compression || *compression == Compression::bz2) {
-    throw InputError(fmt::format("{}: found the compression \"{}\", expected none, lz4 or zstd",
+  if (!compression || *compression == Compression::bz2)
+    throw InputError(fmt::format("{}: found compression \"{}\", expected none, lz4 or zstd",
                                  opening.bag.file.string(),
                                  name));
-  }
   chunk.compression = *compression;
   return chunk;
 }
 
-/// False where a part of it is broken.
 bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records) {
   bool whole = true;
   const bool read = for_each_mcap_record(records, [&](McapOp op, std::string_view content) {
@@ -195,13 +182,13 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
   return read && whole;
 }
 
-/// False where there is none, or one that does not fit what the file has.
+/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening) {
   const auto bytes = summary_bytes(*opening.file);
   if (!bytes) return false;
   Summary summary = read_summary(opening, *bytes);
   std::ranges::sort(summary.chunks, {}, &ChunkEntry::place);
-  std::uint64_t free = kMcapMagic.size();  // each byte once, or few would stand for very many
+  std::uint64_t free = kMcapMagic.size();  // overlapping chunks could multiply a few bytes
   for (const ChunkEntry& entry : summary.chunks) {
     const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
     if (entry.place < free || entry.length > left || entry.index_length > left - entry.length)
@@ -229,7 +216,6 @@ void add_message(Opening& opening,
   if (cursor.ok()) opening.topics.add_message(channel, time, chunk, place);
 }
 
-/// Goes through what a chunk has; false where it is cut or broken.
 bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const std::uint32_t number = opening.chunks->add(chunk);
   const Decompressed made = opening.chunks->contents(number);
@@ -244,7 +230,7 @@ bool scan_chunk(Opening& opening, const Chunk& chunk) {
   return read && made.whole;
 }
 
-/// One record outside of chunks; false where it is cut or broken.
+/// Scans a record outside of chunks; false if it is truncated or broken.
 bool scan_record(Opening& opening, const McapRecord& record) {
   if (record.op == McapOp::chunk) {
     const auto chunk = chunk_at(opening, record);
@@ -262,7 +248,6 @@ bool scan_record(Opening& opening, const McapRecord& record) {
   return true;
 }
 
-/// Reads the whole file, where there is no index.
 void scan(Opening& opening) {
   std::uint64_t place = kMcapMagic.size();
   bool ended = false;
@@ -272,9 +257,8 @@ void scan(Opening& opening) {
     ended = record->op == McapOp::data_end || record->op == McapOp::footer;
     place = record->end();
   }
-  opening.bag.notes.push_back(
-      ended ? "the bag has no index of all messages: it was read from its beginning to its end"
-            : cut_note(*opening.file, place));
+  opening.bag.notes.push_back(ended ? "the bag has no complete index: read the whole file"
+                                    : cut_note(*opening.file, place));
 }
 
 std::string read_message(const ChunkReader& chunks,
@@ -306,12 +290,7 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
     opening.topics.clear_messages();
     scan(opening);
   }
-  opening.topics.finish();
-  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
-                         const BagMessage& message, std::uint64_t most_bytes) {
-    return read_message(*chunks, message, most_bytes);
-  };
-  return std::move(opening.bag);
+  return opening.finish(read_message);
 }
 
 }  // namespace gpo

@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <functional>
@@ -18,9 +17,9 @@ namespace {
 
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 
-/// Enough for the fields of any record that this program needs, and for most messages after them.
+/// Enough for the fields of all needed records, and for most messages.
 constexpr std::uint64_t kFirstLook = 512;
-/// Callers and topics have names, no more.
+/// Fields contain names at most.
 constexpr std::uint32_t kMostFieldBytes = 1 << 20;
 
 template <class T>
@@ -29,7 +28,6 @@ T number_in(std::optional<std::string_view> field) {
   return ByteCursor(*field).number<T>();
 }
 
-/// The first of fields, each with its length before it, that has this name.
 std::optional<std::string_view> ros1_field(std::string_view fields, std::string_view name) {
   ByteCursor cursor(fields);
   while (cursor.more()) {
@@ -40,23 +38,21 @@ std::optional<std::string_view> ros1_field(std::string_view fields, std::string_
   return std::nullopt;
 }
 
-/// Seconds and nanoseconds, of 4 bytes each.
 std::int64_t ros1_time_ns(std::uint32_t seconds, std::uint32_t nanoseconds) {
   return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
 }
 
-/// A record: fields with names, then data, which need not be there to its end.
+/// A record: named fields, then data, which may be truncated.
 struct Ros1Record {
   std::string fields;
   std::uint64_t data_place = 0;
   std::uint32_t data_size = 0;
 
   std::uint64_t end() const { return data_place + data_size; }
-  /// What "name=" is followed by; nothing where there is no such field.
   std::optional<std::string_view> field(std::string_view name) const {
     return ros1_field(fields, name);
   }
-  // 0 where there is none.
+  // These return 0 if the field is missing.
   std::uint32_t number(std::string_view name) const {
     return number_in<std::uint32_t>(field(name));
   }
@@ -73,10 +69,9 @@ struct Ros1Record {
   }
 };
 
-/// So many bytes from a place on, fewer where there are no more.
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
-/// The one that begins at `place`; nothing where its fields are cut or no fields.
+/// Reads the record at `place`; nullopt if its fields are truncated or invalid.
 std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place) {
   std::string bytes = read(place, kFirstLook);
   const auto length = ByteCursor(bytes).number<std::uint32_t>();
@@ -92,33 +87,18 @@ std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place
   return record;
 }
 
-/// While its index is made.
-struct Opening {
-  explicit Opening(const std::shared_ptr<const FileBytes>& from)
-      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
-    bag.file = from->path();
-  }
+using Opening = BagOpening;
 
-  ReadBytes reader() const {
-    return [&file = *file](auto place, auto count) { return file.read(place, count); };
-  }
-  [[noreturn]] void fail(std::uint64_t place, const std::string& expected) const {
-    throw InputError(fmt::format(
-        "{}: found something else at byte {}, expected {}", bag.file.string(), place, expected));
-  }
-
-  std::shared_ptr<const FileBytes> file;
-  std::shared_ptr<ChunkReader> chunks;
-  Bag bag;
-  TopicList topics;
-};
+ReadBytes reader(const Opening& opening) {
+  return [&file = *opening.file](auto place, auto count) { return file.read(place, count); };
+}
 
 void add_connection(Opening& opening, const Ros1Record& record, const ReadBytes& read) {
   const std::int64_t id = record.number("conn");
   if (record.data_size > kMostDefinitionBytes || opening.topics.knows(id)) return;
   const std::string about = read(record.data_place, record.data_size);
   const auto type = ros1_field(about, "type");
-  // Where a topic was remapped, the record's own field has the name under which it was recorded.
+  // The record's own field has the name after remapping.
   const auto name = record.field("topic");
   if (type && name) opening.topics.add(id, *name, *type, MessageEncoding::ros1);
 }
@@ -127,19 +107,18 @@ Chunk chunk_of(const Opening& opening, const Ros1Record& record) {
   Chunk chunk{record.data_place, record.data_size, record.number("size")};
   const auto name = record.field("compression").value_or("none");
   const auto compression = compression_named(name);
-  if (!compression) {
-    throw InputError(fmt::format("{}: found the compression \"{}\", expected none, bz2 or lz4",
+  if (!compression)
+    throw InputError(fmt::format("{}: found compression \"{}\", expected none, bz2 or lz4",
                                  opening.bag.file.string(),
                                  name));
-  }
   chunk.compression = *compression;
   return chunk;
 }
 
-/// The records of an index, which follow their chunk, up to `end`; false where they are broken.
+/// Reads the index records between a chunk and `end`; false if they are broken.
 bool add_index(Opening& opening, std::uint32_t chunk, std::uint64_t place, std::uint64_t end) {
   while (place < end) {
-    const auto record = ros1_record(opening.reader(), place);
+    const auto record = ros1_record(reader(opening), place);
     if (!record || record->end() > end) return false;
     if (!record->is(Ros1Op::index)) return true;
     const std::int64_t connection = record->number("conn");
@@ -157,9 +136,9 @@ bool add_index(Opening& opening, std::uint32_t chunk, std::uint64_t place, std::
   return true;
 }
 
-/// Connections and the places of all chunks, from the end of the file; false where they are cut.
+/// Reads connections and the places of all chunks from the end of the file; false if truncated.
 bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64_t>& chunk_places) {
-  const ReadBytes read = opening.reader();
+  const ReadBytes read = reader(opening);
   while (place < opening.file->size()) {
     const auto record = ros1_record(read, place);
     if (!record || record->end() > opening.file->size()) return false;
@@ -167,12 +146,12 @@ bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64
     if (record->is(Ros1Op::chunk_info)) chunk_places.push_back(record->position("chunk_pos"));
     place = record->end();
   }
-  // Each chunk once, or a few bytes would stand for very many messages.
+  // Repeated chunks could multiply a few bytes.
   std::ranges::sort(chunk_places);
   return std::ranges::adjacent_find(chunk_places) == chunk_places.end();
 }
 
-/// False where the file has no index, or one that does not fit what it has.
+/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening, const Ros1Record& header) {
   const std::uint64_t index = header.position("index_pos");
   if (index < header.end() || index > opening.file->size()) return false;
@@ -181,7 +160,7 @@ bool read_index(Opening& opening, const Ros1Record& header) {
     return false;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::uint64_t end = i + 1 < places.size() ? places[i + 1] : index;
-    const auto record = ros1_record(opening.reader(), places[i]);
+    const auto record = ros1_record(reader(opening), places[i]);
     if (!record || !record->is(Ros1Op::chunk) || record->end() > end) return false;
     const std::uint32_t chunk = opening.chunks->add(chunk_of(opening, *record));
     if (!add_index(opening, chunk, record->end(), end)) return false;
@@ -189,7 +168,6 @@ bool read_index(Opening& opening, const Ros1Record& header) {
   return true;
 }
 
-/// Goes through the messages of a chunk; false where it is cut or broken.
 bool scan_chunk(Opening& opening, std::uint32_t number) {
   const Chunk chunk = opening.chunks->chunk(number);
   Decompressed made;
@@ -218,9 +196,8 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
   return whole;
 }
 
-/// Reads the whole file, where there is no index.
 void scan(Opening& opening, std::uint64_t place) {
-  const ReadBytes read = opening.reader();
+  const ReadBytes read = reader(opening);
   while (place < opening.file->size()) {
     const auto record = ros1_record(read, place);
     if (!record) break;
@@ -231,9 +208,8 @@ void scan(Opening& opening, std::uint64_t place) {
     place = record->end();
   }
   const bool whole = place == opening.file->size();
-  opening.bag.notes.push_back(
-      whole ? "the bag has no index: it was read from its beginning to its end"
-            : cut_note(*opening.file, place));
+  opening.bag.notes.push_back(whole ? "the bag has no index: read the whole file"
+                                    : cut_note(*opening.file, place));
 }
 
 std::string read_message(const ChunkReader& chunks,
@@ -259,20 +235,17 @@ std::string read_message(const ChunkReader& chunks,
 Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
   using namespace ros1;
   Opening opening(file);
-  const auto header = ros1_record(opening.reader(), kRos1Magic.size());
+  const auto header = ros1_record(reader(opening), kRos1Magic.size());
   if (!header || !header->is(Ros1Op::bag_header))
-    opening.fail(kRos1Magic.size(), "the header of a ROS 1 bag");
+    throw InputError(fmt::format("{}: found no header of a ROS 1 bag at byte {}",
+                                 opening.bag.file.string(),
+                                 kRos1Magic.size()));
   if (!read_index(opening, *header)) {
     opening.topics.clear_messages();
     opening.chunks->clear();
     scan(opening, header->end());
   }
-  opening.topics.finish();
-  opening.bag.read = [chunks = std::shared_ptr<const ChunkReader>(opening.chunks)](
-                         const BagMessage& message, std::uint64_t most_bytes) {
-    return read_message(*chunks, message, most_bytes);
-  };
-  return std::move(opening.bag);
+  return opening.finish(read_message);
 }
 
 }  // namespace gpo

@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/containers/chunk_reader.h"
 
 #include <algorithm>
 #include <memory>
@@ -20,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kLeastRowBytes = 8;  ///< in the file: no row takes less
-constexpr int kMostTextBytes = 100'000;      ///< of a name, and of a table's definition
+constexpr std::uint64_t kLeastRowBytes = 8;  ///< smallest row in the file
+constexpr int kMostTextBytes = 100'000;      ///< of a name or a table's definition
 constexpr int kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1000;
 
@@ -29,14 +28,12 @@ using Database = std::shared_ptr<sqlite3>;
 using Query = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
 [[noreturn]] void fail(const fs::path& file, const Database& database) {
-  throw InputError(
-      fmt::format("{}: found a database that cannot be read ({}), expected a ROS 2 bag",
-                  file.string(),
-                  sqlite3_errmsg(database.get())));
+  throw InputError(fmt::format("{}: unreadable database ({}), expected a ROS 2 bag",
+                               file.string(),
+                               sqlite3_errmsg(database.get())));
 }
 
-/// As an address of SQLite's, which takes options: nobody writes to the file while it is read,
-/// unless there is a log of changes beside it.
+/// Returns SQLite's URI of a file, immutable unless there is a write-ahead log beside it.
 std::string address_of(const fs::path& file) {
   std::string address = "file:";
   for (const char c : fs::absolute(file).string()) {
@@ -56,7 +53,7 @@ Database open_database(const fs::path& file) {
   if (code != SQLITE_OK) fail(file, database);
   sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, kMostTextBytes);
   sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  // With it SQLite reads what is left of a file that is shorter than it says.
+  // Lets SQLite read truncated files.
   sqlite3_exec(opened, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
   return database;
 }
@@ -74,17 +71,16 @@ std::string text_of(const Query& row, int column) {
   return text == nullptr ? "" : std::string(reinterpret_cast<const char*>(text), size);
 }
 
-/// A view could be a query without end, a virtual table any code.
+/// Refuses views, which can be endless queries, and virtual tables, which can run code.
 void check_is_table(const fs::path& file, const Database& database, const std::string& name) {
   const Query query = prepare(
       file, database, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?1 LIMIT 1");
   sqlite3_bind_text(query.get(), 1, name.c_str(), -1, SQLITE_TRANSIENT);
   const int code = sqlite3_step(query.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) fail(file, database);
-  const bool found = code == SQLITE_ROW && text_of(query, 0).starts_with("CREATE TABLE");
-  if (found) return;
-  throw InputError(fmt::format(
-      "{}: found a database without the table `{}`, expected a ROS 2 bag", file.string(), name));
+  if (code == SQLITE_ROW && text_of(query, 0).starts_with("CREATE TABLE")) return;
+  throw InputError(
+      fmt::format("{}: the database has no table `{}`, expected a ROS 2 bag", file.string(), name));
 }
 
 void add_topics(const fs::path& file, const Database& database, TopicList& topics) {
@@ -102,7 +98,8 @@ void add_topics(const fs::path& file, const Database& database, TopicList& topic
   if (code != SQLITE_DONE) fail(file, database);
 }
 
-/// In the order of the rows, without looking at their data. Returns whether all could be read.
+/// Adds the messages in the order of rows without reading their data. Returns whether all rows were
+/// readable.
 bool add_messages(const fs::path& file, const Database& database, TopicList& topics) {
   const Query query = prepare(
       file, database, "SELECT rowid, topic_id, timestamp FROM messages NOT INDEXED ORDER BY rowid");
@@ -113,7 +110,7 @@ bool add_messages(const fs::path& file, const Database& database, TopicList& top
     code = sqlite3_step(query.get());
     if (code != SQLITE_ROW) break;
     const std::int64_t id = sqlite3_column_int64(query.get(), 0);
-    if (last && id <= *last) return false;  // pages that lead in circles
+    if (last && id <= *last) return false;  // cyclic pages
     last = id;
     topics.add_message(sqlite3_column_int64(query.get(), 1),
                        sqlite3_column_int64(query.get(), 2),
@@ -123,7 +120,7 @@ bool add_messages(const fs::path& file, const Database& database, TopicList& top
   return code == SQLITE_DONE;
 }
 
-/// Reads messages by rows; moving a handle is faster than opening one.
+/// Reads messages by rows; reopening a handle is faster than opening a new one.
 class RowReader {
  public:
   RowReader(fs::path file, Database database)
@@ -187,9 +184,9 @@ Bag open_sqlite_bag(const fs::path& file) {
   add_topics(file, database, topics);
   const auto rows = std::make_shared<RowReader>(file, database);
   if (!add_messages(file, database, topics)) {
-    // The last row may begin before the cut and end behind it.
+    // The last row may be partly missing.
     while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
-    bag.notes.push_back(fmt::format("the bag is cut or broken: {} messages of it can be read",
+    bag.notes.push_back(fmt::format("the bag is truncated or broken: only {} messages are readable",
                                     bag.messages.size()));
   }
   topics.finish();

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/recording/bags/bag_image.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 
@@ -23,7 +22,7 @@ INSTANTIATE_TEST_SUITE_P(Encodings,
                          Messages,
                          testing::Values(MessageEncoding::ros1, MessageEncoding::cdr));
 
-TEST_P(Messages, AreReadAsTheyWereWritten) {
+TEST_P(Messages, AreReadAsWritten) {
   const MessageHeader header{1'403'715'286'762'142'976, "odd"};
   const auto imu = read_imu(imu_bytes({header, {1, 2, 3}, {4, 5, 6}}, GetParam()), GetParam());
   ASSERT_TRUE(imu);
@@ -52,16 +51,16 @@ TEST_P(Messages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(image->encoding, "mono8");
 }
 
-TEST_P(Messages, ThatAreCutAreNone) {
+TEST_P(Messages, AreMissingIfTruncated) {
   const std::string imu = imu_bytes({{1, "imu"}, {1, 2, 3}, {4, 5, 6}}, GetParam());
-  // All but the covariance at its end, which nobody asks for.
+  // The covariance at the end is not read.
   const std::size_t needed = imu.size() - 9 * sizeof(double);
   for (std::size_t size = 0; size < needed; ++size)
     EXPECT_FALSE(read_imu(imu.substr(0, size), GetParam())) << size;
   EXPECT_TRUE(read_imu(imu.substr(0, needed), GetParam()));
 }
 
-TEST_P(Messages, CalibrationSurvives) {
+TEST_P(Messages, PreserveTheCalibration) {
   for (const auto& [model, coefficients] :
        {std::pair(Distortion::radial_tangential, std::vector<double>{0.1, 0.2, 0.3, 0.4}),
         std::pair(Distortion::radial_tangential, std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5}),
@@ -98,7 +97,7 @@ TEST(MessagesOfRos2, MayBeBigEndian) {
   EXPECT_FALSE(pose->pose());  // no unit quaternion
 }
 
-TEST(CameraInfo, RefusesWhatIsNoCamera) {
+TEST(CameraInfo, RefusesUnsupportedCameras) {
   const auto info = [](auto change) {
     CameraInfoMessage message = camera_info_of(test::small_camera());
     change(message);
@@ -108,12 +107,14 @@ TEST(CameraInfo, RefusesWhatIsNoCamera) {
               HasSubstr("bag: /info: `distortion_model`: found \"fov\", expected plumb_bob"));
   EXPECT_THAT(info([](auto& m) { m.D.resize(7, 1); }),
               HasSubstr("`D`: found 7 numbers, expected 4 or 5"));
-  EXPECT_THAT(info([](auto& m) { m.K[0] = -1; }), HasSubstr("`K`: found a focal length"));
+  EXPECT_THAT(info([](auto& m) { m.K[0] = -1; }),
+              HasSubstr("`K`: found -1, 61, expected plausible fx"));
   EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found another matrix"));
-  EXPECT_THAT(info([](auto& m) { m.K[2] = 1e5; }), HasSubstr("`K`: found a principal point"));
+  EXPECT_THAT(info([](auto& m) { m.K[2] = 1e5; }),
+              HasSubstr("`K`: found 100000, 23.5, expected cx, cy"));
 }
 
-/// One pixel in the middle of a picture of one color.
+/// Returns the middle pixel of a uniform image; `pattern` has the bytes of two rows, repeated.
 cv::Vec<double, 3> middle_pixel(const std::string& encoding,
                                 const std::string& pattern,
                                 int channels,
@@ -135,8 +136,7 @@ cv::Vec<double, 3> middle_pixel(const std::string& encoding,
   return image.at<cv::Vec3b>(4, 4);
 }
 
-/// `pattern`: the bytes of two rows, each repeated.
-TEST(BagImage, KnowsRosEncodings) {
+TEST(BagImage, DecodesRosEncodings) {
   const cv::Vec<double, 3> red(10, 20, 200);  // blue, green, red
   const std::string r = "\xC8", g = "\x14", b = "\x0A";
   EXPECT_EQ(middle_pixel("bgr8", b + g + r + b + g + r, 3, 1), red);
@@ -151,25 +151,24 @@ TEST(BagImage, KnowsRosEncodings) {
   EXPECT_EQ(middle_pixel("mono16", gray16 + gray16, 1, 2), cv::Vec3d(276, 276, 276));
 }
 
-TEST(BagImage, RefusesWhatIsNone) {
+TEST(BagImage, RefusesInvalidImages) {
   const auto error = [](ImageMessage image) {
     const std::string bytes = image_bytes(image, MessageEncoding::ros1);
     return test::error_of([&] {
-      bag_image(
-          bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "bag: /c: picture 3");
+      bag_image(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "bag: /c: image 3");
     });
   };
   const std::string pixels(20, 'x');
   ImageMessage image = test::image_of(0, pixels, 5, 4);
   image.encoding = "32FC1";
-  EXPECT_THAT(error(image), HasSubstr("bag: /c: picture 3: found pixels encoded as \"32FC1\""));
+  EXPECT_THAT(error(image), HasSubstr("bag: /c: image 3: found pixel encoding \"32FC1\""));
   image = test::image_of(0, pixels, 5, 5);
-  EXPECT_THAT(error(image), HasSubstr("found 20 bytes in rows of 5, expected a picture of 5x5"));
+  EXPECT_THAT(error(image), HasSubstr("found 20 bytes in rows of 5, expected an image of 5x5"));
   image = test::image_of(0, pixels, 65535, 65535);
-  EXPECT_THAT(error(image), HasSubstr("found a picture of 65535x65535, expected at most"));
+  EXPECT_THAT(error(image), HasSubstr("found an image of 65535x65535, expected at most"));
 }
 
-TEST(FrameTree, GoesAlongTransformsInBothDirections) {
+TEST(FrameTree, FollowsTransformsInBothDirections) {
   const std::vector<PoseMessage> transforms = {
       {{0, "base"}, "/imu", {1, 0, 0}, {0, 0, 0, 1}},
       {{0, "base"}, "mount", {0, 2, 0}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},

@@ -16,7 +16,7 @@ namespace gpo::test {
 inline constexpr std::int64_t kStart_ns = 1'403'715'286'762'142'976;
 inline constexpr std::int64_t kPeriod_ns = 50'000'000;
 
-/// Pixels that differ from picture to picture, and that nothing compresses.
+/// Returns incompressible pixels that differ between images.
 inline std::string pixels_of(int image, int width, int height, int channels = 1) {
   std::string pixels;
   auto noise = static_cast<std::uint32_t>(image);
@@ -59,8 +59,8 @@ inline std::string camera_info_of(MessageEncoding encoding, const Camera& camera
 using OpenWriter =
     std::function<BagWriter(const std::filesystem::path&, const std::vector<WrittenTopic>&)>;
 
-/// A bag of some pictures of 64x48, with calibration, gyroscope, truth and where all these are:
-/// as it would be recorded, 3 ms after each message's own time.
+/// Writes a bag with images of 64x48, calibration, gyroscope, truth and the transforms between
+/// them, recorded 3 ms after each message's time stamp.
 inline std::filesystem::path write_small_bag(const std::filesystem::path& file,
                                              const OpenWriter& open,
                                              int images = 20) {

@@ -6,64 +6,35 @@
 #include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
-/// Four tags by three, as Kalibr prints them; and one tag.
+using test::large_lens;
+using test::looking_at;
+
+/// Kalibr's grid of 4 x 3 tags, and a single tag.
 const Board kGrid{8, 6, 0.05, {}, BoardTags{0.3, 2, {}}};
 const Board kTag{2, 2, 0.1, {}, BoardTags{0, 1, 7}};
 
-Camera tag_camera() {
-  return {640, 480, 600, 603, 318, 243, Distortion::radial_tangential, {-0.15, 0.04, 1e-3, 5e-4}};
-}
-
-/// At the middle of the board's corners.
-Pose looking_at_tags(const Board& board, double distance, double tilt_deg, double roll_deg) {
-  const Eigen::Vector3d middle = board_points(board).back() / 2;
-  const Eigen::Matrix3d R =
-      so3_exp({radians(tilt_deg), 0.3 * radians(tilt_deg), 0}) * so3_exp({0, 0, radians(roll_deg)});
-  return {R, middle - distance * R.col(2)};
-}
-
 cv::Mat tag_image(const Board& board, const Pose& pose, bool squares = true) {
   cv::Mat gray = test::render_plane(
-      tag_camera(), pose, [&](double x, double y) { return test::tag_gray(board, x, y, squares); });
+      large_lens(), pose, [&](double x, double y) { return test::tag_gray(board, x, y, squares); });
   cv::GaussianBlur(gray, gray, {}, 0.7);
   return gray;
 }
 
-/// Of the corners that are seen.
-struct TagErrors {
-  int seen = 0;
-  double rms_px = 0;
-  double largest_px = 0;
-};
-TagErrors tag_errors(const std::vector<Eigen::Vector2d>& corners,
-                     const Board& board,
-                     const Pose& pose) {
-  TagErrors result;
-  const auto truth = project_board(board, tag_camera(), pose);
-  double squares = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!corners[i].allFinite()) continue;
-    ++result.seen;
-    const double error = (corners[i] - truth[i]).norm();
-    squares += error * error;
-    result.largest_px = std::max(result.largest_px, error);
-  }
-  result.rms_px = std::sqrt(squares / std::max(1, result.seen));
-  return result;
+test::CornerErrors tag_errors(const std::vector<Eigen::Vector2d>& corners,
+                              const Board& board,
+                              const Pose& pose) {
+  return test::corner_errors(corners, board, large_lens(), pose);
 }
 
-TEST(AprilGrid, CornersAreThoseOfKalibrsBoardFromAllSides) {
+TEST(AprilGrid, FindsTheCornersOfKalibrsBoardForAnyRoll) {
   for (const int roll : {0, 45, 100, 190, 280}) {
-    const Pose truth = looking_at_tags(kGrid, 0.55, 25, roll);
+    const Pose truth = looking_at(kGrid, 0.55, 25, roll);
     const auto [seen, rms_px, largest_px] =
         tag_errors(find_board(tag_image(kGrid, truth), kGrid), kGrid, truth);
     EXPECT_EQ(seen, 48) << roll;
@@ -73,8 +44,8 @@ TEST(AprilGrid, CornersAreThoseOfKalibrsBoardFromAllSides) {
   }
 }
 
-TEST(AprilGrid, PartOfTheBoardGivesAPose) {
-  const Pose truth = looking_at_tags(kGrid, 0.55, 20, 10);
+TEST(AprilGrid, EstimatesThePoseFromPartOfTheBoard) {
+  const Pose truth = looking_at(kGrid, 0.55, 20, 10);
   cv::Mat covered = tag_image(kGrid, truth);
   cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
   const auto corners = find_board(covered, kGrid);
@@ -82,15 +53,15 @@ TEST(AprilGrid, PartOfTheBoardGivesAPose) {
   EXPECT_GE(seen, 8);
   EXPECT_LE(seen, 28);
   EXPECT_LT(rms_px, 0.1);
-  const auto pose = board_pose(corners, kGrid, tag_camera());
+  const auto pose = board_pose(corners, kGrid, large_lens());
   ASSERT_TRUE(pose);
   EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 2e-3);
 }
 
-TEST(AprilGrid, NarrowBordersWithoutSquaresAreFoundToo) {
+TEST(AprilGrid, FindsTagsWithNarrowBordersAndWithoutSquares) {
   Board board = kGrid;
   board.tags->border = 1;
-  const Pose truth = looking_at_tags(board, 0.55, 25, 15);
+  const Pose truth = looking_at(board, 0.55, 25, 15);
   const auto [seen, rms_px, largest_px] =
       tag_errors(find_board(tag_image(board, truth, false), board), board, truth);
   EXPECT_EQ(seen, 48);
@@ -98,20 +69,20 @@ TEST(AprilGrid, NarrowBordersWithoutSquaresAreFoundToo) {
   EXPECT_TRUE(find_board(tag_image(board, truth, false), kGrid).empty()) << "borders of two bits";
 }
 
-TEST(AprilGrid, IsNotFoundInOtherImages) {
+TEST(AprilGrid, FindsNothingInImagesWithoutTheBoard) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kGrid).empty());
-  const Pose truth = looking_at_tags(kTag, 0.5, 10, 0);
+  const Pose truth = looking_at(kTag, 0.5, 10, 0);
   EXPECT_TRUE(find_board(tag_image(kTag, truth), kGrid).empty());
 }
 
-TEST(AprilTag, OneTagGivesAPoseAndItsNumberCounts) {
+TEST(AprilTag, EstimatesThePoseFromOneTagWithTheRightNumber) {
   for (const int roll : {0, 90, 200}) {
-    const Pose truth = looking_at_tags(kTag, 0.5, 30, roll);
+    const Pose truth = looking_at(kTag, 0.5, 30, roll);
     const cv::Mat gray = tag_image(kTag, truth);
     const auto corners = find_board(gray, kTag);
     ASSERT_EQ(corners.size(), 4U);
     EXPECT_LT(tag_errors(corners, kTag, truth).largest_px, 0.3) << roll;
-    const auto pose = board_pose(corners, kTag, tag_camera());
+    const auto pose = board_pose(corners, kTag, large_lens());
     ASSERT_TRUE(pose);
     EXPECT_LT(degrees(so3_log(pose->pose.R_wc.transpose() * truth.R_wc).norm()), 1.0);
     EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 0.01);
@@ -123,7 +94,7 @@ TEST(AprilTag, OneTagGivesAPoseAndItsNumberCounts) {
   }
 }
 
-TEST(AprilGrid, PointsAreKalibrsFromTheTopRowOn) {
+TEST(AprilGrid, PointsHaveKalibrsSpacingFromTheTopRowDown) {
   const auto points = board_points(kGrid);
   ASSERT_EQ(points.size(), 48U);
   EXPECT_NEAR((points[1] - Eigen::Vector3d(0.05, 0, 0)).norm(), 0, 1e-12);

@@ -6,6 +6,7 @@
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <thread>
 
@@ -25,7 +26,7 @@ class BoardCache : public testing::Test {
     folder_.write("2.png", "not decoded either");
   }
 
-  /// Its pictures count how often they are looked at.
+  /// A recording that counts decoded images.
   Recording recording(int frames = 8) {
     Recording recording;
     recording.camera = {160, 120, 150, 151, 79.5, 60, Distortion::none, {}};
@@ -54,17 +55,17 @@ class BoardCache : public testing::Test {
   }
 
   test::TestFolder folder_;
-  int decoded_ = 0;  ///< the frame cache decodes under a lock
+  std::atomic<int> decoded_ = 0;
 };
 
-TEST_F(BoardCache, LooksAtEachFrameOnce) {
+TEST_F(BoardCache, ProcessesEachFrameOnce) {
   EXPECT_EQ(decoded_for(0, 32, 40), 32);
   EXPECT_EQ(decoded_for(0, 32, 40), 0);
   EXPECT_EQ(decoded_for(5, 31, 40), 4);  // frames 32 to 35
   EXPECT_TRUE(fs::is_directory(folder_.path() / "cache/boards"));
 }
 
-TEST_F(BoardCache, GivesWhatLookingGave) {
+TEST_F(BoardCache, ReturnsTheSameResultsAgain) {
   const GroundTruth first = board_truth(recording(), 0, 8);
   const GroundTruth again = board_truth(recording(), 0, 8);
   for (int i = 0; i < 8; ++i) {
@@ -76,7 +77,7 @@ TEST_F(BoardCache, GivesWhatLookingGave) {
   }
 }
 
-TEST_F(BoardCache, IsOfTheseImagesThisCameraAndThisBoard) {
+TEST_F(BoardCache, DependsOnImagesCameraAndBoard) {
   const Recording one = recording();
   const auto file = board_cache_file(one);
   EXPECT_EQ(board_cache_file(one), file);
@@ -97,7 +98,7 @@ TEST_F(BoardCache, IsOfTheseImagesThisCameraAndThisBoard) {
   EXPECT_FALSE(board_cache_file(one));
 }
 
-TEST_F(BoardCache, IsMadeAnewWhereItIsCutDamagedOrForeign) {
+TEST_F(BoardCache, IsRebuiltIfTruncatedDamagedOrForeign) {
   const auto file = *board_cache_file(recording());
   EXPECT_EQ(decoded_for(0, 4), 8);
   const std::string whole = folder_.read(fs::relative(file, folder_.path()).string());
@@ -118,13 +119,13 @@ TEST_F(BoardCache, IsMadeAnewWhereItIsCutDamagedOrForeign) {
   EXPECT_EQ(decoded_for(0, 4), 0);  // the last one was renewed
 }
 
-TEST_F(BoardCache, IsNoErrorWhereItCannotBeWritten) {
+TEST_F(BoardCache, IgnoresAFolderThatCannotBeWritten) {
   folder_.write("cache", "a file where the folder should be");
   EXPECT_EQ(decoded_for(0, 4), 8);
   EXPECT_EQ(decoded_for(0, 4), 8);
 }
 
-TEST_F(BoardCache, KeepsWhatWasFoundBeforeAStop) {
+TEST_F(BoardCache, KeepsResultsFromBeforeAStop) {
   constexpr int kFrames = 40;
   const Recording stopped = recording(kFrames);
   std::stop_source stop;
@@ -137,8 +138,8 @@ TEST_F(BoardCache, KeepsWhatWasFoundBeforeAStop) {
   EXPECT_EQ(decoded_for(0, kFrames, kFrames), kFrames - seen);
 }
 
-// One may lose what the other wrote meanwhile; that is looked for again.
-TEST_F(BoardCache, OfTwoAtOnceIsNeverBroken) {
+// A writer may lose frames of the other, which are then processed again.
+TEST_F(BoardCache, StaysValidWithTwoWriters) {
   const auto file = *board_cache_file(recording());
   save_board_views(file, {{0, std::nullopt}});
   const auto write = [&](int first) {
@@ -152,10 +153,10 @@ TEST_F(BoardCache, OfTwoAtOnceIsNeverBroken) {
     const std::jthread two([&] { write(51); });
   }
   const BoardViews views = load_board_views(file);
-  EXPECT_TRUE(views.contains(50) || views.contains(100));  // whoever was last
+  EXPECT_TRUE(views.contains(50) || views.contains(100));  // the last writer's
 }
 
-TEST_F(BoardCache, IsNotThereUnlessAskedFor) {
+TEST_F(BoardCache, WritesNothingUnlessRequested) {
   setenv("XDG_CACHE_HOME", (folder_.path() / "home").c_str(), 1);
   setenv("HOME", (folder_.path() / "home").c_str(), 1);
   Recording unasked = recording();

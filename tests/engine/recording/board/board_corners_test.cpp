@@ -20,15 +20,10 @@ double largest_error(const std::vector<Eigen::Vector2d>& corners,
                      const Board& board,
                      const Camera& camera,
                      const Pose& pose) {
-  double largest = 0;
-  const auto truth = project_board(board, camera, pose);
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    largest = std::max(largest, (corners[i] - truth[i]).norm());
-  }
-  return largest;
+  return test::corner_errors(corners, board, camera, pose).largest_px;
 }
 
-TEST(BoardCorners, AreFoundThroughALens) {
+TEST(BoardCorners, FindsAllCornersThroughALens) {
   for (const double tilt : {-35.0, 10.0, 40.0}) {
     const Pose truth = looking_at(kChessboard, 0.35, tilt, 20);
     const auto corners = find_board(render_board(kChessboard, small_lens(), truth), kChessboard);
@@ -37,8 +32,7 @@ TEST(BoardCorners, AreFoundThroughALens) {
   }
 }
 
-TEST(BoardCorners, TellTheTwoEndsByColor) {
-  // Whatever way the camera is rolled.
+TEST(BoardCorners, FirstCornerIsBesideADarkSquareForAnyRoll) {
   for (int roll = 0; roll < 360; roll += 45) {
     const Pose truth = looking_at(kChessboard, 0.4, 15, roll);
     const auto corners = find_board(render_board(kChessboard, small_pinhole(), truth), kChessboard);
@@ -47,22 +41,21 @@ TEST(BoardCorners, TellTheTwoEndsByColor) {
   }
 }
 
-TEST(BoardCorners, OfATwinBeginWhereRowsRunToTheRight) {
-  const Board twin{8, 6, 0.025};  // turned by 180 degrees it looks the same
+TEST(BoardCorners, RowsRunToTheRightOnASymmetricBoard) {
   for (int roll = 0; roll < 360; roll += 40) {
-    const Pose truth = looking_at(twin, 0.4, 15, roll);
-    const auto corners = find_board(render_board(twin, small_pinhole(), truth), twin);
+    const Pose truth = looking_at(test::kTwin, 0.4, 15, roll);
+    const auto corners = find_board(render_board(test::kTwin, small_pinhole(), truth), test::kTwin);
     ASSERT_FALSE(corners.empty()) << roll;
     EXPECT_GT(corners[7].x(), corners[0].x());
     double nearest = 1e9;
-    for (const Pose& symmetry : board_symmetries(twin)) {
-      nearest = std::min(nearest, largest_error(corners, twin, small_pinhole(), symmetry * truth));
-    }
+    for (const Pose& symmetry : board_symmetries(test::kTwin))
+      nearest =
+          std::min(nearest, largest_error(corners, test::kTwin, small_pinhole(), symmetry * truth));
     EXPECT_LT(nearest, 0.5) << roll;
   }
 }
 
-TEST(BoardCorners, AreNotFoundInOtherImages) {
+TEST(BoardCorners, FindsNothingInImagesWithoutTheBoard) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kChessboard).empty());
   cv::Mat noise(240, 320, CV_8UC1);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);

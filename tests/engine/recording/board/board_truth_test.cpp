@@ -25,17 +25,16 @@ using test::rotation_error_deg;
 using test::small_pinhole;
 using testing::ElementsAre;
 
-/// The camera rolls by 20 degrees a frame; frame 2 does not show the board.
+/// The camera rolls by 20 deg per frame; frame 2 does not show the board.
 Recording rolling_recording(const Board& board, int frames) {
   Recording recording;
   recording.camera = small_pinhole();
   recording.board = board;
   const auto decode = [board](int index) {
     cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
-    if (index != 2) {
+    if (index != 2)
       image =
           test::render_board(board, small_pinhole(), looking_at(board, 0.4, 15, 20.0 * index));
-    }
     cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
     return image;
   };
@@ -44,7 +43,7 @@ Recording rolling_recording(const Board& board, int frames) {
   return recording;
 }
 
-TEST(BoardTruth, GivesThePosesOfTheFramesAskedFor) {
+TEST(BoardTruth, ReturnsThePosesOfTheRequestedFrames) {
   const Recording recording = rolling_recording(kTwin, 6);
   std::vector<int> seen;
   const auto truth =
@@ -63,8 +62,8 @@ TEST(BoardTruth, GivesThePosesOfTheFramesAskedFor) {
   EXPECT_THAT(seen, ElementsAre(15, 25, 35, 45, 55));  // one more for the median of the RMS
 }
 
-TEST(BoardTruth, KeepsItsEndsWhileTheCameraRollsUpsideDownAndBeyond) {
-  // Nothing but continuity tells the ends of the first and of the last two.
+TEST(BoardTruth, KeepsTheBoardsEndsWhileTheCameraRollsOver) {
+  // Only continuity distinguishes the ends of these boards.
   for (const Board& board : {kTwin, Board{5, 5, 0.03}, Board{6, 6, 0.025}}) {
     const auto truth = board_truth(rolling_recording(board, 19), 0, 19);
     for (int i = 0; i < 19; ++i) {
@@ -80,7 +79,7 @@ TEST(BoardTruth, KeepsItsEndsWhileTheCameraRollsUpsideDownAndBeyond) {
   }
 }
 
-TEST(BoardTruth, StopsAfterTheFramesAtWork) {
+TEST(BoardTruth, StopsAfterTheFramesInWork) {
   const Recording recording = rolling_recording(kTwin, 40);
   std::stop_source stop;
   int frames = 0;
@@ -93,21 +92,21 @@ TEST(BoardTruth, StopsAfterTheFramesAtWork) {
   EXPECT_FALSE(truth.poses[39]);
 }
 
-TEST(BoardTruth, PassesOnWhatDecodingThrows) {
+TEST(BoardTruth, PassesOnDecodingErrors) {
   Recording recording = rolling_recording(kTwin, 6);
   recording.images = std::make_shared<const FrameCache>(6, [](int index) -> cv::Mat {
-    if (index == 3) throw InputError("video.mp4: frame 3: found nothing to decode");
+    if (index == 3) throw InputError("video.mp4: frame 3 cannot be decoded");
     return cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(90));
   });
   EXPECT_EQ(test::error_of([&] { board_truth(recording, 0, 6); }),
-            "video.mp4: frame 3: found nothing to decode");
+            "video.mp4: frame 3 cannot be decoded");
 }
 
-TEST(BoardTruth, LeavesOutFramesThatFitMuchWorseThanTheOthers) {
+TEST(BoardTruth, RejectsFramesThatFitMuchWorseThanTheOthers) {
   Recording recording = rolling_recording(kTwin, 8);
   recording.images = std::make_shared<const FrameCache>(8, [](int index) {
     const Pose pose = looking_at(kTwin, 0.4, 15, 0);
-    // In frame 5 the lower rows of the picture are 4 px to the right, as a shutter may leave them.
+    // Simulates a rolling shutter: the lower rows of frame 5 are 4 px to the right.
     cv::Mat image = test::render_board(kTwin, small_pinhole(), pose);
     if (index == 5) {
       const cv::Mat below = image.rowRange(120, 240);
@@ -122,14 +121,12 @@ TEST(BoardTruth, LeavesOutFramesThatFitMuchWorseThanTheOthers) {
   const auto truth = board_truth(recording, 0, 8);
   EXPECT_FALSE(truth.poses[5]);
   EXPECT_EQ(std::ranges::count(truth.poses, true, [](auto& pose) { return pose.has_value(); }), 7);
-  // Alone it is not known to be worse than others, but no less bad than 2 px.
+  // Without other frames only the limit of 2 px applies.
   const auto alone = board_truth(recording, std::vector<int>{5});
-  if (alone.poses[0]) {
-    EXPECT_GT(alone.uncertainties[0]->rms_px, 0.5);
-  }
+  EXPECT_TRUE(!alone.poses[0] || alone.uncertainties[0]->rms_px > 0.5);
 }
 
-TEST(MedianUncertainty, IsOfTheFramesThatHaveAPose) {
+TEST(MedianUncertainty, CoversOnlyFramesWithAPose) {
   const std::vector<std::optional<PoseUncertainty>> some = {PoseUncertainty{1, 2, 3, 4},
                                                             std::nullopt,
                                                             PoseUncertainty{9, 1, 7, 5},

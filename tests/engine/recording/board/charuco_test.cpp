@@ -6,70 +6,54 @@
 #include "tests/engine/recording/board/opencv_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
+using test::large_lens;
 using test::looking_at;
 using test::opencv_charuco;
 using test::render_print;
 
 const Board kCharuco{7, 5, 0.03, BoardMarkers{0.022, "DICT_5X5_100"}};
 
-Camera camera() {
-  return {640, 480, 600, 603, 318, 243, Distortion::radial_tangential, {-0.15, 0.04, 1e-3, 5e-4}};
-}
-
-/// Of the corners that are seen.
-struct Compared {
-  int seen = 0;
-  double largest_px = 0;
-};
-Compared compare(const std::vector<Eigen::Vector2d>& corners, const Pose& pose) {
-  Compared result;
-  const auto truth = project_board(kCharuco, camera(), pose);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!corners[i].allFinite()) continue;
-    ++result.seen;
-    result.largest_px = std::max(result.largest_px, (corners[i] - truth[i]).norm());
-  }
-  return result;
+test::CornerErrors compare(const std::vector<Eigen::Vector2d>& corners, const Pose& pose) {
+  return test::corner_errors(corners, kCharuco, large_lens(), pose);
 }
 
 cv::Mat image(const Pose& pose, const cv::Mat& print) {
-  return render_print(print, kCharuco, camera(), pose);
+  return render_print(print, kCharuco, large_lens(), pose);
 }
 
-TEST(Charuco, CornersAreThoseOfOpenCvsBoardFromAllSides) {
+TEST(Charuco, FindsTheCornersOfOpenCvsBoardForAnyRoll) {
   const cv::Mat print = opencv_charuco(kCharuco, cv::aruco::DICT_5X5_100);
   for (const int roll : {0, 100, 190, 280}) {
     const Pose truth = looking_at(kCharuco, 0.45, 25, roll);
-    const auto [seen, largest_px] = compare(find_board(image(truth, print), kCharuco), truth);
+    const auto [seen, rms_px, largest_px] =
+        compare(find_board(image(truth, print), kCharuco), truth);
     EXPECT_GE(seen, 30) << roll;
     EXPECT_LT(largest_px, 0.25) << roll;
   }
 }
 
-TEST(Charuco, PartOfTheBoardGivesAPose) {
+TEST(Charuco, EstimatesThePoseFromPartOfTheBoard) {
   const Pose truth = looking_at(kCharuco, 0.45, 20, 10);
   cv::Mat covered = image(truth, opencv_charuco(kCharuco, cv::aruco::DICT_5X5_100));
   cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
   const auto corners = find_board(covered, kCharuco);
-  const auto [seen, largest_px] = compare(corners, truth);
+  const auto [seen, rms_px, largest_px] = compare(corners, truth);
   EXPECT_GE(seen, 8);
   EXPECT_LE(seen, 25);
   EXPECT_LT(largest_px, 0.25);
-  const auto pose = board_pose(corners, kCharuco, camera());
+  const auto pose = board_pose(corners, kCharuco, large_lens());
   ASSERT_TRUE(pose);
   EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 3e-3);
   EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 4 * pose->uncertainty.position_sigma_m);
 }
 
-/// As OpenCV printed boards with an even number of rows before 4.6.
+/// Draws a board with an even number of rows as OpenCV did before 4.6.
 cv::Mat older_print() {
   constexpr int kTexels = 60;
   constexpr int kMarker = 44;
@@ -87,23 +71,23 @@ cv::Mat older_print() {
   return print;
 }
 
-TEST(Charuco, OlderBoardsWithAnEvenNumberOfRowsAreFoundToo) {
+TEST(Charuco, FindsOlderBoardsWithAnEvenNumberOfRows) {
   const Pose truth = looking_at(kCharuco, 0.45, 25, 5);
-  const auto [seen, largest_px] =
+  const auto [seen, rms_px, largest_px] =
       compare(find_board(image(truth, older_print()), kCharuco), truth);
   EXPECT_GE(seen, 30);
   EXPECT_LT(largest_px, 0.25);
 }
 
-TEST(Charuco, IsNotFoundInOtherImages) {
+TEST(Charuco, FindsNothingInImagesWithoutTheBoard) {
   EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), kCharuco).empty());
   const Board plain{9, 6, 0.025};
   EXPECT_TRUE(
-      find_board(test::render_board(plain, camera(), looking_at(plain, 0.4, 10, 0)), kCharuco)
+      find_board(test::render_board(plain, large_lens(), looking_at(plain, 0.4, 10, 0)), kCharuco)
           .empty());
 }
 
-TEST(Charuco, DictionariesAreKnownByNameWithAndWithoutPrefix) {
+TEST(Charuco, KnowsDictionariesByNameWithAndWithoutPrefix) {
   EXPECT_EQ(dictionary_name("DICT_5X5_100"), "DICT_5X5_100");
   EXPECT_EQ(dictionary_name("5x5_100"), "DICT_5X5_100");
   EXPECT_EQ(dictionary_name("APRILTAG_36h11"), "DICT_APRILTAG_36h11");

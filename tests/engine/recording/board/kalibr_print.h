@@ -10,8 +10,8 @@
 
 namespace gpo::test {
 
-/// The first codes of the family 36h11, as AprilTag 2, AprilTag 3 and Kalibr print them: white bits
-/// are 1, row by row from the top left, the highest bit first. Not from OpenCV.
+/// First codes of the family 36h11 from AprilTag and Kalibr, independent of OpenCV: white bits are
+/// 1, row by row from the top left, the highest bit first.
 inline constexpr std::array<std::uint64_t, 12> kTag36h11 = {0xd5d628584,
                                                             0xd97f18b49,
                                                             0xdd280910e,
@@ -25,9 +25,9 @@ inline constexpr std::array<std::uint64_t, 12> kTag36h11 = {0xd5d628584,
                                                             0x34fe91b86,
                                                             0x3ff962cd5};
 
-/// Gray of a board of tags at a point [m] of its frame: x to the right and y down from the top left
-/// corner of its top left tag. As Kalibr draws it: number 0 at the bottom left, squares in the gaps
-/// between the corners where `squares`, white paper around.
+/// Gray of a board of tags at a point [m], relative to the top left corner of its top left tag, as
+/// Kalibr draws it: number 0 at the bottom left, white paper around, and black squares between the
+/// corners if `squares`.
 inline double tag_gray(const Board& board, double x, double y, bool squares = true) {
   constexpr double kBlack = 25, kWhite = 230;
   const double pitch = 1 + board.tags->spacing;  // in sides of a tag

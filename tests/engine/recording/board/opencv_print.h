@@ -13,7 +13,7 @@
 
 namespace gpo::test {
 
-/// OpenCV's own drawing of a marker, whatever its version.
+/// Draws a marker with any version of OpenCV.
 inline cv::Mat opencv_marker(int dictionary, int id, int side_px) {
   cv::Mat marker;
 #if !GPO_ARUCO_IN_OBJDETECT
@@ -24,7 +24,7 @@ inline cv::Mat opencv_marker(int dictionary, int id, int side_px) {
   return marker;
 }
 
-/// OpenCV's own drawing of a ChArUco board, whatever its version; without margin.
+/// Draws a ChArUco board without a margin with any version of OpenCV.
 inline cv::Mat opencv_charuco(const Board& board, int dictionary) {
   constexpr int kTexels = 60;
   const cv::Size squares(board.columns + 1, board.rows + 1);

@@ -5,24 +5,29 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/recording.h"
+#include "engine/recording/board/board_pose.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 namespace gpo::test {
 
 inline const Board kChessboard{9, 6, 0.025};  // its two ends differ in color
-inline const Board kTwin{8, 6, 0.025};        // turned by 180 degrees it looks the same
+inline const Board kTwin{8, 6, 0.025};        // looks the same after half a turn
 
 inline Camera small_pinhole() { return {320, 240, 300, 302, 158.5, 121.5, Distortion::none, {}}; }
 inline Camera small_lens() {
   return {
       320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
 }
+inline Camera large_lens() {
+  return {640, 480, 600, 603, 318, 243, Distortion::radial_tangential, {-0.15, 0.04, 1e-3, 5e-4}};
+}
 
-/// Gray of the board's plane at a point [m]: squares with a white margin, mid-gray around it.
+/// Gray of a chessboard's plane at a point [m]: squares, a white margin, gray around it.
 inline double board_gray(const Board& board, double x, double y) {
   const double column = x / board.square_m;
   const double row = y / board.square_m;
@@ -32,8 +37,8 @@ inline double board_gray(const Board& board, double x, double y) {
   return parity % 2 == 0 ? 25 : 230;
 }
 
-/// A picture of the plane z = 0, whose gray at a point [m] is `gray(x, y)`, by casting 4 x 4 rays a
-/// pixel through the exact lens model: no interpolation that could shift a corner.
+/// Renders the plane z = 0, whose gray at a point [m] is `gray(x, y)`, with 4 x 4 rays per pixel
+/// through the exact lens model: no interpolation shifts the corners.
 template <class Gray>
 cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   constexpr int kSamples = 4;
@@ -60,13 +65,12 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   return image;
 }
 
-/// A picture of a chessboard (its frame as in board_points).
+/// Renders a chessboard.
 inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
   return render_plane(camera, pose, [&](double x, double y) { return board_gray(board, x, y); });
 }
 
-/// A picture of a print of a ChArUco board, `texture`, whose pixels are its squares' without
-/// margin.
+/// Renders a print of a ChArUco board; `texture` has its squares without a margin.
 inline cv::Mat render_print(const cv::Mat& texture,
                             const Board& board,
                             const Camera& camera,
@@ -76,21 +80,44 @@ inline cv::Mat render_print(const cv::Mat& texture,
     const int u = static_cast<int>(std::floor((x + board.square_m) * texels));
     const int v = static_cast<int>(std::floor((y + board.square_m) * texels));
     const int margin = texture.cols / (2 * (board.columns + 1));
-    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin) {
+    if (u < -margin || v < -margin || u >= texture.cols + margin || v >= texture.rows + margin)
       return 110;
-    }
     const bool print = u >= 0 && v >= 0 && u < texture.cols && v < texture.rows;
     return print ? 25 + 0.8 * texture.at<std::uint8_t>(v, u) : 229;
   });
 }
 
-/// A camera that looks at the middle of the board from `distance` [m], tilted and rolled [deg].
+/// Returns a camera that looks at the middle of the corners from `distance` [m], tilted and rolled
+/// [deg].
 inline Pose looking_at(const Board& board, double distance, double tilt_deg, double roll_deg) {
-  const Eigen::Vector3d middle(
-      0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m, 0);
+  const Eigen::Vector3d middle = board_points(board).back() / 2;
   const Eigen::Matrix3d R =
       so3_exp({radians(tilt_deg), 0.3 * radians(tilt_deg), 0}) * so3_exp({0, 0, radians(roll_deg)});
   return {R, middle - distance * R.col(2)};
+}
+
+/// Errors of the visible corners.
+struct CornerErrors {
+  int seen = 0;
+  double rms_px = 0;
+  double largest_px = 0;
+};
+inline CornerErrors corner_errors(const std::vector<Eigen::Vector2d>& corners,
+                                  const Board& board,
+                                  const Camera& camera,
+                                  const Pose& pose) {
+  CornerErrors result;
+  const auto truth = project_board(board, camera, pose);
+  double squares = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!corners[i].allFinite()) continue;
+    ++result.seen;
+    const double error = (corners[i] - truth[i]).norm();
+    squares += error * error;
+    result.largest_px = std::max(result.largest_px, error);
+  }
+  result.rms_px = std::sqrt(squares / std::max(1, result.seen));
+  return result;
 }
 
 }  // namespace gpo::test

@@ -55,17 +55,18 @@ TEST(CalibrationFile, ReadsEurocsSensorFile) {
   EXPECT_EQ(calibration.time_offset_ns, 0);
 }
 
-TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
+const cv::Mat kMatrix = (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
+
+TEST(CalibrationFile, ReadsOpenCvsFiles) {
   const TestFolder folder;
   const auto file = folder.path() / "camera.yaml";
-  const cv::Mat K = (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
   const cv::Mat k = (cv::Mat_<double>(5, 1) << -0.29, 0.1, 1e-3, -2e-4, 0.013);
   {
     cv::FileStorage storage(file.string(), cv::FileStorage::WRITE);
     storage << "calibration_time"
             << "Thu 01 Jan 2026"
-            << "image_width" << 640 << "image_height" << 480 << "flags" << 0 << "camera_matrix" << K
-            << "distortion_coefficients" << k << "avg_reprojection_error" << 0.19;
+            << "image_width" << 640 << "image_height" << 480 << "flags" << 0 << "camera_matrix"
+            << kMatrix << "distortion_coefficients" << k << "avg_reprojection_error" << 0.19;
   }
   const Camera camera = read_calibration(file).camera;
   EXPECT_EQ(camera.width, 640);
@@ -77,9 +78,8 @@ TEST(CalibrationFile, ReadsWhatOpenCvWrites) {
   EXPECT_THAT(camera.coefficients, ElementsAre(-0.29, 0.1, 1e-3, -2e-4, 0.013));
 }
 
-TEST(CalibrationFile, ReadsFileStorageOfAnyFormatAndNames) {
+TEST(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
   const TestFolder folder;
-  const cv::Mat K = (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
   const cv::Mat k =
       (cv::Mat_<double>(1, 12) << -0.29, 0.1, 1e-3, -2e-4, 0.013, 1, 2, 3, 4, 5, 6, 7);
   struct Names {
@@ -95,8 +95,8 @@ TEST(CalibrationFile, ReadsFileStorageOfAnyFormatAndNames) {
         cv::FileStorage storage((folder.path() / file).string(), cv::FileStorage::WRITE);
         storage << "calibration_time"
                 << "Thu 01 Jan 2026 <12:00>"
-                << "image_size" << cv::Size(640, 480) << names.matrix << K << names.coefficients
-                << k;
+                << "image_size" << cv::Size(640, 480) << names.matrix << kMatrix
+                << names.coefficients << k;
       }
       const Camera camera = read_calibration(folder.path() / file).camera;
       EXPECT_EQ(camera.width, 640);
@@ -125,7 +125,7 @@ TEST(CalibrationFile, NamesTheLineOfBadXml) {
   EXPECT_THAT(message(deep), HasSubstr("expected XML"));
 }
 
-TEST(CalibrationFile, FindsTheNamesThatPeopleAndToolsGive) {
+TEST(CalibrationFile, FindsUsualFileNames) {
   for (const char* name : {"camera.yaml",
                            "camera.yml",
                            "sensor.yaml",
@@ -164,13 +164,13 @@ TEST(CalibrationFile, ReadsKalibrsChain) {
   EXPECT_EQ(calibration.camera.coefficients.size(), 4U);
   EXPECT_EQ(calibration.time_offset_ns, -2500000);
   ASSERT_TRUE(calibration.T_body_camera);
-  // The IMU's x axis is the camera's -y: camera -y is IMU x.
+  // The camera's -y is the IMU's x.
   const Pose& T = *calibration.T_body_camera;
   EXPECT_TRUE((T.R_wc * Eigen::Vector3d(0, -1, 0)).isApprox(Eigen::Vector3d::UnitX()));
   EXPECT_TRUE(T.p_wc.isApprox(Eigen::Vector3d(0.2, -0.1, -0.3)));
 }
 
-TEST(CalibrationFile, ReadsHowSureTheLensIs) {
+TEST(CalibrationFile, ReadsTheLensUncertainty) {
   const TestFolder folder;
   const auto with_lines = [&](const std::string& lines) {
     return read_calibration(folder.write("sensor.yaml", kEuroc + lines)).camera.sigmas;
@@ -182,81 +182,88 @@ TEST(CalibrationFile, ReadsHowSureTheLensIs) {
               ElementsAre(1, 2, 3, 4, 0.1, 0.2, 0, 0));
 }
 
-/// The file with one line replaced.
+/// Returns the file with one line replaced.
 std::string with(const std::string& key, const std::string& line) {
   std::string text = kEuroc;
   const std::size_t begin = text.find("\n" + key + ":") + 1;
   return text.replace(begin, text.find('\n', begin) - begin, line);
 }
 
-struct BadCalibration {
-  std::string content;
-  std::string message;
+struct BadLine {
+  const char* key;  ///< of the replaced line; empty: `lines` are added at the end
+  const char* lines;
+  const char* message;  ///< behind the file's name
 };
-class CalibrationErrors : public testing::TestWithParam<BadCalibration> {};
 
-TEST_P(CalibrationErrors, NameLineAndKey) {
+TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
   const TestFolder folder;
-  const auto file = folder.write("sensor.yaml", GetParam().content);
-  EXPECT_EQ(error_of([&] { read_calibration(file); }), file.string() + GetParam().message);
+  for (const auto& [key, lines, message] : std::vector<BadLine>{
+           {"camera_model",
+            "camera_model: omni",
+            ":14: key `camera_model`: found \"omni\", expected pinhole"},
+           {"distortion_model",
+            "distortion_model: fov",
+            ":16: key `distortion_model`: found \"fov\", expected radial-tangential, equidistant "
+            "or none"},
+           {"distortion_model",
+            "distortion_model: none",
+            ":17: key `distortion_coefficients`: found 4 numbers, expected none for distortion "
+            "model none"},
+           {"distortion_coefficients",
+            "distortion_coefficients: [1, 2, 3]",
+            ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 or 14 (k1, "
+            "k2, "
+            "p1, p2, k3, ...) for distortion model radial-tangential"},
+           {"distortion_coefficients",
+            "distortion_coefficients: [1, 2, .nan, 4]",
+            ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
+           {"distortion_coefficients",
+            "",
+            ": key `distortion_coefficients`: found nothing, expected a list of numbers"},
+           {"intrinsics",
+            "intrinsics: [458, 457, 367]",
+            ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
+           {"intrinsics",
+            "intrinsics: [458, -457, 367, 248]",
+            ":15: key `intrinsics`: found 458, -457, expected plausible fx, fy > 0 in pixels"},
+           {"intrinsics",
+            "intrinsics: [458, 457, 367, 9000]",
+            ":15: key `intrinsics`: found 367, 9000, expected cx, cy in pixels, near the image "
+            "center"},
+           {"intrinsics", "", ": key `intrinsics`: found nothing, expected [fx, fy, cx, cy]"},
+           {"resolution",
+            "resolution: [752.5, 480]",
+            ":13: key `resolution`: found 752.5x480, expected [width, height] in pixels"},
+           {"resolution",
+            "resolution: 752x480",
+            ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
+           {"",
+            "intrinsics_sigma: [1, 2]",
+            ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, cy)"},
+           {"",
+            "intrinsics_sigma: [1, -2, 3, 4]",
+            ":18: key `intrinsics_sigma`: found an implausible standard deviation, expected "
+            "numbers "
+            "from 0 on"},
+           {"",
+            "intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]",
+            ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for each of "
+            "the "
+            "distortion coefficients"},
+           {"rate_hz",
+            "rate_hz: 0",
+            ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
+           {"rate_hz",
+            "rate_hz: 1e10",
+            ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 images per second"},
+           {"rate_hz",
+            "rate_hz: 1e-300",
+            ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 images per second"}}) {
+    const std::string text = *key == '\0' ? std::string(kEuroc) + lines : with(key, lines);
+    const auto file = folder.write("sensor.yaml", text);
+    EXPECT_EQ(error_of([&] { read_calibration(file); }), file.string() + message);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    CalibrationErrors,
-    testing::Values(
-        BadCalibration{with("camera_model", "camera_model: omni"),
-                       ":14: key `camera_model`: found \"omni\", expected pinhole"},
-        BadCalibration{with("distortion_model", "distortion_model: fov"),
-                       ":16: key `distortion_model`: found \"fov\", expected radial-tangential, "
-                       "equidistant or none"},
-        BadCalibration{with("distortion_model", "distortion_model: none"),
-                       ":17: key `distortion_coefficients`: found 4 numbers, expected none for "
-                       "distortion model none"},
-        BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, 3]"),
-                       ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 "
-                       "or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential"},
-        BadCalibration{with("distortion_coefficients", "distortion_coefficients: [1, 2, .nan, 4]"),
-                       ":17: key `distortion_coefficients`: found \".nan\", expected finite "
-                       "numbers"},
-        BadCalibration{with("distortion_coefficients", ""),
-                       ": key `distortion_coefficients`: found nothing, expected a list of "
-                       "numbers"},
-        BadCalibration{with("intrinsics", "intrinsics: [458, 457, 367]"),
-                       ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
-        BadCalibration{with("intrinsics", "intrinsics: [458, -457, 367, 248]"),
-                       ":15: key `intrinsics`: found a focal length that is not positive, "
-                       "expected fx, fy > 0 in pixels"},
-        BadCalibration{with("intrinsics", "intrinsics: [458, 457, 367, 9000]"),
-                       ":15: key `intrinsics`: found a principal point far outside of the "
-                       "picture, expected cx, cy in pixels, near the middle of it"},
-        BadCalibration{with("intrinsics", ""),
-                       ": key `intrinsics`: found nothing, expected [fx, fy, cx, cy]"},
-        BadCalibration{with("resolution", "resolution: [752.5, 480]"),
-                       ":13: key `resolution`: found a size that no picture has, expected "
-                       "[width, height] in pixels"},
-        BadCalibration{with("resolution", "resolution: 752x480"),
-                       ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
-        BadCalibration{kEuroc + std::string("intrinsics_sigma: [1, 2]"),
-                       ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, "
-                       "cy)"},
-        BadCalibration{kEuroc + std::string("intrinsics_sigma: [1, -2, 3, 4]"),
-                       ":18: key `intrinsics_sigma`: found a standard deviation that none can be, "
-                       "expected numbers from 0 on"},
-        BadCalibration{
-            kEuroc + std::string("intrinsics_sigma: [1, 2, 3, 4]\n"
-                                 "distortion_coefficients_sigma: [0.1]"),
-            ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for "
-            "each of the distortion coefficients"},
-        BadCalibration{with("rate_hz", "rate_hz: 0"),
-                       ":12: key `rate_hz`: found a rate that is not positive, expected pictures a "
-                       "second"},
-        BadCalibration{with("rate_hz", "rate_hz: 1e10"),
-                       ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 pictures a "
-                       "second"},
-        BadCalibration{with("rate_hz", "rate_hz: 1e-300"),
-                       ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 pictures a "
-                       "second"}));
 
 TEST(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
   const TestFolder folder;

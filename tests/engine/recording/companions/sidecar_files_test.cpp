@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/sidecar_files.h"
 
-#include "tests/engine/test_folder.h"
+#include "engine/recording/content.h"
+#include "tests/engine/recording/refusals.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +11,9 @@
 namespace gpo {
 namespace {
 
-using test::error_of;
 using test::TestFolder;
 
-TEST(BoardFile, OfACharucoBoardCountsSquares) {
+TEST(BoardFile, CountsSquaresOfACharucoBoard) {
   const TestFolder folder;
   const auto file = folder.write("board.yaml",
                                  "{pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, "
@@ -27,64 +27,48 @@ TEST(BoardFile, OfACharucoBoardCountsSquares) {
   EXPECT_EQ(board.markers->dictionary, "DICT_5X5_100");
 }
 
-struct BadBoard {
-  std::string text;
-  std::string message;
-};
-
-class BadBoardFile : public testing::TestWithParam<BadBoard> {};
-
-TEST_P(BadBoardFile, IsRefusedInOneLine) {
-  const TestFolder folder;
-  const auto file = folder.write("board.yaml", GetParam().text);
-  EXPECT_EQ(error_of([&] {
-              read_board(file);
-            }).substr(0, file.string().size() + GetParam().message.size()),
-            file.string() + GetParam().message);
+TEST(BoardFile, NamesLineAndKeyOfErrors) {
+  const std::vector<test::Refusal> refusals = {
+      {"pattern: circles\n",
+       ":1: key `pattern`: found \"circles\", expected chessboard, charuco, aprilgrid or "
+       "apriltag"},
+      {"pattern: charuco\ncolumns: 9\nrows: 6\nsquare: 0.02\n",
+       ": key `squares`: found nothing, expected 2 counts of squares (x, y), 3 to 100..."},
+      {"pattern: charuco\nsquares: [8, 2]\n",
+       ":2: key `squares`: found 2, expected 2 counts of squares (x, y), 3 to 100 each"},
+      {"pattern: charuco\nsquares: [8]\n",
+       ":2: key `squares`: found 1 numbers, expected 2 counts of squares (x, y)..."},
+      {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\n",
+       ": key `marker`: found nothing, expected the side of a marker in meters"},
+      {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: 0.03\n",
+       ":4: key `marker`: found 0.03, expected less than the square's side, 0.03"},
+      {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: -1\n",
+       ":4: key `marker`: found -1, expected the side of a marker in meters, > 0"},
+      {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: 0.02\n"
+       "dictionary: DICT_5X5_99\n",
+       ":5: key `dictionary`: found \"DICT_5X5_99\", expected one of DICT_4X4_50, ..."},
+      {"pattern: charuco\nsquares: [12, 9]\nsquare: 0.03\nmarker: 0.02\n"
+       "dictionary: DICT_4X4_50\n",
+       ":5: key `dictionary`: found DICT_4X4_50 with 50 markers, expected at least "
+       "54, one for each marker of the board"},
+      {"pattern: aprilgrid\ntagCols: 6\ntagRows: 0\n",
+       ":3: key `tagRows`: found \"0\", expected a count of tags, 1 to 50"},
+      {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0\n",
+       ":4: key `tagSize`: found 0, expected the side of a tag in meters, > 0"},
+      {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 30\n",
+       ":5: key `tagSpacing`: found 30, expected the gap between tags over their side, 0 "
+       "to 1"},
+      {"pattern: aprilgrid\ntagCols: 25\ntagRows: 24\ntagSize: 1\ntagSpacing: 0.3\n",
+       ":2: key `tagCols`: found 600 tags, expected at most 587"},
+      {"pattern: aprilgrid\ntagCols: 2\ntagRows: 2\ntagSize: 1\ntagSpacing: 0.3\n"
+       "tagBorder: 3\n",
+       ":6: key `tagBorder`: found \"3\", expected 1 or 2 bits"},
+      {"pattern: apriltag\ntagSize: 0.1\nid: 587\n",
+       ":3: key `id`: found \"587\", expected a tag's number, 0 to 586"}};
+  test::expect_refusals("board.yaml", refusals, [](const auto& file) { read_board(file); });
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BadBoardFile,
-    testing::Values(
-        BadBoard{"pattern: circles\n",
-                 ":1: key `pattern`: found \"circles\", expected chessboard, charuco, aprilgrid or "
-                 "apriltag"},
-        BadBoard{"pattern: charuco\ncolumns: 9\nrows: 6\nsquare: 0.02\n",
-                 ": key `squares`: found nothing, expected 2 counts of squares (x, y), 3 to 100"},
-        BadBoard{"pattern: charuco\nsquares: [8, 2]\n",
-                 ":2: key `squares`: found 2, expected 2 counts of squares (x, y), 3 to 100 each"},
-        BadBoard{"pattern: charuco\nsquares: [8]\n",
-                 ":2: key `squares`: found 1 numbers, expected 2 counts of squares (x, y)"},
-        BadBoard{"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\n",
-                 ": key `marker`: found nothing, expected the side of a marker in meters"},
-        BadBoard{"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: 0.03\n",
-                 ":4: key `marker`: found 0.03, expected less than the square's side, 0.03"},
-        BadBoard{"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: -1\n",
-                 ":4: key `marker`: found -1, expected the side of a marker in meters, > 0"},
-        BadBoard{"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: 0.02\n"
-                 "dictionary: DICT_5X5_99\n",
-                 ":5: key `dictionary`: found \"DICT_5X5_99\", expected one of DICT_4X4_50, "},
-        BadBoard{"pattern: charuco\nsquares: [12, 9]\nsquare: 0.03\nmarker: 0.02\n"
-                 "dictionary: DICT_4X4_50\n",
-                 ":5: key `dictionary`: found DICT_4X4_50 with 50 markers, expected one with 54, "
-                 "as many as the board has"},
-        BadBoard{"pattern: aprilgrid\ntagCols: 6\ntagRows: 0\n",
-                 ":3: key `tagRows`: found \"0\", expected a count of tags, 1 to 50"},
-        BadBoard{"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0\n",
-                 ":4: key `tagSize`: found 0, expected the side of a tag in meters, > 0"},
-        BadBoard{"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 30\n",
-                 ":5: key `tagSpacing`: found 30, expected the gap between tags over their side, 0 "
-                 "to 1"},
-        BadBoard{"pattern: aprilgrid\ntagCols: 25\ntagRows: 24\ntagSize: 1\ntagSpacing: 0.3\n",
-                 ":2: key `tagCols`: found 600 tags, expected at most 587"},
-        BadBoard{"pattern: aprilgrid\ntagCols: 2\ntagRows: 2\ntagSize: 1\ntagSpacing: 0.3\n"
-                 "tagBorder: 3\n",
-                 ":6: key `tagBorder`: found \"3\", expected 1 or 2 bits"},
-        BadBoard{"pattern: apriltag\ntagSize: 0.1\nid: 587\n",
-                 ":3: key `id`: found \"587\", expected a tag's number, 0 to 586"}));
-
-TEST(BoardFile, OfTagsHasKalibrsKeysAndIsWrittenBack) {
+TEST(BoardFile, ReadsAndWritesKalibrsKeys) {
   const TestFolder folder;
   const Board grid = read_board(folder.write("april_6x7.yaml",
                                              "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 7\n"
@@ -103,11 +87,7 @@ TEST(BoardFile, OfTagsHasKalibrsKeysAndIsWrittenBack) {
   EXPECT_EQ(tag.tags->alone, 3);
   for (const Board& board : {grid, tag}) {
     const Board again = read_board(folder.write("board.yaml", board_yaml(board)));
-    EXPECT_EQ(again.columns, board.columns);
-    EXPECT_EQ(again.rows, board.rows);
-    EXPECT_EQ(again.square_m, board.square_m);
-    EXPECT_EQ(again.tags->spacing, board.tags->spacing);
-    EXPECT_EQ(again.tags->border, board.tags->border);
+    EXPECT_EQ(text_of(again), text_of(board));
     EXPECT_EQ(again.tags->alone, board.tags->alone);
   }
 }

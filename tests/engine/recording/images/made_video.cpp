@@ -2,17 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/recording/images/made_video.h"
 
+#include "engine/recording/images/libav.h"
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/display.h>
 }
 #include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr AVRational kMillisecond = {1, 1000};
 constexpr AVRational kFrame = {1, 25};
@@ -21,9 +26,15 @@ void check(int result, const char* what) {
   if (result < 0) throw std::runtime_error(what);
 }
 
-AVCodecContext* open_encoder(const cv::Mat& image, bool b_frames, AVRational time_base) {
+void close_output(AVFormatContext** format) {
+  avio_closep(&(*format)->pb);
+  avformat_free_context(*format);
+}
+using Output = std::unique_ptr<AVFormatContext, libav::Closer<close_output>>;
+
+libav::Codec open_encoder(const cv::Mat& image, bool b_frames, AVRational time_base) {
   const AVCodec* codec = avcodec_find_encoder(b_frames ? AV_CODEC_ID_MPEG4 : AV_CODEC_ID_MJPEG);
-  AVCodecContext* encoder = avcodec_alloc_context3(codec);
+  libav::Codec encoder(avcodec_alloc_context3(codec));
   encoder->width = image.cols;
   encoder->height = image.rows;
   encoder->pix_fmt = b_frames ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUVJ420P;
@@ -32,45 +43,42 @@ AVCodecContext* open_encoder(const cv::Mat& image, bool b_frames, AVRational tim
   encoder->gop_size = b_frames ? 12 : 1;
   encoder->max_b_frames = b_frames ? 2 : 0;
   encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  check(avcodec_open2(encoder, codec, nullptr), "no encoder");
+  check(avcodec_open2(encoder.get(), codec, nullptr), "no encoder");
   return encoder;
 }
 
-AVFrame* frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::int64_t time) {
+libav::Frame frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::int64_t time) {
   cv::Mat yuv;
   cv::cvtColor(image, yuv, cv::COLOR_BGR2YUV_I420);
-  AVFrame* frame = av_frame_alloc();
+  libav::Frame frame(av_frame_alloc());
   frame->width = encoder.width;
   frame->height = encoder.height;
   frame->format = encoder.pix_fmt;
-  check(av_frame_get_buffer(frame, 0), "no memory");
+  check(av_frame_get_buffer(frame.get(), 0), "no memory");
   const std::uint8_t* from = yuv.data;
   for (int plane = 0; plane < 3; ++plane) {
     const int half = plane == 0 ? 1 : 2;
-    for (int row = 0; row < image.rows / half; ++row, from += image.cols / half) {
+    for (int row = 0; row < image.rows / half; ++row, from += image.cols / half)
       std::copy_n(from, image.cols / half, frame->data[plane] + row * frame->linesize[plane]);
-    }
   }
   frame->pts = time;
   return frame;
 }
 
 void drain(AVCodecContext* encoder, AVFormatContext* format) {
-  AVPacket* packet = av_packet_alloc();
-  AVStream* stream = format->streams[0];
-  while (avcodec_receive_packet(encoder, packet) == 0) {
-    // Without it the last frame would be cut off by the container's edit list.
+  const libav::Packet packet(av_packet_alloc());
+  while (avcodec_receive_packet(encoder, packet.get()) == 0) {
+    // Without a duration the container's edit list cuts off the last frame.
     packet->duration = encoder->time_base.den == kFrame.den ? 1 : 40;
-    av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
+    av_packet_rescale_ts(packet.get(), encoder->time_base, format->streams[0]->time_base);
     packet->stream_index = 0;
-    check(av_interleaved_write_frame(format, packet), "cannot write");
+    check(av_interleaved_write_frame(format, packet.get()), "cannot write");
   }
-  av_packet_free(&packet);
 }
 
 void turn(AVStream* stream, int clockwise_degrees) {
   constexpr std::size_t kBytes = 9 * sizeof(std::int32_t);
-#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see ffmpeg_versions.h
+#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav.h
   std::uint8_t* data = av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, kBytes);
 #else
   AVCodecParameters& codec = *stream->codecpar;
@@ -82,40 +90,108 @@ void turn(AVStream* stream, int clockwise_degrees) {
   av_display_rotation_set(reinterpret_cast<std::int32_t*>(data), clockwise_degrees);
 }
 
+void add_telemetry_stream(AVFormatContext* format) {
+  AVStream* stream = avformat_new_stream(format, nullptr);
+  stream->codecpar->codec_type = AVMEDIA_TYPE_DATA;
+  stream->codecpar->codec_id = AV_CODEC_ID_BIN_DATA;
+  stream->codecpar->codec_tag = MKTAG('g', 'p', 'm', 'd');
+  stream->time_base = kMillisecond;
+}
+
+void write_telemetry(AVFormatContext* format, const std::vector<TelemetryPiece>& pieces) {
+  for (const TelemetryPiece& piece : pieces) {
+    const libav::Packet packet(av_packet_alloc());
+    check(av_new_packet(packet.get(), static_cast<int>(piece.bytes.size())), "no memory");
+    std::memcpy(packet->data, piece.bytes.data(), piece.bytes.size());
+    packet->pts = packet->dts = piece.time_ms;
+    packet->duration = piece.length_ms;
+    packet->flags |= AV_PKT_FLAG_KEY;
+    packet->stream_index = 1;
+    av_packet_rescale_ts(packet.get(), kMillisecond, format->streams[1]->time_base);
+    check(av_interleaved_write_frame(format, packet.get()), "cannot write");
+  }
+}
+
+/// FFmpeg writes only one kind of telemetry; the other differs only in its name.
+void rename_telemetry(const fs::path& file, const std::string& format) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  for (std::size_t at = 0; (at = bytes.find("gpmd", at)) != std::string::npos; at += 4)
+    bytes.replace(at, 4, format);
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+Output open_output(const fs::path& file,
+                   const AVCodecContext& encoder,
+                   const VideoOptions& options) {
+  AVFormatContext* made = nullptr;
+  check(avformat_alloc_output_context2(&made, nullptr, nullptr, file.c_str()), "no container");
+  Output format(made);
+  AVStream* stream = avformat_new_stream(made, nullptr);
+  stream->time_base = encoder.time_base;
+  check(avcodec_parameters_from_context(stream->codecpar, &encoder), "no parameters");
+  if (options.clockwise_degrees != 0) turn(stream, options.clockwise_degrees);
+  if (!options.telemetry_format.empty()) add_telemetry_stream(made);
+  check(avio_open(&made->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
+  AVDictionary* muxing = nullptr;
+  for (const auto& [key, value] : options.metadata)
+    av_dict_set(&made->metadata, key.c_str(), value.c_str(), 0);
+  if (!options.metadata.empty()) av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
+  check(avformat_write_header(made, &muxing), "no header");
+  av_dict_free(&muxing);
+  return format;
+}
+
+template <class Number>
+std::string little_endian(Number number) {
+  std::string bytes(sizeof(number), '\0');
+  std::memcpy(bytes.data(), &number, sizeof(number));
+  return bytes;
+}
+
 }  // namespace
 
-void make_video(const std::filesystem::path& file,
+void make_video(const fs::path& file,
                 const std::vector<cv::Mat>& images,
                 const VideoOptions& options) {
   av_log_set_level(AV_LOG_QUIET);
-  AVFormatContext* format = nullptr;
-  check(avformat_alloc_output_context2(&format, nullptr, nullptr, file.c_str()), "no container");
-  AVCodecContext* encoder =
-      open_encoder(images[0], options.b_frames, options.times_ms.empty() ? kFrame : kMillisecond);
-  AVStream* stream = avformat_new_stream(format, nullptr);
-  stream->time_base = encoder->time_base;
-  check(avcodec_parameters_from_context(stream->codecpar, encoder), "no parameters");
-  if (options.clockwise_degrees != 0) turn(stream, options.clockwise_degrees);
-  check(avio_open(&format->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
-  AVDictionary* muxing = nullptr;
-  for (const auto& [key, value] : options.metadata)
-    av_dict_set(&format->metadata, key.c_str(), value.c_str(), 0);
-  if (!options.metadata.empty()) av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
-  check(avformat_write_header(format, &muxing), "no header");
-  av_dict_free(&muxing);
+  const auto& times_ms = options.times_ms;
+  const auto encoder =
+      open_encoder(images[0], options.b_frames, times_ms.empty() ? kFrame : kMillisecond);
+  Output format = open_output(file, *encoder, options);
   for (int i = 0; i < static_cast<int>(images.size()); ++i) {
-    AVFrame* frame =
-        frame_of(images[i], *encoder, options.times_ms.empty() ? i : options.times_ms[i]);
-    check(avcodec_send_frame(encoder, frame), "no frame");
-    av_frame_free(&frame);
-    drain(encoder, format);
+    const auto frame = frame_of(images[i], *encoder, times_ms.empty() ? i : times_ms[i]);
+    check(avcodec_send_frame(encoder.get(), frame.get()), "no frame");
+    drain(encoder.get(), format.get());
   }
-  avcodec_send_frame(encoder, nullptr);
-  drain(encoder, format);
-  av_write_trailer(format);
-  avio_closep(&format->pb);
-  avcodec_free_context(&encoder);
-  avformat_free_context(format);
+  avcodec_send_frame(encoder.get(), nullptr);
+  drain(encoder.get(), format.get());
+  if (!options.telemetry_format.empty()) write_telemetry(format.get(), options.telemetry);
+  av_write_trailer(format.get());
+  format.reset();
+  if (options.telemetry_format == "camm") rename_telemetry(file, options.telemetry_format);
+}
+
+std::string gpmf_item(const std::string& key, char type, int size, const std::string& data) {
+  const auto count = static_cast<std::int64_t>(data.size()) / size;
+  std::string item = key + type + static_cast<char>(size) + big_endian({count}, 2) + data;
+  item.resize((item.size() + 3) / 4 * 4, '\0');
+  return item;
+}
+
+std::string big_endian(const std::vector<std::int64_t>& values, int size) {
+  std::string bytes;
+  for (const std::int64_t value : values)
+    for (int k = size - 1; k >= 0; --k) bytes += static_cast<char>(value >> 8 * k & 0xFF);
+  return bytes;
+}
+
+std::string camm_rates(float x, float y, float z) {
+  return std::string("\0\0\2\0", 4) + little_endian(x) + little_endian(y) + little_endian(z);
+}
+
+std::string camm_exposure(std::int32_t exposure_ns, std::int32_t skew_ns) {
+  return std::string("\0\0\1\0", 4) + little_endian(exposure_ns) + little_endian(skew_ns);
 }
 
 }  // namespace gpo::test

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -11,18 +12,35 @@
 
 namespace gpo::test {
 
-/// What OpenCV's writer cannot do: frames at any time, key frames far apart, frames stored in
-/// another order than shown, a picture turned by the container.
+/// A piece of telemetry and its time.
+struct TelemetryPiece {
+  std::int64_t time_ms = 0;
+  std::int64_t length_ms = 0;
+  std::string bytes;
+};
+
+/// Options that OpenCV's writer lacks.
 struct VideoOptions {
-  bool b_frames = false;        ///< MPEG-4, a key frame in 12 and two B-frames between others
-  int clockwise_degrees = 0;    ///< by which a player turns the picture; MP4 and MOV only
-  std::vector<int> times_ms{};  ///< one a picture; default: 25 frames a second
-  std::map<std::string, std::string> metadata{};  ///< of the whole file, by its keys
+  bool b_frames = false;        ///< MPEG-4, one key frame in 12 and two B-frames between others
+  int clockwise_degrees = 0;    ///< rotation by the player; MP4 and MOV only
+  std::vector<int> times_ms{};  ///< of each image; default: 25 frames per second
+  std::map<std::string, std::string> metadata{};  ///< of the whole file
+  std::string telemetry_format{};                 ///< "gpmd" or "camm"; empty: no telemetry track
+  std::vector<TelemetryPiece> telemetry{};
 };
 
 /// Writes MJPEG (or MPEG-4 with B-frames) in the container that the file's name asks for.
 void make_video(const std::filesystem::path& file,
                 const std::vector<cv::Mat>& images,
                 const VideoOptions& options = {});
+
+/// Returns a GPMF item; type 0 is for nested items, `size` is that of a sample.
+std::string gpmf_item(const std::string& key, char type, int size, const std::string& data);
+/// Returns the concatenated big-endian numbers, each of `size` bytes.
+std::string big_endian(const std::vector<std::int64_t>& values, int size);
+
+// Samples of a CAMM track.
+std::string camm_rates(float x, float y, float z);
+std::string camm_exposure(std::int32_t exposure_ns, std::int32_t skew_ns);
 
 }  // namespace gpo::test

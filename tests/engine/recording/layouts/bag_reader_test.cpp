@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A bag of pictures on some topics, of which each has its own pixels.
+/// Writes a bag with different images on several topics.
 fs::path images_on(const TestFolder& folder, const std::vector<std::string>& names) {
   std::vector<WrittenTopic> topics;
   for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
@@ -39,7 +39,7 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   return file;
 }
 
-TEST(BagReader, ReadsAllThatARecordingHas) {
+TEST(BagReader, ReadsACompleteRecording) {
   const TestFolder folder;
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
@@ -52,7 +52,7 @@ TEST(BagReader, ReadsAllThatARecordingHas) {
   EXPECT_EQ(recording->images->bgr(7).at<cv::Vec3b>(0, 1)[0], static_cast<uchar>(pixels[1]));
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_EQ(recording->gyroscope->rates_rad_s[7], Eigen::Vector3d(0.1 * 7, 0.2, 0.3));
-  // The camera is turned by 2 atan(0.6 / 0.8) about z.
+  // The camera is rotated by 2 atan(0.6 / 0.8) about z.
   ASSERT_TRUE(recording->T_body_camera);
   EXPECT_LT((recording->gyroscope->R_gyro_camera.col(0) - Eigen::Vector3d(0.28, 0.96, 0)).norm(),
             1e-12);
@@ -62,19 +62,19 @@ TEST(BagReader, ReadsAllThatARecordingHas) {
   EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no errors of the plane"));
 }
 
-TEST(BagReader, OfSeveralCamerasTheChosenOneIsRead) {
+TEST(BagReader, ReadsTheChosenCamera) {
   const TestFolder folder;
   folder.write("camera.yaml", test::kCameraYaml);
   const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
   const auto first = open_recording(file);
   EXPECT_EQ(int(first->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
   EXPECT_THAT(first->notes,
-              Contains("3 topics with pictures: /cam0/image is read; --topic image=/cam1/depth "
-                       "reads another"));
+              Contains("3 topics with images: using /cam0/image; choose another by --topic "
+                       "image=/cam1/depth"));
   const auto second =
       open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam1/image"}}});
   EXPECT_EQ(int(second->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
-  EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with pictures"))));
+  EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with images"))));
   EXPECT_THAT(error_of([&] {
                 open_recording(file, {.tracks = {}, .topics = {{TopicRole::imu, "/cam1/image"}}});
               }),
@@ -86,7 +86,7 @@ TEST(BagReader, OfSeveralCamerasTheChosenOneIsRead) {
               HasSubstr("--topic: found no topic /cam2 among /cam0/image (sensor_msgs/Image, 3)"));
 }
 
-TEST(BagReader, TopicChoicesHaveARoleAndAName) {
+TEST(BagReader, ParsesTopicChoices) {
   EXPECT_EQ(parse_topic_choices({"image=/a=b", "imu=/c"}),
             (TopicChoices{{TopicRole::image, "/a=b"}, {TopicRole::imu, "/c"}}));
   const auto error = [](const std::vector<std::string>& texts) {
@@ -98,7 +98,7 @@ TEST(BagReader, TopicChoicesHaveARoleAndAName) {
   EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
 }
 
-TEST(BagReader, ImagesAreInTheOrderOfTheirOwnTimes) {
+TEST(BagReader, SortsImagesByTheirTimeStamps) {
   const TestFolder folder;
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(images_on(folder, {"/image"}));
@@ -108,7 +108,7 @@ TEST(BagReader, ImagesAreInTheOrderOfTheirOwnTimes) {
   EXPECT_EQ(int(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
 }
 
-TEST(BagReader, WithoutCalibrationTheCameraIsAGuess) {
+TEST(BagReader, GuessesTheCameraWithoutCalibration) {
   const TestFolder folder;
   const fs::path file = images_on(folder, {"/image"});
   const auto recording = open_recording(file);
@@ -117,16 +117,16 @@ TEST(BagReader, WithoutCalibrationTheCameraIsAGuess) {
   EXPECT_EQ(open_bag_images(file, 1 << 20, {})->count(), 3);
 }
 
-TEST(BagReader, ACameraYamlBesideItIsPreferred) {
+TEST(BagReader, PrefersACameraYamlBesideTheBag) {
   const TestFolder folder;
   const fs::path file = test::write_small_bag(folder.path() / "small.bag", ros1_writer);
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera.fx, 60);
-  EXPECT_THAT(recording->notes, Contains("camera.yaml is read, not /cam0/camera_info"));
+  EXPECT_THAT(recording->notes, Contains("using camera.yaml instead of /cam0/camera_info"));
 }
 
-TEST(BagReader, AFolderWithOneBagIsThatBag) {
+TEST(BagReader, OpensAFolderWithOneBag) {
   const TestFolder folder;
   test::write_small_bag(folder.path() / "small.bag", ros1_writer);
   EXPECT_EQ(open_recording(folder.path())->frame_count(), 20);
@@ -135,14 +135,14 @@ TEST(BagReader, AFolderWithOneBagIsThatBag) {
               HasSubstr("found 2 bags (small.bag, small.mcap), expected one; name the file"));
 }
 
-TEST(BagReader, TopicsAreOfBagsOnly) {
+TEST(BagReader, RefusesTopicsForOtherLayouts) {
   const TestFolder folder;
   folder.write("camera.yaml", test::kCameraYaml);
   folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
   EXPECT_THAT(error_of([&] {
                 open_recording(folder.path(), {.tracks = {}, .topics = {{TopicRole::imu, "/imu"}}});
               }),
-              HasSubstr("found pictures and no topics, expected a bag for --topic"));
+              HasSubstr("found the layout pictures without topics, expected a bag for --topic"));
 }
 
 class WrittenBag : public testing::TestWithParam<RecordingFormat> {};
@@ -176,10 +176,10 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
   EXPECT_FALSE(written->truth->poses[3]);
   EXPECT_LT((written->truth->poses[4]->p_wc - changed.truth->poses[4]->p_wc).norm(), 1e-14);
   EXPECT_THAT(error_of([&] { write_recording(changed, changed.truth, GetParam(), file); }),
-              HasSubstr("found something there already, expected no file"));
+              HasSubstr("already exists; choose a new file"));
 }
 
-TEST(WrittenBag, RefusesWhatWouldBeReadWithIt) {
+TEST(WrittenBag, RefusesForeignFilesBesideIt) {
   const TestFolder folder;
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
@@ -188,9 +188,9 @@ TEST(WrittenBag, RefusesWhatWouldBeReadWithIt) {
       write_recording(*recording, recording->truth, RecordingFormat::mcap, folder.path() / name);
     });
   };
-  EXPECT_THAT(error("new.bag"), HasSubstr("found another ending, expected .mcap"));
+  EXPECT_THAT(error("new.bag"), HasSubstr("wrong ending, expected .mcap"));
   folder.write("board.yaml", "pattern: chessboard\n");
-  EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: found the file of another recording"));
+  EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: belongs to another recording"));
   EXPECT_FALSE(fs::exists(folder.path() / "new.mcap"));
 }
 

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3, 0, 0, 0, 1]\n";
 const char* const kTbsImu = "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
 
-/// A small but complete recording: 4 pictures at 10 Hz, gyroscope at 20 Hz, truth at 10 Hz.
+/// A small recording: 4 images at 10 Hz, gyroscope at 20 Hz.
 class EurocReader : public testing::Test {
  protected:
   EurocReader() {
@@ -37,9 +37,8 @@ class EurocReader : public testing::Test {
     folder.write("mav0/imu0/sensor.yaml", kTbsImu);
     std::string imu =
         "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 8; ++i)
       imu += std::to_string(1403636579000000001 + i * 50000000LL) + ",0.1,0.2,0.3\n";
-    }
     folder.write("mav0/imu0/data.csv", imu);
   }
 
@@ -58,7 +57,7 @@ class EurocReader : public testing::Test {
   const TestFolder folder;
 };
 
-TEST_F(EurocReader, FindsItWithAndWithoutMav0) {
+TEST_F(EurocReader, OpensWithAndWithoutMav0) {
   for (const auto& path : {folder.path(), folder.path() / "mav0", folder.path() / ""}) {
     const auto recording = open_recording(path);
     EXPECT_EQ(recording->layout, "EuRoC");
@@ -70,20 +69,20 @@ TEST_F(EurocReader, FindsItWithAndWithoutMav0) {
   EXPECT_EQ(open_recording(folder.path() / "")->name, folder.path().filename());
 }
 
-TEST_F(EurocReader, TurnsTheGyroscopesAxes) {
+TEST_F(EurocReader, RotatesTheGyroscopesAxes) {
   const auto recording = open();
   ASSERT_TRUE(recording->gyroscope);
   const Gyroscope& gyroscope = *recording->gyroscope;
   EXPECT_EQ(gyroscope.timestamps_ns.size(), 8U);
   EXPECT_EQ(gyroscope.lines.front(), 2);
   EXPECT_EQ(gyroscope.rates_rad_s[3], Eigen::Vector3d(0.1, 0.2, 0.3));
-  // Camera z is body x, which is the gyroscope's -y: R_BS_imu maps gyro -y to body x.
+  // The camera's z is the body's x, which is the gyroscope's -y.
   EXPECT_TRUE(
       (gyroscope.R_gyro_camera * Eigen::Vector3d::UnitZ()).isApprox(-Eigen::Vector3d::UnitY()));
   EXPECT_EQ(gyroscope.bias_source, "none: zero");
 }
 
-TEST_F(EurocReader, PrefersTheSensorFilesBiasToTheTruths) {
+TEST_F(EurocReader, PrefersTheBiasOfTheSensorFile) {
   std::string truth = "#t,px,py,pz,qw,qx,qy,qz,vx,vy,vz,bwx,bwy,bwz,bax,bay,baz\n";
   truth += "1403636579000000001,0,0,0,1,0,0,0,0,0,0,0.01,0.02,0.03,0,0,0\n";
   truth += "1403636579100000001,0,0,0,1,0,0,0,0,0,0,0.03,0.04,0.05,0,0,0\n";
@@ -99,7 +98,8 @@ TEST_F(EurocReader, PrefersTheSensorFilesBiasToTheTruths) {
 }
 
 TEST_F(EurocReader, InterpolatesTheCamerasTruth) {
-  // The body turns by 0.2 rad about its z while it moves; frame 1 is half-way between the samples.
+  // The body rotates by 0.2 rad about its z while it moves; frame 1 is half-way between the
+  // samples.
   write_truth(
       "1403636579050000001,1,2,3,1,0,0,0\n"
       "1403636579150000001,2,2,3,0.99500416527,0,0,0.09983341664\n");
@@ -116,11 +116,10 @@ TEST_F(EurocReader, InterpolatesTheCamerasTruth) {
   EXPECT_TRUE((poses[1]->R_wc * Eigen::Vector3d::UnitZ()).isApprox(R_wb.col(0), 1e-9));
 }
 
-TEST_F(EurocReader, DoesNotBridgeAGapInTheTruth) {
+TEST_F(EurocReader, DoesNotInterpolateOverAGapInTheTruth) {
   std::string rows;
-  for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240}) {
+  for (const int ms : {-40, -30, -20, -10, 0, 10, 20, 30, 90, 110, 120, 230, 240})
     rows += std::to_string(1403636579000000001 + ms * 1000000LL) + ",0,0,0,1,0,0,0\n";
-  }
   write_truth(rows);
   const auto recording = open();
   const auto& poses = recording->truth->poses;
@@ -137,12 +136,12 @@ TEST_F(EurocReader, ReadsTumVisMocapFolder) {
   EXPECT_TRUE(recording->truth->poses[0]);
 }
 
-TEST_F(EurocReader, SaysOnceWhatIsMissing) {
+TEST_F(EurocReader, NotesWhatIsMissing) {
   EXPECT_THAT(open()->notes, ElementsAre("no ground truth: no metrics"));
   std::filesystem::remove_all(folder.path() / "mav0/imu0");
-  EXPECT_THAT(open()->notes,
-              ElementsAre("no gyroscope: rotations from the pictures alone",
-                          "no ground truth: no metrics"));
+  EXPECT_THAT(
+      open()->notes,
+      ElementsAre("no gyroscope: rotations from the images alone", "no ground truth: no metrics"));
 }
 
 TEST_F(EurocReader, ReadsBoardAndPlaneFromEitherLevel) {
@@ -192,16 +191,17 @@ TEST_F(EurocReader, NamesBadBoardsAndPlanes) {
 TEST_F(EurocReader, NamesAMissingImageAndItsLine) {
   std::filesystem::remove(folder.path() / "mav0/cam0/data/2.png");
   EXPECT_EQ(error(),
-            file("mav0/cam0/data.csv") +
-                ":4: found the name of a missing picture, expected the file " +
+            file("mav0/cam0/data.csv") + ":4: found a missing image, expected the file " +
                 file("mav0/cam0/data/2.png"));
 }
 
 TEST_F(EurocReader, NamesMissingFiles) {
   std::filesystem::remove(folder.path() / "mav0/cam0/data.csv");
-  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1, 2, 3));  // by the pictures' names
+  EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 1, 2, 3));  // from the images' names
   folder.write("mav0/cam0/data/cat7.png", cv::Mat(48, 64, CV_8UC1));
-  EXPECT_THAT(error(), HasSubstr("cat7.png: found another name, expected a time stamp"));
+  EXPECT_THAT(
+      error(),
+      HasSubstr("cat7.png: cam0/data.csv is missing, so that the name must be a time stamp"));
   std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
   EXPECT_EQ(error(), file("mav0/cam0/data.csv") + ": no such file");
   std::filesystem::remove(folder.path() / "mav0/cam0/sensor.yaml");
@@ -209,7 +209,7 @@ TEST_F(EurocReader, NamesMissingFiles) {
   EXPECT_EQ(error_of([] { open_recording("nowhere"); }), "nowhere: no such file or folder");
 }
 
-TEST_F(EurocReader, NamesBackwardTimesOfImagesAndSamples) {
+TEST_F(EurocReader, NamesBackwardTimes) {
   folder.write("mav0/imu0/data.csv", "20,0,0,0\n30,0,0,0\n25,0,0,0\n");
   EXPECT_THAT(error(), HasSubstr("imu0/data.csv:3: found time stamp 25, earlier than"));
   folder.write("mav0/cam0/data.csv", "20,0.png\n20,1.png\n");
@@ -225,11 +225,11 @@ TEST_F(EurocReader, NamesBadTruth) {
   EXPECT_THAT(error(), HasSubstr("data.csv:2: found 7 columns, expected at least 8"));
 }
 
-TEST_F(EurocReader, NamesAImageOfAnotherSize) {
+TEST_F(EurocReader, NamesAnImageOfAnotherSize) {
   folder.write("mav0/cam0/data/0.png", cv::Mat(40, 64, CV_8UC1, cv::Scalar(0)));
   EXPECT_EQ(error(),
             file("mav0/cam0/data/0.png") +
-                ": found a picture of 64x40, expected the calibrated resolution 64x48");
+                ": found an image of 64x40, expected the calibrated resolution 64x48");
 }
 
 TEST_F(EurocReader, NamesAGyroscopeBiasOfTwoNumbers) {
@@ -238,7 +238,7 @@ TEST_F(EurocReader, NamesAGyroscopeBiasOfTwoNumbers) {
               HasSubstr("sensor.yaml:2: key `gyroscope_bias`: found 2 numbers, expected 3"));
 }
 
-TEST_F(EurocReader, ReadsHowSureTheBiasIs) {
+TEST_F(EurocReader, ReadsTheBiasUncertainty) {
   EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.1);
   folder.write("mav0/imu0/sensor.yaml", std::string(kTbsImu) + "gyroscope_bias_sigma: 0.002\n");
   EXPECT_EQ(open()->gyroscope->bias_sigma_rad_s, 0.002);
@@ -257,16 +257,16 @@ TEST_F(EurocReader, ReadsTheGyroscopesNoise) {
     return open()->gyroscope->noise_density;
   };
   EXPECT_EQ(density("1.7e-4"), 1.7e-4);
-  EXPECT_EQ(density("0.0"), Gyroscope{}.noise_density) << "nobody measured it";
+  EXPECT_EQ(density("0.0"), Gyroscope{}.noise_density) << "unknown";
   for (const char* bad : {"-0.01", "small", "nan"}) {
     folder.write("mav0/imu0/sensor.yaml",
                  std::string(kTbsImu) + "gyroscope_noise_density: " + bad + "\n");
     EXPECT_THAT(error(), HasSubstr("sensor.yaml:2: key `gyroscope_noise_density`: found")) << bad;
-    EXPECT_THAT(error(), HasSubstr("expected a number that is not negative")) << bad;
+    EXPECT_THAT(error(), HasSubstr("expected a number >= 0")) << bad;
   }
 }
 
-/// Textured, so that every part of the file carries picture.
+/// Returns noise, so that every byte of the file matters.
 cv::Mat noise() {
   cv::Mat image(48, 64, CV_8UC3);
   cv::RNG(7).fill(image, cv::RNG::UNIFORM, 0, 256);
@@ -275,7 +275,7 @@ cv::Mat noise() {
 
 class CutImages : public EurocReader, public testing::WithParamInterface<const char*> {};
 
-TEST_P(CutImages, AreErrorsAndNeverHalfImages) {
+TEST_P(CutImages, AreErrorsAndNeverPartialImages) {
   const std::string name = std::string("mav0/cam0/data/p") + GetParam();
   folder.write("mav0/cam0/data.csv", "10,0.png\n20,p" + std::string(GetParam()) + "\n");
   folder.write(name, noise());
@@ -286,7 +286,7 @@ TEST_P(CutImages, AreErrorsAndNeverHalfImages) {
     const auto recording = open();
     testing::internal::CaptureStderr();
     EXPECT_THAT(error_of([&] { recording->images->bgr(1); }),
-                testing::StartsWith(file(name.c_str()) + ": found"))
+                testing::StartsWith(file(name.c_str()) + ": the image is truncated or broken"))
         << part;
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   }
@@ -303,7 +303,7 @@ TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
   EXPECT_EQ(open()->images->bgr(0).size(), cv::Size(64, 48));
 }
 
-TEST_F(EurocReader, UsesTracksOnlyWhenAskedWhereImagesExist) {
+TEST_F(EurocReader, UsesTracksBesideImagesOnlyIfRequested) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
   EXPECT_TRUE(open()->tracks.empty());
   OpenOptions options;
@@ -312,14 +312,14 @@ TEST_F(EurocReader, UsesTracksOnlyWhenAskedWhereImagesExist) {
   EXPECT_EQ(recording->tracks.size(), 1U);
   EXPECT_EQ(recording->layout, "EuRoC");
   EXPECT_TRUE(recording->images);
-  // The file itself stands for its folder with these tracks.
+  // Opening tracks.csv itself opens its folder with these tracks.
   const auto by_file = open_recording(folder.path() / "tracks.csv");
   EXPECT_EQ(by_file->tracks.size(), 1U);
   EXPECT_TRUE(by_file->images);
   EXPECT_EQ(by_file->name, recording->name);
 }
 
-TEST_F(EurocReader, TakesTracksWhereThereAreNoImages) {
+TEST_F(EurocReader, UsesTracksIfThereAreNoImages) {
   folder.write("tracks.csv", "frame,track,x,y\n3,1,2,3\n0,5,1.5,2\n0,1,2.25,3\n");
   std::filesystem::remove_all(folder.path() / "mav0/cam0/data");
   const auto recording = open();
@@ -329,7 +329,7 @@ TEST_F(EurocReader, TakesTracksWhereThereAreNoImages) {
   EXPECT_EQ(recording->tracks[0].track, 1);
   EXPECT_EQ(recording->tracks[0].raw_px, Eigen::Vector2d(2.25, 3));
   EXPECT_EQ(recording->tracks[2].frame, 3);
-  EXPECT_THAT(recording->notes, Contains("no pictures: tracks are drawn on a plain background"));
+  EXPECT_THAT(recording->notes, Contains("no images: tracks are drawn on a plain background"));
 }
 
 TEST_F(EurocReader, NamesBadTracks) {
@@ -344,7 +344,8 @@ TEST_F(EurocReader, NamesBadTracks) {
   EXPECT_THAT(tracks("-1,1,2,3\n"), HasSubstr(":2: found frame -1, expected 0 to 3"));
   EXPECT_EQ(
       tracks("0,1,2,3\n0,2,2,3\n0,1,5,5\n"),
-      name + ":4: found track 1 a second time in frame 0, expected one row a frame and track");
+      name +
+          ":4: found track 1 a second time in frame 0, expected one row for each frame and track");
   EXPECT_THAT(tracks("0,1,2,nan\n"), HasSubstr(":2: found \"nan\", expected a finite number"));
   EXPECT_THAT(tracks("0,a,2,3\n"), HasSubstr(":2: found \"a\", expected an integer"));
   EXPECT_THAT(tracks("0,1,2\n"),

@@ -18,7 +18,7 @@ using test::error_of;
 using test::TestFolder;
 using testing::HasSubstr;
 
-/// Everything that a recording may have, with numbers that are not round.
+/// Returns a complete recording with numbers that need all digits.
 Recording everything() {
   Recording recording;
   recording.camera = {
@@ -59,7 +59,7 @@ GroundTruth truth_with_a_gap() {
   return truth;
 }
 
-TEST(EurocWriter, WritesWhatOpensAsTheSame) {
+TEST(EurocWriter, WritesARecordingThatOpensAsTheSame) {
   const TestFolder folder;
   const Recording recording = everything();
   const GroundTruth truth = truth_with_a_gap();
@@ -105,7 +105,7 @@ TEST(EurocWriter, KeepsTracksWithoutImages) {
   EXPECT_EQ(read->tracks[2].track, 9);
 }
 
-TEST(EurocWriter, LeavesNothingWhereItFails) {
+TEST(EurocWriter, LeavesNoFilesAfterAFailure) {
   const TestFolder folder;
   Recording recording = everything();
   recording.images = std::make_shared<const FrameCache>(4, [](int i) -> cv::Mat {

@@ -28,20 +28,18 @@ using testing::HasSubstr;
 
 constexpr int kVideoFrames = 60;
 
-/// A picture that tells its number: bits as black and white columns, which compression leaves.
+/// Encodes a number as black and white columns, which survive compression.
 cv::Mat numbered(int number) {
   cv::Mat image(48, 64, CV_8UC3, cv::Scalar::all(0));
-  for (int bit = 0; bit < 8; ++bit) {
+  for (int bit = 0; bit < 8; ++bit)
     if ((number >> bit & 1) != 0) image.colRange(8 * bit, 8 * bit + 8).setTo(255);
-  }
   return image;
 }
 
 int number_of(const cv::Mat& image) {
   int number = 0;
-  for (int bit = 0; bit < 8; ++bit) {
+  for (int bit = 0; bit < 8; ++bit)
     number |= (image.at<cv::Vec3b>(24, 8 * bit + 4)[1] > 127 ? 1 : 0) << bit;
-  }
   return number;
 }
 
@@ -67,7 +65,7 @@ class ImagesReader : public testing::Test {
   const TestFolder folder;
 };
 
-TEST_F(ImagesReader, GivesEveryFrameOfAVideoInWhateverOrder) {
+TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
   write_video(folder.path() / "clip.avi");
   OpenOptions options;
   options.cache_bytes = 3 * 64 * 48 * 3;
@@ -87,7 +85,7 @@ TEST_F(ImagesReader, GivesEveryFrameOfAVideoInWhateverOrder) {
   }
 }
 
-TEST_F(ImagesReader, GivesEveryFrameOfAVideoToSeveralThreads) {
+TEST_F(ImagesReader, ReturnsTheFramesOfAVideoToSeveralThreads) {
   write_video(folder.path() / "clip.avi");
   OpenOptions options;
   options.cache_bytes = 3 * 64 * 48 * 3;
@@ -106,17 +104,15 @@ TEST_F(ImagesReader, GivesEveryFrameOfAVideoToSeveralThreads) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST_F(ImagesReader, RefusesACutVideoWithoutNoise) {
+TEST_F(ImagesReader, RefusesATruncatedVideoWithoutNoise) {
   write_video(folder.path() / "clip.avi");
   folder.cut("clip.avi", 0.6);
   testing::internal::CaptureStderr();
-  EXPECT_THAT(error(), testing::MatchesRegex(".*clip.avi: found .* cut.*expected .*"));
+  EXPECT_THAT(error(), testing::MatchesRegex(".*clip.avi: found .* truncated.*expected .*"));
   folder.write("clip.avi", "no video at all");
-  EXPECT_THAT(error(),
-              EndsWith("clip.avi: found something that cannot be decoded (cut, or no "
-                       "video), expected a video"));
+  EXPECT_THAT(error(), EndsWith("clip.avi: cannot decode: truncated, or not a video"));
   folder.write("clip.avi", "");
-  EXPECT_THAT(error(), HasSubstr("clip.avi: found something that cannot be decoded"));
+  EXPECT_THAT(error(), HasSubstr("clip.avi: cannot decode"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
@@ -128,13 +124,13 @@ TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
   for (int i = 0; i < 12; ++i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
   EXPECT_EQ(recording->timestamps_ns[3], 100000000);
   EXPECT_THAT(recording->notes,
-              ElementsAre("no frame_timestamps.txt and no rate_hz in camera.yaml: 30 frames a "
-                          "second are assumed",
-                          "no gyroscope: rotations from the pictures alone",
+              ElementsAre("no frame_timestamps.txt and no rate_hz in camera.yaml: assuming 30 "
+                          "frames per second",
+                          "no gyroscope: rotations from the images alone",
                           "no ground truth: no metrics"));
 }
 
-TEST_F(ImagesReader, TakesTheRateOfTheCalibration) {
+TEST_F(ImagesReader, UsesTheRateOfTheCalibration) {
   write_images(3);
   folder.write("camera.yaml", std::string(test::kCameraYaml) + "rate_hz: 20\n");
   EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 50000000, 100000000));
@@ -149,11 +145,12 @@ TEST_F(ImagesReader, ReadsStoredTimesAndTheGyroscope) {
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_THAT(recording->gyroscope->timestamps_ns, ElementsAre(10400000000, 10500000001));
   EXPECT_TRUE(recording->gyroscope->R_gyro_camera.isIdentity(0));
-  EXPECT_THAT(recording->notes,
-              Contains("no T_BS in camera.yaml: the gyroscope's axes are taken as the camera's"));
+  EXPECT_THAT(
+      recording->notes,
+      Contains("no T_BS in camera.yaml: assuming that the gyroscope has the camera's axes"));
 }
 
-TEST_F(ImagesReader, TurnsTheGyroscopeByKalibrsTransform) {
+TEST_F(ImagesReader, RotatesTheGyroscopeByKalibrsTransform) {
   write_images(1);
   folder.write("gyro.csv", "timestamp,wx,wy,wz\n0,1,2,3\n0.01,1,2,3\n");
   folder.write("camera.yaml", R"(cam0:
@@ -175,7 +172,7 @@ TEST_F(ImagesReader, NamesBothCountsOfTimes) {
   write_images(3);
   folder.write("frame_timestamps.txt", "1\n2\n");
   EXPECT_EQ(error(),
-            file("frame_timestamps.txt") + ": found 2 time stamps, expected 3, one a picture");
+            file("frame_timestamps.txt") + ": found 2 time stamps, expected 3, one for each image");
 }
 
 TEST_F(ImagesReader, NamesAVideoOfAnotherSize) {
@@ -184,16 +181,16 @@ TEST_F(ImagesReader, NamesAVideoOfAnotherSize) {
                "resolution: [128, 96]\nintrinsics: [60, 60, 64, 48]\ndistortion_model: none\n");
   EXPECT_EQ(
       error(),
-      file("clip.avi") + ": found a picture of 64x48, expected the calibrated resolution 128x96");
+      file("clip.avi") + ": found an image of 64x48, expected the calibrated resolution 128x96");
 }
 
-TEST_F(ImagesReader, NamesWhatAFolderLacks) {
+TEST_F(ImagesReader, NamesMissingFiles) {
   EXPECT_THAT(error(), HasSubstr(": found no recording, expected cam0/data.csv (EuRoC), "));
   EXPECT_THAT(error_of([&] { open_recording(folder.write("notes.txt", "")); }),
-              HasSubstr("notes.txt: found a file that is no video, expected a folder, "));
+              HasSubstr("notes.txt: unsupported file, expected a folder, "));
 }
 
-TEST_F(ImagesReader, GuessesTheCameraWhereNobodyTellsItAndSaysSo) {
+TEST_F(ImagesReader, GuessesTheCameraWithANote) {
   write_images(1);
   EXPECT_EQ(open_recording(folder.path())->camera_source, CameraSource::file);
   std::filesystem::remove(folder.path() / "camera.yaml");
@@ -203,13 +200,12 @@ TEST_F(ImagesReader, GuessesTheCameraWhereNobodyTellsItAndSaysSo) {
   EXPECT_EQ(cv::Size(camera.width, camera.height), recording->images->bgr(0).size());
   const double seen_rad = 2 * std::atan(std::hypot(camera.width, camera.height) / 2 / camera.fx);
   EXPECT_NEAR(degrees(seen_rad), 70, 1e-9);
-  EXPECT_THAT(
-      recording->notes,
-      testing::Contains(testing::StartsWith(
-          "no calibration: the camera is a guess (70 degrees along the picture's diagonal")));
+  EXPECT_THAT(recording->notes,
+              testing::Contains(
+                  testing::StartsWith("no calibration: assuming a 70 deg diagonal field of view")));
 }
 
-TEST_F(ImagesReader, TellsASelfCalibratedCameraFromOneOfABoard) {
+TEST_F(ImagesReader, RecognizesASelfCalibratedCamera) {
   write_images(1);
   const cv::Size size = open_recording(folder.path())->images->bgr(0).size();
   folder.write("camera.yaml",
@@ -222,7 +218,7 @@ TEST_F(ImagesReader, TellsASelfCalibratedCameraFromOneOfABoard) {
   EXPECT_EQ(recording->camera.fx, 60);
 }
 
-TEST_F(ImagesReader, AsksWhichOfTwoVideos) {
+TEST_F(ImagesReader, RefusesTwoVideos) {
   folder.write("a.mp4", "");
   folder.write("b.MOV", "");
   EXPECT_EQ(error(),
@@ -230,7 +226,7 @@ TEST_F(ImagesReader, AsksWhichOfTwoVideos) {
                 ": found 2 videos (a.mp4, b.MOV), expected one; name the file to open");
 }
 
-TEST_F(ImagesReader, TakesTracksWithoutImagesOrList) {
+TEST_F(ImagesReader, UsesTracksWithoutImagesOrTimes) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n4,1,2,3\n");
   const auto recording = open();
   EXPECT_EQ(recording->layout, "tracks");
@@ -240,7 +236,7 @@ TEST_F(ImagesReader, TakesTracksWithoutImagesOrList) {
             file("tracks.csv") + ":3: found frame 4, expected 0 to 2, the frames of the recording");
 }
 
-TEST_F(ImagesReader, MakesThePlaneTheBoards) {
+TEST_F(ImagesReader, UsesTheBoardsPlane) {
   write_images(1);
   folder.write("board.yaml", "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const auto recording = open();
@@ -248,7 +244,7 @@ TEST_F(ImagesReader, MakesThePlaneTheBoards) {
   EXPECT_EQ(recording->plane->normal, Eigen::Vector3d(0, 0, -1));
   EXPECT_EQ(recording->plane->distance, 0);
   EXPECT_THAT(recording->notes,
-              Contains("no stored ground truth: it is computed from the chessboard"));
+              Contains("no stored ground truth: computing it from the chessboard"));
 }
 
 }  // namespace

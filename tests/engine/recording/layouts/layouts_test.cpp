@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/layouts.h"
 
+#include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"
 
@@ -16,19 +17,18 @@ using test::error_of;
 using test::TestFolder;
 using testing::HasSubstr;
 
-/// The title of the layout that is found first.
+/// Returns the title of the first layout that fits.
 std::string title_of(const std::filesystem::path& path) {
-  for (const Layout& layout : layouts()) {
+  for (const Layout& layout : layouts())
     if (layout.find(path)) return layout.title;
-  }
   return "none";
 }
 
-TEST(Layouts, AreCompleteAndDifferent) {
+TEST(Layouts, HaveReadersAndDifferentTitles) {
   std::set<std::string> titles;
   for (const Layout& layout : layouts()) {
     EXPECT_TRUE(titles.insert(layout.title).second) << layout.title;
-    EXPECT_TRUE(layout.find != nullptr && layout.has_images != nullptr);
+    EXPECT_NE(layout.find, nullptr) << layout.title;
     EXPECT_NE(layout.read, nullptr) << layout.title;
   }
 }
@@ -47,11 +47,28 @@ TEST(Layouts, AreRecognizedInTheirOrder) {
   EXPECT_EQ(layouts().front().find(folder.path()), folder.path() / "mav0");
 }
 
-TEST(Layouts, AreAllNamedWhereNoneIsFound) {
+TEST(Layouts, AreAllNamedIfNoneFits) {
   const TestFolder folder;
   const std::string message = error_of([&] { open_recording(folder.path()); });
   for (const Layout& layout : layouts()) EXPECT_THAT(message, HasSubstr(layout.expected));
   EXPECT_THAT(message, testing::EndsWith(", or tracks.csv"));
+}
+
+TEST(FileKinds, IgnoresTheCaseOfEndings) {
+  EXPECT_TRUE(is_video_name("clip.MP4"));
+  EXPECT_TRUE(is_bag_name("a/b.Db3"));
+  EXPECT_TRUE(is_image_name("1.TIFF"));
+  for (const char* other : {"", "mp4", ".mp4", "clip.mp", "clip.mp4.txt"})
+    EXPECT_FALSE(is_video_name(other)) << other;
+}
+
+TEST(FileKinds, ListsTheEndingsOfRecordings) {
+  EXPECT_EQ(recording_endings(), "mp4, avi, mov, mkv, bag, db3, mcap");
+}
+
+TEST(FileKinds, AcceptsOnlyFilesAsRecipes) {
+  EXPECT_TRUE(is_yaml_name("desk.yml"));
+  EXPECT_FALSE(is_recipe("no such file.yaml"));
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that loggers write beside a video.
 #include "engine/recording/loggers/logs.h"
 
 #include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/loggers/gpmf.h"
 #include "tests/engine/recording/images/made_video.h"
-#include "tests/engine/test_folder.h"
+#include "tests/engine/recording/refusals.h"
 
 #include <vector>
 
@@ -20,7 +20,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// The example of the format's documentation, cut.
+/// Beginning of the documentation's example.
 const std::string kGcsv =
     "GYROFLOW IMU LOG\nversion,1.3\nid,custom_logger_name\norientation,YxZ\n"
     "note,development_test\nfwversion,FIRMWARE_0.1.0\ntimestamp,1644159993\nvendor,potatocam\n"
@@ -70,14 +70,14 @@ class LoggedVideo : public testing::Test {
   TestFolder folder;
 };
 
-TEST(SignedAxes, AreARotationOrNothing) {
+TEST(SignedAxes, AcceptOnlyRotations) {
   const Eigen::Vector3d turned = *signed_axes("YxZ") * Eigen::Vector3d(1, 2, 3);
   EXPECT_EQ(turned, Eigen::Vector3d(2, -1, 3));
   for (const char* bad : {"YXZ", "XXZ", "XY", "XYZW", "xyz", "XYQ", ""})
     EXPECT_FALSE(signed_axes(bad)) << bad;
 }
 
-TEST_F(LoggedVideo, OfGyroflowsLogHasScaledRatesAxesAndReadout) {
+TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
   video("GX01.mp4", true);
   folder.write("GX01.gcsv", kGcsv);
   const auto recording = open();
@@ -86,51 +86,39 @@ TEST_F(LoggedVideo, OfGyroflowsLogHasScaledRatesAxesAndReadout) {
   EXPECT_THAT(gyroscope.timestamps_ns, testing::ElementsAre(0, 1'000'000, 2'000'000));
   const Eigen::Vector3d rates = 0.00122173047 * Eigen::Vector3d(56, 100, 202);
   EXPECT_LT((gyroscope.rates_rad_s[1] - rates).norm(), 1e-12);
-  // Gyroflow's axes are y, -x, z of the log: up, left, back, as its documentation has them.
+  // Gyroflow's documented axes up, left, back are y, -x, z of the log.
   const Eigen::Vector3d camera = gyroscope.R_gyro_camera.transpose() * rates;
   EXPECT_LT((camera - Eigen::Vector3d(rates.x(), -rates.y(), -rates.z())).norm(), 1e-12);
   EXPECT_NEAR(*recording->readout_s, 0.01523, 1e-12);
   EXPECT_EQ(gyroscope.lines[0], 18);
 }
 
-struct BadLog {
-  std::string text;
-  std::string message;
-};
-class BadGcsv : public testing::TestWithParam<BadLog> {};
-
-TEST_P(BadGcsv, IsRefusedInOneLine) {
-  const TestFolder folder;
-  const auto file = folder.write("a.gcsv", GetParam().text);
-  EXPECT_EQ(error_of([&] { read_gcsv(file); }), file.string() + GetParam().message);
+TEST(Gcsv, NamesLinesOfErrors) {
+  const std::vector<test::Refusal> refusals = {
+      {"time,x,y\n", ":1: found another first line, expected GYROFLOW IMU LOG"},
+      {"", ":1: found another first line, expected GYROFLOW IMU LOG"},
+      {"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n",
+       ":4: found no rows, expected t,gx,gy,gz"},
+      {"GYROFLOW IMU LOG\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
+       ":3: found no tscale above the table, expected tscale,NUMBER, > 0"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,x\nt,gx,gy,gz\n0,1,2,3\n",
+       ":3: found no number, expected gscale,NUMBER"},
+      {"GYROFLOW IMU LOG\norientation,XYz\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
+       ":2: found other axes, expected orientation,AXES with three right-handed "
+       "axes such as YxZ"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2\n",
+       ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n0,1,2,3\n",
+       ":6: found a time that is not after the one before it, expected ascending times"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
+       ":5: found a rate that is not finite, expected numbers"},
+      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,nan,3\n",
+       ":5: found \"nan\", expected a finite number"}};
+  test::expect_refusals("a.gcsv", refusals, [](const auto& file) { read_gcsv(file); });
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BadGcsv,
-    testing::Values(
-        BadLog{"time,x,y\n", ":1: found another first line, expected GYROFLOW IMU LOG"},
-        BadLog{"", ":1: found another first line, expected GYROFLOW IMU LOG"},
-        BadLog{"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n",
-               ":4: found no rows, expected t,gx,gy,gz"},
-        BadLog{"GYROFLOW IMU LOG\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
-               ":3: found no tscale above the table, expected tscale,NUMBER, > 0"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,x\nt,gx,gy,gz\n0,1,2,3\n",
-               ":3: found no number, expected gscale,NUMBER"},
-        BadLog{"GYROFLOW IMU LOG\norientation,XYz\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
-               ":2: found other axes, expected orientation,AXES with three axes that turn to the "
-               "right, such as YxZ"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2\n",
-               ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n0,1,2,3\n",
-               ":6: found a time that is not after the one before it, expected ascending times"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
-               ":5: found a rate that is not finite, expected numbers"},
-        BadLog{"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,nan,3\n",
-               ":5: found \"nan\", expected a finite number"}));
-
-TEST_F(LoggedVideo, OfSensorLoggerHasRatesByTheirNames) {
+TEST_F(LoggedVideo, ReadsSensorLoggersRatesByName) {
   video("a.mp4", true);
   folder.write("Gyroscope.csv",
                "time,seconds_elapsed,z,y,x\n1698501144401773000,0.25,0.3,0.2,0.1\n"
@@ -139,25 +127,22 @@ TEST_F(LoggedVideo, OfSensorLoggerHasRatesByTheirNames) {
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_THAT(recording->gyroscope->timestamps_ns, testing::ElementsAre(250'000'000, 260'000'000));
   EXPECT_EQ(recording->gyroscope->rates_rad_s[0], Eigen::Vector3d(0.1, 0.2, 0.3));
-  // Held upright, x is right in the phone and, in the sensor, up.
-  EXPECT_LT(
-      (recording->gyroscope->R_gyro_camera * Eigen::Vector3d(0, -1, 0) - Eigen::Vector3d(1, 0, 0))
-          .norm(),
-      1e-12);
-  EXPECT_THAT(recording->notes, Contains(HasSubstr("what has elapsed there")));
+  // With the phone upright, its x (right) is the sensor's -y.
+  EXPECT_LT((recording->gyroscope->R_gyro_camera.col(1) + Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_THAT(recording->notes, Contains(HasSubstr("assuming that its elapsed seconds")));
 }
 
-TEST_F(LoggedVideo, OfSensorLoggerWithOtherColumnsIsRefused) {
+TEST_F(LoggedVideo, RefusesSensorLoggerWithOtherColumns) {
   video("a.mp4", true);
   folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y\n1,0.25,0.3,0.2\n");
-  EXPECT_EQ(error(), file("Gyroscope.csv") + ": found no column \"x\", expected one");
+  EXPECT_EQ(error(), file("Gyroscope.csv") + ": missing column \"x\"");
   folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y,x\n1,0.25,0.3,0.2,1\n2,0.25,1,1,1\n");
   EXPECT_EQ(error(),
             file("Gyroscope.csv") +
                 ":3: found a time that is not after the one before it, expected ascending times");
 }
 
-TEST_F(LoggedVideo, OfStrayScannerNeedsNoOtherCalibrationAndHasTruth) {
+TEST_F(LoggedVideo, ReadsStrayScannersCalibrationAndTruth) {
   video("rgb.mp4", false);
   folder.write("odometry.csv", kOdometry);
   folder.write("camera_matrix.csv", kMatrix);
@@ -177,7 +162,7 @@ TEST_F(LoggedVideo, OfStrayScannerNeedsNoOtherCalibrationAndHasTruth) {
   EXPECT_NEAR(recording->truth->poses[1]->R_wc(2, 1), 1, 1e-6) << "a quarter about x";
 }
 
-TEST_F(LoggedVideo, OfStrayScannerThatIsBrokenIsRefused) {
+TEST_F(LoggedVideo, RefusesBrokenStrayScanner) {
   video("rgb.mp4", false);
   folder.write("odometry.csv", kOdometry);
   folder.write("camera_matrix.csv", "61.5, 0.0, 32.25\n0.0, 61.25, 24.5\n");
@@ -186,10 +171,10 @@ TEST_F(LoggedVideo, OfStrayScannerThatIsBrokenIsRefused) {
                 ":2: found another matrix, expected 3 rows: fx 0 cx, 0 fy cy, 0 0 1");
   folder.write("camera_matrix.csv", kMatrix);
   folder.write("odometry.csv", kOdometry.substr(0, kOdometry.find("1000.7")));
-  EXPECT_EQ(error(), file("odometry.csv") + ": found 2 frames, expected 3, one a picture");
+  EXPECT_EQ(error(), file("odometry.csv") + ": found 2 frames, expected 3, one for each image");
 }
 
-TEST_F(LoggedVideo, OfSpectacularAiHasItsCalibrationClockAndAxes) {
+TEST_F(LoggedVideo, ReadsSpectacularAisCalibrationClockAndAxes) {
   video("data.mp4", false);
   video("data2.mp4", false);  // a second camera
   folder.write("data.jsonl", kLoggedFrames);
@@ -205,55 +190,43 @@ TEST_F(LoggedVideo, OfSpectacularAiHasItsCalibrationClockAndAxes) {
               testing::ElementsAre(5'010'000'000, 5'020'000'000));
   EXPECT_EQ(recording->gyroscope->rates_rad_s[1], Eigen::Vector3d(0.3, 0.2, 0.1));
   EXPECT_EQ(recording->gyroscope->lines[1], 2);
-  // imuToCamera takes the gyroscope's x to the camera's -y.
-  EXPECT_LT(
-      (recording->gyroscope->R_gyro_camera * Eigen::Vector3d(0, -1, 0) - Eigen::Vector3d(1, 0, 0))
-          .norm(),
-      1e-12);
+  // imuToCamera maps the gyroscope's x to the camera's -y.
+  EXPECT_LT((recording->gyroscope->R_gyro_camera.col(1) + Eigen::Vector3d::UnitX()).norm(), 1e-12);
 }
 
-TEST_F(LoggedVideo, BesideOtherDataIsNotSpectacularAis) {
+TEST_F(LoggedVideo, IgnoresOtherFilesNamedDataJsonl) {
   video("clip.mp4", true);
   folder.write("data.jsonl", "[]\n");
   EXPECT_FALSE(open()->gyroscope);
 }
 
-class BadSpectacular : public testing::TestWithParam<BadLog> {};
-
-TEST_P(BadSpectacular, IsRefusedInOneLine) {
-  const TestFolder folder;
-  const auto file = folder.write("data.jsonl", GetParam().text);
-  EXPECT_EQ(error_of([&] { read_spectacular(file); }), file.string() + GetParam().message);
+TEST(Spectacular, NamesLinesOfErrors) {
+  const std::vector<test::Refusal> refusals = {
+      {"{}\n[1]\n", ":2: found a line that is no JSON object, expected one measurement"},
+      {"{\"sensor\"", ":1: found a line that is no JSON object, expected one measurement"},
+      {std::string(3000, '[') + "\n",
+       ":1: found a line that is no JSON object, expected one measurement"},
+      {std::string(70'000, ' '), ":1: found a line of 70000 bytes, expected one measurement"},
+      {R"({"sensor":{"type":"gyroscope","values":[1,2]},"time":1})",
+       ":1: found 2 rates, expected 3 (rad/s)"},
+      {R"({"sensor":{"type":"gyroscope","values":[1,2,null]},"time":1})",
+       ":1: found no finite number under `values`, expected one"},
+      {R"({"sensor":{"type":"gyroscope","values":[1,2,3]},"time":1e30})",
+       ":1: found another `time`, expected seconds"},
+      {R"({"sensor":{"type":"gyroscope","values":[1,2,3]}})",
+       ":1: found no finite number under `time`, expected one"},
+      {"{\"frames\":[],\"time\":1}\n{\"frames\":[],\"time\":1}\n",
+       ":2: found a frame that is not after the one before it, expected ascending times"},
+      {R"({"frames":[{"cameraParameters":{"focalLengthX":0,"focalLengthY":1,)"
+       R"("principalPointX":1,"principalPointY":1}}],"time":1})",
+       ":1: found another focal length, expected pixels, > 0"},
+      {R"({"frames":[{"cameraParameters":{"focalLengthX":1,"focalLengthY":1,)"
+       R"("principalPointX":1,"principalPointY":1,"distortionModel":"MEI",)"
+       R"("distortionCoefficients":[1]}}],"time":1})",
+       ":1: found another lens, with 1 coefficients, expected pinhole with 3, "
+       "kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8"}};
+  test::expect_refusals("data.jsonl", refusals, [](const auto& file) { read_spectacular(file); });
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BadSpectacular,
-    testing::Values(
-        BadLog{"{}\n[1]\n", ":2: found a line that is no JSON object, expected one measurement"},
-        BadLog{"{\"sensor\"", ":1: found a line that is no JSON object, expected one measurement"},
-        BadLog{std::string(3000, '[') + "\n",
-               ":1: found a line that is no JSON object, expected one measurement"},
-        BadLog{std::string(70'000, ' '),
-               ":1: found a line of 70000 bytes, expected one measurement"},
-        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2]},"time":1})",
-               ":1: found 2 rates, expected 3 (rad/s)"},
-        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,null]},"time":1})",
-               ":1: found no finite number under `values`, expected one"},
-        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,3]},"time":1e30})",
-               ":1: found another `time`, expected seconds"},
-        BadLog{R"({"sensor":{"type":"gyroscope","values":[1,2,3]}})",
-               ":1: found no finite number under `time`, expected one"},
-        BadLog{"{\"frames\":[],\"time\":1}\n{\"frames\":[],\"time\":1}\n",
-               ":2: found a frame that is not after the one before it, expected ascending times"},
-        BadLog{R"({"frames":[{"cameraParameters":{"focalLengthX":0,"focalLengthY":1,)"
-               R"("principalPointX":1,"principalPointY":1}}],"time":1})",
-               ":1: found another focal length, expected pixels, > 0"},
-        BadLog{R"({"frames":[{"cameraParameters":{"focalLengthX":1,"focalLengthY":1,)"
-               R"("principalPointX":1,"principalPointY":1,"distortionModel":"MEI",)"
-               R"("distortionCoefficients":[1]}}],"time":1})",
-               ":1: found another lens, with 1 coefficients, expected pinhole with 3, "
-               "kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8"}));
 
 }  // namespace
 }  // namespace gpo

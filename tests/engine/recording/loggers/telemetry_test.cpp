@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// GoPro's GPMF and Camera Motion Metadata, alone and inside of videos.
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/loggers/telemetry_track.h"
 #include "engine/window/timestamps.h"
-#include "tests/engine/recording/loggers/telemetry_video.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
@@ -33,7 +31,7 @@ std::string letters(const std::string& key, const std::string& text) {
   return gpmf_item(key, 'c', 1, text);
 }
 
-/// A device's stream of rates, which are stored in units of 1/100 rad/s.
+/// Returns a stream of rates in units of 1/100 rad/s.
 std::string gyro_stream(const std::string& before, const std::vector<std::int64_t>& samples) {
   return gpmf_item("STRM",
                    '\0',
@@ -51,16 +49,16 @@ GpmfPayload parsed(const std::string& bytes) {
   return parse_gpmf(bytes, "GX010001.MP4", counted);
 }
 
-/// x left, y back and z up at 1, 2 and 3 rad/s.
+/// Rates about x left, y back and z up.
 const Eigen::Vector3d kRates(1, 2, 3);
 
-TEST(Gpmf, AxesAreThoseThatTheCameraSays) {
-  // What is stored is y, -x, z.
+TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
+  // The stored order is y, -x, z.
   const auto named =
       parsed(device("HERO8 Black", gyro_stream(letters("ORIN", "YxZ"), {200, -100, 300})));
   ASSERT_EQ(named.rates_rad_s.size(), 1U);
   EXPECT_LT((named.rates_rad_s[0] - kRates).norm(), 1e-12);
-  // Of a GoPro Max: x, -z, y and the matrix that makes z, x, y of it.
+  // A GoPro Max stores x, -z, y and the matrix that converts them to z, x, y.
   const std::string one = big_endian({0x3F800000}, 4), minus = big_endian({0xBF800000}, 4);
   const std::string zero(4, '\0');
   const std::string matrix =
@@ -71,7 +69,7 @@ TEST(Gpmf, AxesAreThoseThatTheCameraSays) {
   EXPECT_LT((turned.rates_rad_s.at(0) - kRates).norm(), 1e-12);
 }
 
-TEST(Gpmf, OlderCamerasAreKnownByTheirNames) {
+TEST(Gpmf, KnowsTheAxesOfOlderModels) {
   EXPECT_LT((parsed(device("Camera", gyro_stream("", {300, 100, 200}))).rates_rad_s.at(0) - kRates)
                 .norm(),
             1e-12);
@@ -84,18 +82,18 @@ TEST(Gpmf, OlderCamerasAreKnownByTheirNames) {
             1e-12);
 }
 
-TEST(Gpmf, ADeviceWithoutAGyroscopeIsPassedOver) {
+TEST(Gpmf, IgnoresDevicesWithoutAGyroscope) {
   const std::string other =
       device("SENSORB6", gpmf_item("STRM", '\0', 1, letters("STNM", "heart")));
   EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.size(), 1U);
   EXPECT_THAT(parsed(other).rates_rad_s, IsEmpty());
 }
 
-TEST(Gpmf, TimesAreOnTheLineOfTheCamerasStampsFromTheFirstExposureOn) {
+TEST(Gpmf, FitsTimesToTheCamerasStampsFromTheFirstExposure) {
   std::vector<GpmfPayload> payloads;
   GpmfCount counted;
   for (int i = 0; i < 5; ++i) {
-    const int count = i == 1 ? 199 : 200;  // as many as were there when it was written
+    const int count = i == 1 ? 199 : 200;  // varying payloads
     const int total = 200 * i + count - (i > 1 ? 1 : 0);
     const std::int64_t stamp_us = 80'000 + 5'000 * (total - count);
     const std::string stamps = gpmf_item("STMP", 'J', 8, big_endian({stamp_us}, 8)) +
@@ -116,7 +114,7 @@ TEST(Gpmf, TimesAreOnTheLineOfTheCamerasStampsFromTheFirstExposureOn) {
     ASSERT_NEAR(static_cast<double>(times[k]), -10e6 + 5e6 * static_cast<double>(k), 1e3) << k;
 }
 
-TEST(Gpmf, WithoutStampsTimesAreThoseOfTheTrack) {
+TEST(Gpmf, UsesTheTracksTimesWithoutStamps) {
   std::vector<GpmfPayload> payloads;
   GpmfCount counted;
   const std::string bytes = device("Camera", gyro_stream("", std::vector<std::int64_t>(300, 1)));
@@ -129,75 +127,54 @@ TEST(Gpmf, WithoutStampsTimesAreThoseOfTheTrack) {
   EXPECT_EQ(gpmf_times_ns(payloads, {0, 1, 2}).at(150), 1'500'000'000);
 }
 
-struct BadGpmf {
-  std::string bytes;
-  std::string message;
-};
-class BadGpmfBytes : public testing::TestWithParam<BadGpmf> {};
-
-TEST_P(BadGpmfBytes, AreRefusedInOneLine) {
-  EXPECT_EQ(error_of([] { parsed(GetParam().bytes); }), "GX010001.MP4: " + GetParam().message);
+TEST(Gpmf, NamesKeysOfErrors) {
+  const auto stream = [](const std::string& items) {
+    return device("C", gpmf_item("STRM", '\0', 1, items));
+  };
+  const std::string not_rates =
+      "GYRO: found samples that are not three numbers, expected rates about three axes";
+  const std::vector<std::pair<std::string, std::string>> errors = {
+      {device("Camera", gyro_stream("", {1, 2, 3})).substr(0, 40),
+       "DEVC: found 32 bytes (truncated), expected 52"},
+      {stream(std::string("GYRO\x73\x06\x7f\xff", 8)),
+       "GYRO: found 0 bytes (truncated), expected 196602"},
+      {device("C", gyro_stream(letters("ORIN", "YXZ"), {1, 2, 3})),
+       "ORIN: found no axes, expected three right-handed axes such as ZXY"},
+      {device(
+           "C",
+           gyro_stream(gpmf_item("MTRX", 'f', 36, std::string(36, '\0')) + letters("ORIO", "ZXY"),
+                       {1, 2, 3})),
+       "MTRX: found a matrix that is no rotation, expected a rotation"},
+      {stream(gpmf_item("SCAL", 's', 2, big_endian({0}, 2)) +
+              gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2))),
+       "SCAL: found 0, expected a divisor"},
+      {stream(gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2))), not_rates},
+      {stream(gpmf_item("GYRO", 'U', 16, std::string(16, '1'))), not_rates},
+      {stream(gpmf_item("GYRO", 'f', 12, big_endian({0x7F800000, 0, 0}, 4))),
+       "GYRO: found a number that is not finite, expected numbers"},
+      {device("C", gyro_stream(gpmf_item("TSMP", 'L', 4, big_endian({0}, 4)), {1, 2, 3})),
+       "TSMP: found 0, expected a count of all samples so far"}};
+  for (const auto& [bytes, message] : errors)
+    EXPECT_EQ(error_of([&, bytes = bytes] { parsed(bytes); }), "GX010001.MP4: " + message);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BadGpmfBytes,
-    testing::Values(
-        BadGpmf{device("Camera", gyro_stream("", {1, 2, 3})).substr(0, 40),
-                "DEVC: found 32 bytes (cut), expected 52"},
-        BadGpmf{device("C", gpmf_item("STRM", '\0', 1, std::string("GYRO\x73\x06\x7f\xff", 8))),
-                "GYRO: found 0 bytes (cut), expected 196602"},
-        BadGpmf{device("C", gyro_stream(letters("ORIN", "YXZ"), {1, 2, 3})),
-                "ORIN: found no axes, expected three axes that turn to the right, such as ZXY"},
-        BadGpmf{device("C",
-                       gyro_stream(gpmf_item("MTRX", 'f', 36, std::string(36, '\0')) +
-                                       letters("ORIO", "ZXY"),
-                                   {1, 2, 3})),
-                "MTRX: found a matrix that is no rotation, expected a rotation"},
-        BadGpmf{device("C",
-                       gpmf_item("STRM",
-                                 '\0',
-                                 1,
-                                 gpmf_item("SCAL", 's', 2, big_endian({0}, 2)) +
-                                     gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2)))),
-                "SCAL: found 0, expected a divisor"},
-        BadGpmf{
-            device("C",
-                   gpmf_item("STRM", '\0', 1, gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2)))),
-            "GYRO: found samples that are not three numbers, expected the rates about three "
-            "axes"},
-        BadGpmf{
-            device("C",
-                   gpmf_item("STRM", '\0', 1, gpmf_item("GYRO", 'U', 16, std::string(16, '1')))),
-            "GYRO: found samples that are not three numbers, expected the rates about three "
-            "axes"},
-        BadGpmf{device("C",
-                       gpmf_item("STRM",
-                                 '\0',
-                                 1,
-                                 gpmf_item("GYRO", 'f', 12, big_endian({0x7F800000, 0, 0}, 4)))),
-                "GYRO: found a number that is not finite, expected numbers"},
-        BadGpmf{device("C", gyro_stream(gpmf_item("TSMP", 'L', 4, big_endian({0}, 4)), {1, 2, 3})),
-                "TSMP: found 0, expected a count of all samples so far"}));
-
-TEST(Camm, SamplesAreRatesOrExposures) {
+TEST(Camm, ReadsRatesAndExposures) {
   EXPECT_EQ(*parse_camm(camm_rates(1, -2, 3), "").rates_rad_s, Eigen::Vector3d(1, -2, 3));
   EXPECT_NEAR(*parse_camm(camm_exposure(1'000'000, 20'000'000), "").readout_s, 0.02, 1e-12);
   EXPECT_FALSE(parse_camm(std::string("\0\0\x07\0", 4), "").rates_rad_s);
 }
 
-TEST(Camm, BadSamplesAreRefused) {
+TEST(Camm, RefusesBadSamples) {
   EXPECT_EQ(error_of([] { parse_camm(camm_rates(1, 2, 3).substr(0, 12), "a.mp4"); }),
-            "a.mp4: found a sample of 12 bytes (cut), expected 16");
+            "a.mp4: found a sample of 12 bytes (truncated), expected 16");
   EXPECT_EQ(error_of([] { parse_camm("", "a.mp4"); }),
-            "a.mp4: found a sample of 0 bytes (cut), expected 4");
+            "a.mp4: found a sample of 0 bytes (truncated), expected 4");
   EXPECT_EQ(error_of([] {
               parse_camm(camm_rates(1, std::numeric_limits<float>::infinity(), 3), "a.mp4");
             }),
-            "a.mp4: found a rate that is not finite, expected three numbers");
+            "a.mp4: a rate is not finite");
 }
 
-/// A recording that is a video with telemetry.
 class VideoWithTelemetry : public testing::Test {
  protected:
   static constexpr int kFrames = 50;  // two seconds
@@ -207,8 +184,10 @@ class VideoWithTelemetry : public testing::Test {
                                         int clockwise_degrees = 0) const {
     folder.write("camera.yaml", test::kCameraYaml);
     const std::vector<cv::Mat> images(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(file, images, {.clockwise_degrees = clockwise_degrees});
-    test::add_telemetry(file, format, pieces);
+    test::make_video(
+        file,
+        images,
+        {.clockwise_degrees = clockwise_degrees, .telemetry_format = format, .telemetry = pieces});
     return open_recording(folder.path());
   }
   /// Two payloads of a second each.
@@ -223,7 +202,7 @@ class VideoWithTelemetry : public testing::Test {
   std::filesystem::path file = folder.path() / "GX010001.mp4";
 };
 
-TEST_F(VideoWithTelemetry, OfAGoProHasItsGyroscopeAndItsAxes) {
+TEST_F(VideoWithTelemetry, ReadsAGoProsGyroscopeAndAxes) {
   const auto recording = open("gpmd", gopro());
   ASSERT_TRUE(recording->gyroscope);
   const Gyroscope& gyroscope = *recording->gyroscope;
@@ -237,9 +216,9 @@ TEST_F(VideoWithTelemetry, OfAGoProHasItsGyroscopeAndItsAxes) {
   EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("T_BS"))));
 }
 
-TEST_F(VideoWithTelemetry, ThatIsTurnedTurnsTheAxes) {
+TEST_F(VideoWithTelemetry, RotatesTheAxesWithTheImage) {
   const auto recording = open("gpmd", gopro(), 180);
-  // What was right and down in the stored picture is left and up.
+  // Right and down in the stored image are left and up.
   EXPECT_LT(
       (recording->gyroscope->R_gyro_camera.transpose() * recording->gyroscope->rates_rad_s[0] -
        Eigen::Vector3d(1, 3, -2))
@@ -247,7 +226,7 @@ TEST_F(VideoWithTelemetry, ThatIsTurnedTurnsTheAxes) {
       1e-12);
 }
 
-TEST_F(VideoWithTelemetry, OfCameraMotionMetadataHasRatesAndReadout) {
+TEST_F(VideoWithTelemetry, ReadsRatesAndReadoutOfCameraMotionMetadata) {
   std::vector<test::TelemetryPiece> pieces = {{0, 1, camm_exposure(1'000'000, 15'000'000)}};
   for (int k = 1; k < 200; ++k) {
     const auto x = static_cast<float>(k);
@@ -260,23 +239,24 @@ TEST_F(VideoWithTelemetry, OfCameraMotionMetadataHasRatesAndReadout) {
   EXPECT_NEAR(recording->gyroscope->rates_rad_s[99].x(), 1, 1e-6);
   EXPECT_NEAR(*recording->readout_s, 0.015, 1e-12);
   EXPECT_THAT(recording->notes,
-              testing::Contains("no T_BS in camera.yaml: the gyroscope's axes are taken as the "
-                                "camera's"));
+              testing::Contains("no T_BS in camera.yaml: assuming that the gyroscope has "
+                                "the camera's axes"));
 }
 
-TEST_F(VideoWithTelemetry, ThatIsBrokenIsRefused) {
+TEST_F(VideoWithTelemetry, RefusesBrokenTelemetry) {
   const std::string name = file.string();
   auto pieces = gopro();
   pieces[1].bytes.resize(60);
-  EXPECT_THAT(error_of([&] { open("gpmd", pieces); }),
-              testing::StartsWith(name + ": telemetry: DEVC: found 52 bytes (cut), expected "));
+  EXPECT_THAT(
+      error_of([&] { open("gpmd", pieces); }),
+      testing::StartsWith(name + ": telemetry: DEVC: found 52 bytes (truncated), expected "));
   EXPECT_EQ(error_of([&] {
               open("camm", {{0, 10, "abc"}, {10, 10, camm_rates(1, 2, 3)}});
             }),
-            name + ": telemetry: found a sample of 3 bytes (cut), expected 4");
+            name + ": telemetry: found a sample of 3 bytes (truncated), expected 4");
 }
 
-TEST(RealTelemetry, OfAGoProOnADrone) {
+TEST(RealTelemetry, ReadsAGoProOnADrone) {
   const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data/gopro/karma.mp4";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const auto log = log_inside(file, 0);
@@ -290,7 +270,7 @@ TEST(RealTelemetry, OfAGoProOnADrone) {
       0.05);
   EXPECT_NEAR(1e-9 * static_cast<double>(gyroscope.timestamps_ns.front()), -0.018, 0.005);
   ASSERT_TRUE(log->T_body_camera);
-  // The first sample is stored as 172, 70, 125 of 3755 a rad/s, in the order z, x, y.
+  // The first sample is stored as 172, 70, 125 (z, x, y) with 3755 units per rad/s.
   EXPECT_LT((3755 * gyroscope.rates_rad_s[0] - Eigen::Vector3d(70, 125, 172)).norm(), 1e-9);
 }
 

@@ -102,7 +102,7 @@ TEST(Results, SayHowSureATruthFromTheBoardIs) {
   inspection.truth = std::make_shared<const WindowTruth>(truth);
   const ResultRow row = rows_of(&inspection).at("Truth");
   EXPECT_EQ(row.value, "\u00b10.050\u00b0");
-  EXPECT_THAT(row.tooltip, HasSubstr("certain to 0.4 mm, 0.06 deg, its normal 0.05 deg"));
+  EXPECT_THAT(row.tooltip, HasSubstr("certain to 0.4 mm, 0.06 deg, board normal 0.05 deg"));
 }
 
 TEST(Results, CarryUnitsAndSensibleDigits) {

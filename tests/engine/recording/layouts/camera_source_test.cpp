@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What pictures and videos say of the camera themselves. Their bytes are written here by the
 // formats' documents, or by FFmpeg.
-#include "engine/recording/layouts/metadata_field_of_view.h"
+#include "engine/recording/layouts/camera_source.h"
 
+#include "engine/files/byte_cursor.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/telemetry_track.h"
-#include "tests/engine/recording/loggers/telemetry_video.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
@@ -31,7 +31,7 @@ using testing::HasSubstr;
 const double kFilm_mm = std::hypot(36, 24);
 const std::string kEquivalent = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
 
-/// A tag of EXIF: 3 is a number of two bytes, 4 one of four, 5 a fraction.
+/// An EXIF tag; the types 3, 4 and 5 are integers of two and four bytes and fractions.
 struct Tag {
   int number = 0;
   int type = 0;
@@ -39,7 +39,7 @@ struct Tag {
   std::int64_t denominator = 1;
 };
 
-/// TIFF's directory of these tags, behind a first one that points to it, in a JPEG's segment APP1.
+/// Returns a JPEG's segment APP1 with a TIFF directory of these tags, behind one that points to it.
 std::string exif_segment(const std::vector<Tag>& tags) {
   const std::int64_t first = 8, directory = first + 2 + 12 + 4;
   const auto count = static_cast<std::int64_t>(tags.size());
@@ -62,7 +62,7 @@ std::string exif_segment(const std::vector<Tag>& tags) {
   return "\xFF\xE1" + big_endian({std::ssize(content) + 2}, 2) + content;
 }
 
-class MetadataFieldsOfView : public testing::Test {
+class StoredViews : public testing::Test {
  protected:
   std::filesystem::path image(const std::string& segment) const {
     std::vector<unsigned char> jpeg;
@@ -70,8 +70,8 @@ class MetadataFieldsOfView : public testing::Test {
     const std::string bytes(jpeg.begin(), jpeg.end());
     return folder.write("1.jpg", bytes.substr(0, 2) + segment + bytes.substr(2));
   }
-  std::optional<MetadataFieldOfView> of_exif(const std::vector<Tag>& tags) const {
-    return metadata_field_of_view(image(exif_segment(tags)));
+  std::optional<FieldOfView> of_exif(const std::vector<Tag>& tags) const {
+    return stored_view(image(exif_segment(tags)));
   }
   std::filesystem::path video(const std::map<std::string, std::string>& metadata,
                               const std::string& name = "a.mov") const {
@@ -88,23 +88,23 @@ class MetadataFieldsOfView : public testing::Test {
 constexpr int kFocalLength = 0x920A, kEquivalentTag = 0xA405, kFocalPlaneX = 0xA20E,
               kFocalPlaneUnit = 0xA210, kWidth = 0xA002, kHeight = 0xA003;
 
-TEST_F(MetadataFieldsOfView, ExifTellsTheFocalLengthOnFilm) {
+TEST_F(StoredViews, ReadsTheEquivalentFocalLengthFromExif) {
   const auto view = of_exif({{kFocalLength, 5, 425, 100}, {kEquivalentTag, 3, 26}});
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->focal_diagonals, 26 / kFilm_mm, 1e-12);
   EXPECT_FALSE(view->fisheye);
-  EXPECT_EQ(view->told, "EXIF: 26 mm equivalent");
+  EXPECT_EQ(view->source, "EXIF (26 mm equivalent)");
   const auto recording = open_recording(folder.path());
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
   EXPECT_NEAR(recording->camera.fx, 26 / kFilm_mm * 80, 1e-9);
   EXPECT_EQ(recording->camera.fx, recording->camera.fy);
   EXPECT_THAT(recording->notes,
-              testing::Contains("no calibration: the camera is a guess (EXIF: 26 mm equivalent; "
-                                "`calibrate` finds it)"));
+              testing::Contains("no calibration: field of view from EXIF (26 mm "
+                                "equivalent); run `calibrate`"));
 }
 
-TEST_F(MetadataFieldsOfView, ExifTellsTheFocalLengthOnTheSensor) {
-  // Half of the pixels of a sensor of 36 x 24 mm: 1000 pixels a centimeter.
+TEST_F(StoredViews, ReadsFocalLengthAndSensorFromExif) {
+  // 1000 pixels per centimeter on a sensor of 36 x 24 mm.
   const std::vector<Tag> sensor = {{kFocalLength, 5, 50, 1},
                                    {kWidth, 4, 3600},
                                    {kHeight, 4, 2400},
@@ -113,19 +113,19 @@ TEST_F(MetadataFieldsOfView, ExifTellsTheFocalLengthOnTheSensor) {
   const auto view = of_exif(sensor);
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->focal_diagonals, 50 / kFilm_mm, 1e-6);
-  EXPECT_EQ(view->told, "EXIF: 50 mm on a sensor of 43.3 mm");
+  EXPECT_EQ(view->source, "EXIF (50 mm on a sensor of 43.3 mm)");
   std::vector<Tag> in_inches(sensor.begin(), sensor.end() - 2);
-  in_inches.push_back({kFocalPlaneX, 5, 2540, 1});  // inches where nothing is told
+  in_inches.push_back({kFocalPlaneX, 5, 2540, 1});  // inches by default
   const auto same = of_exif(in_inches);
   ASSERT_TRUE(same);
   EXPECT_NEAR(same->focal_diagonals, 50 / kFilm_mm, 1e-6);
-  // 0 is "unknown".
+  // An equivalent of 0 means unknown.
   std::vector<Tag> unknown = sensor;
   unknown.push_back({kEquivalentTag, 3, 0});
   EXPECT_TRUE(of_exif(unknown));
 }
 
-TEST_F(MetadataFieldsOfView, WhatNoCameraHasInExifIsPassedOver) {
+TEST_F(StoredViews, IgnoresImplausibleExif) {
   for (const int mm : {0, 4, 501, 65535}) EXPECT_FALSE(of_exif({{kEquivalentTag, 3, mm}})) << mm;
   EXPECT_FALSE(of_exif({{kFocalLength, 5, 50, 1}}));
   const auto of_sensor = [&](Tag focal, Tag resolution, int unit) {
@@ -143,41 +143,41 @@ TEST_F(MetadataFieldsOfView, WhatNoCameraHasInExifIsPassedOver) {
   EXPECT_FALSE(of_sensor(focal, resolution, 77));
 }
 
-TEST_F(MetadataFieldsOfView, ExifThatIsBrokenIsPassedOver) {
+TEST_F(StoredViews, IgnoresBrokenExif) {
   const std::string good = exif_segment({{kFocalLength, 5, 425, 100}, {kEquivalentTag, 3, 26}});
-  ASSERT_TRUE(metadata_field_of_view(image(good)));
+  ASSERT_TRUE(stored_view(image(good)));
   for (std::size_t at = 4; at < good.size(); ++at) {
     for (const char byte : {'\x00', '\x7F', '\xFF'}) {
       std::string bad = good;
       bad[at] = byte;
-      const auto view = metadata_field_of_view(image(bad));
+      const auto view = stored_view(image(bad));
       if (!view) continue;
       EXPECT_TRUE(view->focal_diagonals > 0.04 && view->focal_diagonals < 5.8) << at;
     }
   }
-  EXPECT_FALSE(metadata_field_of_view(folder.write("2.jpg", "no picture")));
-  EXPECT_FALSE(metadata_field_of_view(folder.path() / "absent.jpg"));
+  EXPECT_FALSE(stored_view(folder.write("2.jpg", "no picture")));
+  EXPECT_FALSE(stored_view(folder.path() / "absent.jpg"));
 }
 
-TEST_F(MetadataFieldsOfView, MetadataOfAVideoTellTheFocalLengthOnFilm) {
+TEST_F(StoredViews, ReadsTheEquivalentFocalLengthFromAVideo) {
   for (const char* name : {"a.mov", "a.mp4", "a.mkv"}) {
-    const auto view = metadata_field_of_view(video({{kEquivalent, "27"}}, name));
+    const auto view = stored_view(video({{kEquivalent, "27"}}, name));
     ASSERT_TRUE(view) << name;
     EXPECT_NEAR(view->focal_diagonals, 27 / kFilm_mm, 1e-12);
-    EXPECT_THAT(view->told, testing::StartsWith("the video's metadata: 27 mm equivalent"));
+    EXPECT_THAT(view->source, testing::StartsWith("the video's metadata (27 mm equivalent"));
   }
-  EXPECT_TRUE(metadata_field_of_view(video({{kEquivalent, "50.00mm"}})));
+  EXPECT_TRUE(stored_view(video({{kEquivalent, "50.00mm"}})));
   for (const char* text : {"", "mm", "wide", "-26", "4.9", "501 mm", "nan", "1e999"})
-    EXPECT_FALSE(metadata_field_of_view(video({{kEquivalent, text}}))) << text;
-  EXPECT_FALSE(metadata_field_of_view(video({{"com.apple.quicktime.model", "iPhone"}})));
-  EXPECT_FALSE(metadata_field_of_view(folder.write("b.mov", "no video")));
+    EXPECT_FALSE(stored_view(video({{kEquivalent, text}}))) << text;
+  EXPECT_FALSE(stored_view(video({{"com.apple.quicktime.model", "iPhone"}})));
+  EXPECT_FALSE(stored_view(folder.write("b.mov", "no video")));
 }
 
 std::string box(const std::string& kind, const std::string& content) {
   return big_endian({std::ssize(content) + 8}, 4) + kind + content;
 }
 
-/// A box `meta` of two keys, as QuickTime's document has it; the second's value is of that type.
+/// Returns a box `meta` with two keys according to QuickTime's documentation.
 std::string meta_of(int type, const std::string& value) {
   const std::string none = big_endian({0}, 4);
   const auto item = [&](int place, int of_type, const std::string& data) {
@@ -190,7 +190,7 @@ std::string meta_of(int type, const std::string& value) {
          box("ilst", item(1, 1, "back camera 6.86mm") + item(2, type, value));
 }
 
-TEST(MovieMetadata, HaveTextsAndNumbers) {
+TEST(MovieMetadata, ReadsTextsAndNumbers) {
   const auto value = [](int type, const std::string& bytes) {
     return metadata_value(meta_of(type, bytes), kEquivalent).value_or("none");
   };
@@ -206,23 +206,20 @@ TEST(MovieMetadata, HaveTextsAndNumbers) {
   EXPECT_EQ(value(13, "a picture"), "none");
   const std::string meta = meta_of(1, "26");
   EXPECT_EQ(metadata_value(meta, "com.apple.quicktime.camera.lens_model"), "back camera 6.86mm");
-  EXPECT_EQ(metadata_value(std::string(4, '\0') + meta, kEquivalent), "26");  // as MPEG-4 has it
+  EXPECT_EQ(metadata_value(std::string(4, '\0') + meta, kEquivalent), "26");  // MPEG-4
   EXPECT_FALSE(metadata_value(meta, "com.apple.quicktime.model"));
   for (std::size_t length = 0; length < meta.size(); ++length)
     EXPECT_FALSE(metadata_value(meta.substr(0, length), kEquivalent)) << length;
 }
 
-TEST_F(MetadataFieldsOfView, MetadataOfAVideosTrackAreReadToo) {
+TEST_F(StoredViews, ReadsMetadataOfAVideosTrack) {
   const auto file = video({});
   std::string bytes = folder.read("a.mov");
-  // FFmpeg puts `moov` at the end, so that nothing moves where the track in it grows.
+  // FFmpeg puts `moov` at the end, so that a larger track in it moves no data.
   const std::size_t movie = bytes.rfind("moov") - 4, track = bytes.find("trak", movie) - 4;
   ASSERT_GT(movie, bytes.find("mdat"));
   const auto size_at = [&](std::size_t at) {
-    std::int64_t size = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      size = size << 8 | static_cast<unsigned char>(bytes[at + k]);
-    return size;
+    return static_cast<std::int64_t>(gpo::big_endian(bytes, at, 4));
   };
   const std::string added = box("meta", meta_of(21, big_endian({26}, 4)));
   const auto track_size = size_at(track);
@@ -230,7 +227,7 @@ TEST_F(MetadataFieldsOfView, MetadataOfAVideosTrackAreReadToo) {
   bytes.replace(track, 4, big_endian({track_size + std::ssize(added)}, 4));
   bytes.replace(movie, 4, big_endian({size_at(movie) + std::ssize(added)}, 4));
   folder.write("a.mov", bytes);
-  const auto view = metadata_field_of_view(file);
+  const auto view = stored_view(file);
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->focal_diagonals, 26 / kFilm_mm, 1e-12);
   const auto recording = open_recording(file);
@@ -245,7 +242,7 @@ std::string settings(float diagonal_deg, const std::string& style) {
              "DEVC", '\0', 1, gpmf_item("VFOV", 'c', 1, style) + gpmf_item("ZFOV", 'f', 4, angle));
 }
 
-TEST(GoProSettings, TellTheAngleAlongTheDiagonal) {
+TEST(GoProSettings, ReadsTheDiagonalAngle) {
   const auto linear = view_of_gpmf(settings(90, "L"));
   ASSERT_TRUE(linear);
   EXPECT_NEAR(linear->focal_diagonals, 0.5, 1e-12);
@@ -253,7 +250,7 @@ TEST(GoProSettings, TellTheAngleAlongTheDiagonal) {
   const auto wide = view_of_gpmf(settings(137.4F, "W"));
   ASSERT_TRUE(wide);
   EXPECT_TRUE(wide->fisheye);
-  EXPECT_EQ(wide->told, "GoPro's settings: 137 degrees along the diagonal of a fisheye");
+  EXPECT_EQ(wide->source, "the GoPro's settings (137 deg diagonal, fisheye)");
   for (const float absurd : {0.F, -90.F, 9.F, 171.F, 1e30F})
     EXPECT_FALSE(view_of_gpmf(settings(absurd, "W"))) << absurd;
   EXPECT_FALSE(view_of_gpmf(settings(std::numeric_limits<float>::quiet_NaN(), "W")));
@@ -262,10 +259,10 @@ TEST(GoProSettings, TellTheAngleAlongTheDiagonal) {
     EXPECT_FALSE(view_of_gpmf(good.substr(0, length))) << length;
 }
 
-TEST_F(MetadataFieldsOfView, OfAGoProIsThatOfAFisheye) {
+TEST_F(StoredViews, ReadsAGoProsFisheye) {
   const auto file = video({}, "GX010001.mp4");
   std::string bytes = folder.read("GX010001.mp4");
-  // Before the data that FFmpeg adds to the movie, whose length is what is left of the file.
+  // Insert it before the data that FFmpeg adds to the movie, the last box of the file.
   const std::string added = box("udta", box("GPMF", settings(120, "W")));
   const std::size_t movie = bytes.rfind("moov") - 4;
   bytes.insert(bytes.find("udta", movie) - 4, added);
@@ -274,20 +271,20 @@ TEST_F(MetadataFieldsOfView, OfAGoProIsThatOfAFisheye) {
   const auto recording = open_recording(file);
   const Camera& camera = recording->camera;
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
-  EXPECT_THAT(recording->notes.at(0), HasSubstr("120 degrees along the diagonal of a fisheye"));
-  // What is seen in the corner is half as far from the axis.
+  EXPECT_THAT(recording->notes.at(0), HasSubstr("120 deg diagonal, fisheye"));
+  // The corner is at half the diagonal angle from the axis.
   const double half_rad = radians(60);
   const Eigen::Vector2d corner =
       project(camera, {0.8 * std::sin(half_rad), 0.6 * std::sin(half_rad), std::cos(half_rad)});
   EXPECT_LT((corner - Eigen::Vector2d(camera.cx + 32, camera.cy + 24)).norm(), 1e-9);
 }
 
-TEST(RealGoPro, OfTheYear2016DoesNotTellItsAngle) {
+TEST(RealGoPro, HasNoAngleInAModelOf2016) {
   const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data/gopro/karma.mp4";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  EXPECT_FALSE(metadata_field_of_view(file));
+  EXPECT_FALSE(stored_view(file));
   EXPECT_THAT(open_recording(file)->notes.at(0),
-              HasSubstr("a guess (70 degrees along the picture's diagonal"));
+              HasSubstr("assuming a 70 deg diagonal field of view"));
 }
 
 }  // namespace

@@ -1,0 +1,237 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "engine/files/csv_table.h"
+#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
+#include "engine/recording/loggers/gpmf.h"
+#include "engine/recording/loggers/logs.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostHeadLines = 200;
+constexpr std::size_t kMostRows = 8'000'000;
+constexpr double kMostTime_s = 4e9;
+
+/// Rotation of the camera in a phone's axes (x right, y up, z out of the screen, held upright) for
+/// the rear camera, whose x runs from the top of the phone to its bottom; and in Gyroflow's (x up,
+/// y left, z back, seen from behind the camera).
+Eigen::Matrix3d rear_camera() {
+  return (Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished();
+}
+
+void add_sample(Gyroscope& gyroscope,
+                const CsvTable& table,
+                const CsvRow& row,
+                std::int64_t time_ns,
+                const Eigen::Vector3d& rates_rad_s) {
+  if (!gyroscope.timestamps_ns.empty() && time_ns <= gyroscope.timestamps_ns.back())
+    csv_fail(table, row.line, "a time that is not after the one before it", "ascending times");
+  if (!rates_rad_s.allFinite()) csv_fail(table, row.line, "a rate that is not finite", "numbers");
+  gyroscope.timestamps_ns.push_back(time_ns);
+  gyroscope.lines.push_back(row.line);
+  gyroscope.rates_rad_s.push_back(rates_rad_s);
+}
+
+int column_of(const CsvTable& table, const std::string& name) {
+  const auto found = std::ranges::find(
+      table.header, name, [](const std::string& cell) { return lower_case(trimmed(cell)); });
+  if (found == table.header.end())
+    throw InputError(fmt::format("{}: missing column \"{}\"", table.file.string(), name));
+  return static_cast<int>(found - table.header.begin());
+}
+
+/// `names` are the columns of the time [s] and of the three rates [rad/s].
+Gyroscope gyroscope_of(const CsvTable& table, const std::array<std::string, 4>& names) {
+  std::array<int, 4> columns{};
+  for (int k = 0; k < 4; ++k) columns[k] = column_of(table, names[k]);
+  Gyroscope gyroscope;
+  gyroscope.file = table.file;
+  for (const CsvRow& row : table.rows) {
+    const auto time_ns = parse_decimal(csv_cell(table, row, columns[0]), 9);
+    if (!time_ns) csv_fail(table, row.line, "no time stamp", "seconds as " + names[0]);
+    const auto rate = [&](int k) { return csv_number(table, row, columns[k]); };
+    add_sample(gyroscope, table, row, *time_ns, {rate(1), rate(2), rate(3)});
+  }
+  return gyroscope;
+}
+
+Camera camera_of(const fs::path& file) {
+  const CsvTable table = read_csv(file, {"", "", ""}, CsvColumns::exactly);
+  const auto at = [&](std::size_t row, int column) {
+    return csv_number(table, table.rows[row], column);
+  };
+  if (table.rows.size() != 3 || !(at(0, 0) > 0) || !(at(1, 1) > 0))
+    csv_fail(table, table.rows.back().line, "another matrix", "3 rows: fx 0 cx, 0 fy cy, 0 0 1");
+  return {0, 0, at(0, 0), at(1, 1), at(0, 2), at(1, 2), Distortion::none, {}};
+}
+
+/// Reads ARKit's poses, which the app stores with the camera's axes converted to ours.
+void add_odometry(Log& log, const fs::path& file) {
+  const CsvTable table = read_csv(
+      file, {"timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"}, CsvColumns::at_least);
+  log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
+  for (const CsvRow& row : table.rows) {
+    const auto value = [&](int column) { return csv_number(table, row, column); };
+    const Eigen::Quaterniond q(value(8), value(5), value(6), value(7));
+    if (!(std::abs(q.norm() - 1) <= 1e-2))
+      csv_fail(
+          table, row.line, fmt::format("a quaternion of norm {}", q.norm()), "a unit quaternion");
+    log.true_poses.push_back(
+        Pose{q.normalized().toRotationMatrix(), {value(2), value(3), value(4)}});
+  }
+}
+
+struct HeadValue {
+  std::string text;
+  int line = 0;
+};
+
+struct GcsvFile {
+  CsvTable table;  ///< its rows have at least four cells
+  std::map<std::string, HeadValue> head;
+  int head_lines = 0;
+};
+
+/// Whether a line is "t,gx,gy,gz,...", with any letters in place of g.
+bool names_columns(const CsvTable& table, std::string_view line) {
+  const CsvRow row{0, line};
+  if (lower_case(csv_cell(table, row, 0)) != "t") return false;
+  for (int k = 0; k < 3; ++k) {
+    const std::string_view name = csv_cell(table, row, 1 + k);
+    if (name.empty() || std::tolower(static_cast<unsigned char>(name.back())) != 'x' + k)
+      csv_fail(table, 0, "other columns", "columns t,gx,gy,gz");
+  }
+  return true;
+}
+
+void read_head(GcsvFile& gcsv, TextLines& lines) {
+  const std::string_view first = lines.next().value_or("");
+  if (!first.starts_with("GYROFLOW IMU LOG") && !first.starts_with("CAMERA IMU LOG"))
+    csv_fail(gcsv.table, 1, "another first line", "GYROFLOW IMU LOG");
+  for (bool in_head = true; in_head;) {
+    const auto row = lines.next();
+    const int line = lines.number() + (row ? 0 : 1);
+    if (!row || line > kMostHeadLines) csv_fail(gcsv.table, line, "no table", "a line t,gx,gy,gz");
+    in_head = !names_columns(gcsv.table, *row);
+    const std::size_t comma = row->find(',');
+    if (!in_head || comma == std::string_view::npos) continue;
+    gcsv.head[lower_case(trimmed(row->substr(0, comma)))] = {
+        std::string(trimmed(row->substr(comma + 1))), line};
+  }
+  gcsv.head_lines = lines.number();
+}
+
+GcsvFile open_gcsv(const fs::path& file) {
+  GcsvFile gcsv;
+  gcsv.table.file = file;
+  gcsv.table.text = std::make_shared<const std::string>(read_file(file));
+  TextLines lines(*gcsv.table.text);
+  read_head(gcsv, lines);
+  while (const auto row = lines.next()) {
+    const int line = lines.number();
+    if (row->empty()) continue;
+    if (std::ranges::count(*row, ',') < 3)
+      csv_fail(gcsv.table, line, "fewer than 4 columns", "t,gx,gy,gz");
+    if (gcsv.table.rows.size() == kMostRows)
+      csv_fail(gcsv.table, line, "too many rows", fmt::format("at most {}", kMostRows));
+    gcsv.table.rows.push_back({line, *row});
+  }
+  if (gcsv.table.rows.empty()) csv_fail(gcsv.table, lines.number(), "no rows", "t,gx,gy,gz");
+  return gcsv;
+}
+
+std::optional<double> head_number(const GcsvFile& gcsv, const std::string& key) {
+  const auto found = gcsv.head.find(key);
+  if (found == gcsv.head.end()) return std::nullopt;
+  const auto value = parse_number(found->second.text);
+  if (!value) csv_fail(gcsv.table, found->second.line, "no number", key + ",NUMBER");
+  return value;
+}
+
+double required_scale(const GcsvFile& gcsv, const std::string& key) {
+  const auto value = head_number(gcsv, key);
+  if (value && *value > 0) return *value;
+  csv_fail(gcsv.table, gcsv.head_lines, "no " + key + " above the table", key + ",NUMBER, > 0");
+}
+
+/// Returns gyroscope <- camera: row i of the orientation is the log's axis for Gyroflow's axis i.
+Eigen::Matrix3d axes_of(const GcsvFile& gcsv) {
+  const auto found = gcsv.head.find("orientation");
+  const auto axes = signed_axes(found == gcsv.head.end() ? "XYZ" : found->second.text);
+  if (!axes)
+    csv_fail(gcsv.table,
+             found->second.line,
+             "other axes",
+             "orientation,AXES with three right-handed axes such as YxZ");
+  return axes->transpose() * rear_camera();
+}
+
+}  // namespace
+
+Log read_sensor_logger(const fs::path& file) {
+  Log log;
+  log.file = file;
+  log.gyroscope = gyroscope_of(read_csv(file, {"timestamp"}, CsvColumns::at_least),
+                               {"seconds_elapsed", "x", "y", "z"});
+  log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
+  log.notes.emplace_back(
+      "Gyroscope.csv: assuming that its elapsed seconds are the video's time and that the camera "
+      "is the phone's rear one");
+  return log;
+}
+
+Log read_stray_scanner(const fs::path& folder) {
+  Log log;
+  log.file = folder / "imu.csv";
+  log.camera_file = folder / "camera_matrix.csv";
+  log.camera = camera_of(log.camera_file);
+  log.frames_file = folder / "odometry.csv";
+  add_odometry(log, log.frames_file);
+  if (!is_file(log.file)) return log;
+  log.gyroscope = gyroscope_of(read_csv(log.file, {"timestamp"}, CsvColumns::at_least),
+                               {"timestamp", "alpha_x", "alpha_y", "alpha_z"});
+  log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
+  return log;
+}
+
+Log read_gcsv(const fs::path& file) {
+  const GcsvFile gcsv = open_gcsv(file);
+  const CsvTable& table = gcsv.table;
+  const double tscale = required_scale(gcsv, "tscale");
+  const double gscale = required_scale(gcsv, "gscale");
+  Log log;
+  log.file = file;
+  log.T_body_camera = Pose{axes_of(gcsv), Eigen::Vector3d::Zero()};
+  Gyroscope gyroscope;
+  gyroscope.file = file;
+  for (const CsvRow& row : table.rows) {
+    const double time_s = tscale * csv_number(table, row, 0);
+    if (!(std::abs(time_s) < kMostTime_s)) csv_fail(table, row.line, "another time", "seconds");
+    const Eigen::Vector3d rates(
+        csv_number(table, row, 1), csv_number(table, row, 2), csv_number(table, row, 3));
+    add_sample(gyroscope, table, row, std::llround(1e9 * time_s), gscale * rates);
+  }
+  log.gyroscope = std::move(gyroscope);
+  if (const auto readout_ms = head_number(gcsv, "frame_readout_time")) {
+    const double direction = head_number(gcsv, "frame_readout_direction").value_or(0);
+    if (direction == 0) log.readout_s = 1e-3 * *readout_ms;
+    if (direction == 1) log.readout_s = -1e-3 * *readout_ms;
+  }
+  return log;
+}
+
+}  // namespace gpo
