@@ -6,7 +6,7 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"
 #include "engine/base/error.h"
-#include "engine/calibration/gyroscope_report.h"
+#include "engine/calibration/calibration_report.h"
 #include "engine/experiment/figure.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"

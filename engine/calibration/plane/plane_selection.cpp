@@ -6,19 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 namespace gpo {
 namespace {
 
-constexpr int kLeastViews = 3;             // of a point
-constexpr int kLeastPoints = 8;             // of a sight
-constexpr int kFewViews = 16;              // of a plane, where starts are compared
+constexpr int kLeastViewsOfPoint = 3;
+constexpr int kLeastPoints = 8;             // in a view
+constexpr int kFewViews = 16;               // per plane, to compare starts
 constexpr int kFewPoints = 70;              // the same
-constexpr double kDisagrees = 3;            // medians of all sights, beyond which one is left out
-constexpr double kMedianOfNormal = 0.6745;  // of the absolute value of a standard normal one
+constexpr double kMostViewMedian = 3;       // relative to the median of all views
+constexpr double kMedianOfNormal = 0.6745;  // median absolute value of a standard normal variable
 
-/// The sight's observations that `is_kept(column)` says.
+/// Returns the observations of a view in the columns for which `is_kept`.
 template <typename Predicate>
 PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
   std::vector<int> columns, points;
@@ -35,7 +35,7 @@ PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
 
 PlaneView emptied(const PlaneView& view) { return {view.frame, {}, Eigen::Matrix2Xd(2, 0)}; }
 
-/// How many sights show each point.
+/// Number of views of each point.
 std::vector<int> counts_of(const ObservedPlane& plane) {
   std::vector<int> counts(plane.points, 0);
   for (const PlaneView& view : plane.views)
@@ -49,7 +49,7 @@ void clean(ObservedPlane& plane) {
     const std::vector<int> counts = counts_of(plane);
     for (PlaneView& view : plane.views) {
       const std::size_t before = view.points.size();
-      view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViews; });
+      view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViewsOfPoint; });
       if (std::ssize(view.points) < kLeastPoints) view = emptied(view);
       changed |= view.points.size() != before;
     }
@@ -81,11 +81,12 @@ ObservedPlane placed_part(const ObservedPlane& plane, const PlaneMosaic& mosaic)
 }
 
 std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
-                                       const ViewErrors& errors) {
+                                        const ViewErrors& errors) {
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    for (std::size_t i = 0; i < planes[p].views.size(); ++i)
-      planes[p].views[i] =
-          part_of(planes[p].views[i], [&](int k) { return std::isfinite(errors[p][i][k]); });
+    for (std::size_t i = 0; PlaneView & view : planes[p].views) {
+      view = part_of(view, [&](int k) { return std::isfinite(errors[p][i][k]); });
+      ++i;
+    }
     clean(planes[p]);
   }
   return planes;
@@ -104,7 +105,7 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
     const std::vector<int> counts = counts_of(plane);
     std::vector<int> often;
     for (int j = 0; j < plane.points; ++j)
-      if (counts[j] >= kLeastViews) often.push_back(j);
+      if (counts[j] >= kLeastViewsOfPoint) often.push_back(j);
     const std::size_t step = std::max<std::size_t>(1, often.size() / kFewPoints);
     std::vector<bool> chosen(plane.points, false);
     for (std::size_t k = 0; k < often.size(); k += step) chosen[often[k]] = true;
@@ -115,15 +116,15 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
 }
 
 std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
-                                      const ViewErrors& errors,
-                                      double most_px,
-                                      std::vector<int>& left_out) {
+                                       const ViewErrors& errors,
+                                       double most_px,
+                                       std::vector<int>& left_out) {
   std::vector<double> medians;
   for (const auto& views : errors)
     for (const Eigen::VectorXd& view : views)
       if (view.size() > 0) medians.push_back(median_of(view));
   if (medians.empty()) return planes;
-  const double most_median_px = kDisagrees * median(medians);
+  const double most_median_px = kMostViewMedian * median(medians);
   std::vector<ObservedPlane> kept = planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
     for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
@@ -144,8 +145,8 @@ std::vector<double> finite(const ViewErrors& errors) {
   std::vector<double> all;
   for (const auto& views : errors)
     for (const Eigen::VectorXd& view : views)
-      for (const double e : view)
-        if (std::isfinite(e)) all.push_back(e);
+      std::ranges::copy_if(
+          view, std::back_inserter(all), [](double e) { return std::isfinite(e); });
   return all;
 }
 
@@ -165,9 +166,9 @@ double height_of(const std::vector<ObservedPlane>& planes, const Adjustment& adj
 }
 
 int observation_count(const std::vector<ObservedPlane>& planes) {
-  std::size_t count = 0;
+  std::ptrdiff_t count = 0;
   for (const ObservedPlane& plane : planes)
-    for (const PlaneView& view : plane.views) count += view.points.size();
+    for (const PlaneView& view : plane.views) count += std::ssize(view.points);
   return static_cast<int>(count);
 }
 
