@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,13 +19,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::string row(const std::string& name, const std::string& value) {
-  return fmt::format("{:<12}{}\n", name, value);
+template <typename... Values>
+std::string row(const char* name, fmt::format_string<Values...> format, Values&&... values) {
+  return fmt::format("{:<12}{}\n", name, fmt::format(format, std::forward<Values>(values)...));
 }
 
 std::string warning_rows(const std::vector<std::string>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings) text += row("warning", warning);
+  for (const std::string& warning : warnings) text += row("warning", "{}", warning);
   return text;
 }
 
@@ -78,9 +80,8 @@ std::string parameter_rows(const Camera& camera, const std::vector<double>& sigm
   const auto values = parameters(camera);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
-    text += row(names[i],
-                i < 4 ? fmt::format("{:10.2f} +- {:.2f} px", values[i], sigmas[i])
-                      : fmt::format("{:10.5f} +- {:.5f}", values[i], sigmas[i]));
+    text += i < 4 ? row(names[i].c_str(), "{:10.2f} +- {:.2f} px", values[i], sigmas[i])
+                  : row(names[i].c_str(), "{:10.5f} +- {:.5f}", values[i], sigmas[i]);
   return text;
 }
 
@@ -165,13 +166,14 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
 
 std::string to_text(const CameraCalibration& calibration) {
   return row("views",
-             fmt::format("{} used; found the board in {} of {} images",
-                         calibration.frames.size(),
-                         calibration.found,
-                         calibration.examined)) +
-         row("RMS", fmt::format("{:.3f} px", calibration.rms_px)) +
-         parameter_rows(calibration.camera, calibration.sigmas) + row("seen", seen(calibration)) +
-         (calibration.bend_m > 0 ? row("board", board(calibration)) : "") +
+             "{} used; found the board in {} of {} images",
+             calibration.frames.size(),
+             calibration.found,
+             calibration.examined) +
+         row("RMS", "{:.3f} px", calibration.rms_px) +
+         parameter_rows(calibration.camera, calibration.sigmas) +
+         row("seen", "{}", seen(calibration)) +
+         (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
          warning_rows(calibration.warnings);
 }
 
@@ -189,9 +191,9 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
 
 std::string to_text(const SelfCalibration& calibration) {
   const PlaneLens& lens = calibration.lens;
-  return row("seen", seen(calibration)) + row("RMS", fmt::format("{:.3f} px", lens.rms_px)) +
+  return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
          parameter_rows(lens.camera, lens.camera.sigmas) +
-         row(kLensNames[kReadout], readout(lens)) + warning_rows(warnings_of(lens));
+         row(kLensNames[kReadout], "{}", readout(lens)) + warning_rows(warnings_of(lens));
 }
 
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
@@ -219,32 +221,30 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
   std::string windows = fmt::format("{} used", fit.windows);
   if (fit.outliers > 0) windows += fmt::format(", {} outliers left out", fit.outliers);
   std::string text =
-      row("windows", windows) +
+      row("windows", "{}", windows) +
       row("rotation",
-          fmt::format("{} deg, {:.2f} deg from the recording's{}",
-                      vector_text(degrees(1) * so3_log(fit.R_gyro_camera), 2),
-                      rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera),
-                      axes(fit.R_gyro_camera))) +
-      row("  +-",
-          fmt::format("{} deg about the camera's axes", vector_text(fit.rotation_sigma_deg, 2))) +
+          "{} deg, {:.2f} deg from the recording's{}",
+          vector_text(degrees(1) * so3_log(fit.R_gyro_camera), 2),
+          rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera),
+          axes(fit.R_gyro_camera)) +
+      row("  +-", "{} deg about the camera's axes", vector_text(fit.rotation_sigma_deg, 2)) +
       row("clock",
-          fmt::format("{:+.2f} +- {:.2f} ms (gyroscope's minus camera's; the recording has "
-                      "{:+.2f} ms)",
-                      1e3 * fit.time_offset_s,
-                      1e3 * fit.time_offset_sigma_s,
-                      1e-6 * static_cast<double>(recorded.time_offset_ns)));
+          "{:+.2f} +- {:.2f} ms (gyroscope's minus camera's; the recording has {:+.2f} ms)",
+          1e3 * fit.time_offset_s,
+          1e3 * fit.time_offset_sigma_s,
+          1e-6 * static_cast<double>(recorded.time_offset_ns));
   if (fit.drift)
-    text += row("drift",
-                fmt::format("{:+.1f} +- {:.1f} us/s", 1e6 * *fit.drift, 1e6 * fit.drift_sigma));
+    text += row("drift", "{:+.1f} +- {:.1f} us/s", 1e6 * *fit.drift, 1e6 * fit.drift_sigma);
   return text +
          row("bias",
-             fmt::format("{} +- {} rad/s",
-                         vector_text(fit.bias_rad_s, 4),
-                         vector_text(fit.bias_sigma_rad_s, 4))) +
-         row("speeds", fmt::format("correlation {:.3f}", fit.correlation)) +
+             "{} +- {} rad/s",
+             vector_text(fit.bias_rad_s, 4),
+             vector_text(fit.bias_sigma_rad_s, 4)) +
+         row("speeds", "correlation {:.3f}", fit.correlation) +
          row("residual",
-             fmt::format(
-                 "{:.3f} deg RMS over a window (before {:.3f})", fit.rms_deg, fit.rms_before_deg)) +
+             "{:.3f} deg RMS over a window (before {:.3f})",
+             fit.rms_deg,
+             fit.rms_before_deg) +
          warning_rows(fit.warnings);
 }
 

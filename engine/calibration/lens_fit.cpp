@@ -39,20 +39,6 @@ Correspondences correspondences(const std::vector<CalibrationView>& views, const
   return result;
 }
 
-cv::Matx33d intrinsics_of(const Camera& camera) {
-  return {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-}
-
-void set_parameters(Camera& camera, const cv::Matx33d& K, const cv::Mat& coefficients) {
-  camera.fx = K(0, 0);
-  camera.fy = K(1, 1);
-  camera.cx = K(0, 2);
-  camera.cy = K(1, 2);
-  for (std::size_t i = 0; i < camera.coefficients.size(); ++i) {
-    camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
-  }
-}
-
 double slant_deg(const cv::Mat& rotation_vector) {
   const cv::Mat_<double> v(rotation_vector);
   const Eigen::Matrix3d R = so3_exp({v(0), v(1), v(2)});
@@ -90,78 +76,85 @@ double bend_of(const cv::Mat& points) {
   return (normal.transpose() * all).cwiseAbs().maxCoeff();
 }
 
+/// Intrinsics and poses as OpenCV has them.
+struct CvSolution {
+  explicit CvSolution(const Camera& camera)
+      : K(cv::Matx33d(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1)),
+        coefficients(camera.coefficients, true) {}
+
+  /// Moves the result into `fit`.
+  void take(LensFit& fit) const {
+    fit.camera.fx = K.at<double>(0, 0);
+    fit.camera.fy = K.at<double>(1, 1);
+    fit.camera.cx = K.at<double>(0, 2);
+    fit.camera.cy = K.at<double>(1, 2);
+    for (std::size_t i = 0; i < fit.camera.coefficients.size(); ++i)
+      fit.camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
+    for (const cv::Mat& rotation : rotations) fit.slant_deg.push_back(slant_deg(rotation));
+  }
+
+  cv::Mat K, coefficients;
+  std::vector<cv::Mat> rotations, translations;
+};
+
 /// `columns` of corners. OpenCV's object releasing method (Strobl and Hirzinger 2011) fixes the
 /// first corner, the last one of the first row, and the height of the last corner.
 LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
-  Camera camera = start.camera;
-  LensFit solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
-  cv::Mat sigmas;
+  LensFit fit;
+  fit.camera = start.camera;
+  CvSolution solution(start.camera);
+  cv::Mat sigmas, points;
   // LU, since a singular value decomposition of all views' unknowns takes seconds.
   int flags = cv::CALIB_USE_LU | (start.known ? cv::CALIB_USE_INTRINSIC_GUESS : 0);
-  if (camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
-  if (camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
-  flags |= flags_of(start);
-  cv::Mat points;
-  solution.rms_px =
-      cv::calibrateCameraRO(seen.points,
-                            seen.pixels,
-                            {camera.width, camera.height},
-                            start.bent ? columns - 1 : -1,
-                            K,
-                            coefficients,
-                            rotations,
-                            translations,
-                            start.bent ? cv::OutputArray(points) : cv::noArray(),
-                            start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
-                            cv::noArray(),
-                            cv::noArray(),
-                            solution.view_rms_px,
-                            flags,
-                            kConverged);
-  if (start.bent) solution.bend_m = bend_of(points);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
-  for (std::size_t i = 0; start.with_sigmas && i < 4 + camera.coefficients.size(); ++i) {
-    solution.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
-  }
-  for (const auto& rotation : rotations) solution.slant_deg.push_back(slant_deg(rotation));
-  return solution;
+  if (start.camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
+  if (start.camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
+  fit.rms_px = cv::calibrateCameraRO(seen.points,
+                                     seen.pixels,
+                                     {start.camera.width, start.camera.height},
+                                     start.bent ? columns - 1 : -1,
+                                     solution.K,
+                                     solution.coefficients,
+                                     solution.rotations,
+                                     solution.translations,
+                                     start.bent ? cv::OutputArray(points) : cv::noArray(),
+                                     start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
+                                     cv::noArray(),
+                                     cv::noArray(),
+                                     fit.view_rms_px,
+                                     flags | flags_of(start),
+                                     kConverged);
+  if (start.bent) fit.bend_m = bend_of(points);
+  solution.take(fit);
+  for (std::size_t i = 0; start.with_sigmas && i < 4 + fit.camera.coefficients.size(); ++i)
+    fit.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
+  return fit;
 }
 
 LensFit fit_equidistant(const Correspondences& seen, const LensStart& start) {
-  Camera camera = start.camera;
-  LensFit solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
+  LensFit fit;
+  fit.camera = start.camera;
+  CvSolution solution(start.camera);
+  auto& [K, coefficients, rotations, translations] = solution;
   int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW;
   if (start.known) flags |= cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
-  flags |= flags_of(start);
-  solution.rms_px = cv::fisheye::calibrate(seen.points,
-                                           seen.pixels,
-                                           {camera.width, camera.height},
-                                           K,
-                                           coefficients,
-                                           rotations,
-                                           translations,
-                                           flags,
-                                           kConverged);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
+  fit.rms_px = cv::fisheye::calibrate(seen.points,
+                                      seen.pixels,
+                                      {start.camera.width, start.camera.height},
+                                      K,
+                                      coefficients,
+                                      rotations,
+                                      translations,
+                                      flags | flags_of(start),
+                                      kConverged);
+  solution.take(fit);
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     std::vector<cv::Point2f> projected;
     cv::fisheye::projectPoints(
         seen.points[i], projected, rotations[i], translations[i], K, coefficients);
     const double norm = cv::norm(projected, seen.pixels[i]);
-    solution.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
-    solution.slant_deg.push_back(slant_deg(rotations[i]));
+    fit.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
   }
-  return solution;
+  return fit;
 }
 
 bool plausible(const Camera& camera) {
