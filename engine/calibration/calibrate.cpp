@@ -71,20 +71,17 @@ std::vector<double> jackknife_sigmas(const Views& views,
       if (i * blocks / count != block) others.push_back(views[i]);
     solutions[block] = fit_lens(others, board, start);
   });
-  const std::size_t unknowns = parameters(start.camera).size();
-  std::vector<double> mean(unknowns, 0);
-  std::vector<double> sigmas(unknowns, 0);
-  for (const auto& solution : solutions) {
-    if (!solution) return {};
-    const auto values = parameters(solution->camera);
-    for (std::size_t k = 0; k < unknowns; ++k) mean[k] += values[k] / blocks;
+  const auto unknowns = std::ssize(parameters(start.camera));
+  Eigen::ArrayXXd values(unknowns, blocks);
+  for (int block = 0; block < blocks; ++block) {
+    if (!solutions[block]) return {};
+    const auto one = parameters(solutions[block]->camera);
+    values.col(block) = Eigen::Map<const Eigen::ArrayXd>(one.data(), unknowns);
   }
-  for (const auto& solution : solutions) {
-    const auto values = parameters(solution->camera);
-    for (std::size_t k = 0; k < unknowns; ++k) sigmas[k] += std::pow(values[k] - mean[k], 2);
-  }
-  for (double& sigma : sigmas) sigma = std::sqrt(sigma * (blocks - 1) / blocks);
-  return sigmas;
+  const Eigen::ArrayXd mean = values.rowwise().mean();
+  const Eigen::ArrayXd squares = (values.colwise() - mean).square().rowwise().sum();
+  const Eigen::ArrayXd sigmas = (squares * (blocks - 1) / blocks).sqrt();
+  return {sigmas.begin(), sigmas.end()};
 }
 
 /// A camera with standard deviations, and its views.

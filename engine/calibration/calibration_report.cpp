@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
+#include "engine/calibration/gyroscope_alignment.h"
 #include "engine/calibration/lens_fit.h"
 #include "engine/geometry/pose.h"
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -17,6 +19,7 @@
 namespace gpo {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 template <typename... Values>
@@ -125,12 +128,12 @@ std::vector<std::string> warnings_of(const PlaneLens& lens) {
   return all;
 }
 
-double rotation_between_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+double rotation_between_deg(const Matrix3d& a, const Matrix3d& b) {
   return degrees(so3_log(a.transpose() * b).norm());
 }
 
 /// The camera's axes as axes of the gyroscope, "x along -y, ..."; empty if one is not near any.
-std::string axes(const Eigen::Matrix3d& R_gyro_camera) {
+std::string axes(const Matrix3d& R_gyro_camera) {
   constexpr std::array kNames{"x", "y", "z"};
   constexpr double kNear_deg = 20;
   std::vector<std::string> all;
@@ -266,48 +269,71 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
                      fmt::join(wrong, ", "));
 }
 
-std::vector<Chart> gyroscope_charts(const RatesOverTime& rates) {
-  constexpr std::uint32_t kImages = 0x222222, kBefore = 0xD55E00, kAfter = 0x0072B2;
+std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
+                                    const Gyroscope& gyroscope,
+                                    const GyroscopeFit& fit) {
   constexpr double kGap_s = 0.3;  // between windows
-  const auto curve = [&](const char* name, std::uint32_t rgb, const auto& value) {
+  const RateIntegral integral(gyroscope);
+  const std::vector<Interval> intervals = intervals_of(windows);
+  using Rate = std::function<Vector3d(const Interval&)>;
+  const auto by_gyroscope =
+      [&](const Matrix3d& R_gyro_camera, const Vector3d& bias, double offset_s) {
+        return [&integral, R_gyro_camera, bias, offset_ns = to_ns(offset_s)](const Interval& one) {
+          const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
+          if (!rate) return Vector3d(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+          return Vector3d(R_gyro_camera.transpose() * (*rate - bias));
+        };
+      };
+  struct Source {
+    const char* name;
+    std::uint32_t rgb;
+    Rate rate;
+  };
+  const std::array sources{
+      Source{"images", 0x222222, [](const Interval& one) { return one.rate_rad_s; }},
+      Source{"gyroscope, as recorded",
+             0xD55E00,
+             by_gyroscope(gyroscope.R_gyro_camera,
+                          gyroscope.bias_rad_s,
+                          1e-9 * static_cast<double>(gyroscope.time_offset_ns))},
+      Source{"gyroscope, calibrated",
+             0x0072B2,
+             by_gyroscope(fit.R_gyro_camera, fit.bias_rad_s, fit.time_offset_s)}};
+  const auto curve = [&](const Source& source, const auto& value) {
     Curve one;
-    one.name = name;
-    one.rgb = rgb;
-    one.dotted = rgb == kBefore;
-    for (std::size_t k = 0; k < rates.time_s.size(); ++k) {
-      if (k > 0 && rates.time_s[k] - rates.time_s[k - 1] > kGap_s) {
-        one.x.push_back(rates.time_s[k - 1] + 1e-6);
+    one.name = source.name;
+    one.rgb = source.rgb;
+    one.dotted = &source == &sources[1];
+    double last_s = 0;
+    for (const Interval& interval : intervals) {
+      const std::int64_t middle_ns = interval.from_ns + (interval.to_ns - interval.from_ns) / 2;
+      const double time_s = 1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns);
+      if (!one.x.empty() && time_s - last_s > kGap_s) {
+        one.x.push_back(last_s + 1e-6);
         one.y.push_back(std::numeric_limits<double>::quiet_NaN());
       }
-      one.x.push_back(rates.time_s[k]);
-      one.y.push_back(value(k));
+      one.x.push_back(last_s = time_s);
+      one.y.push_back(value(interval, source.rate(interval)));
     }
     return one;
   };
-  // Curves of the gyroscope; `of(rates, k)` is the value of a sample.
-  const auto both = [&](const auto& of) {
-    return std::vector{
-        curve("gyroscope, as recorded", kBefore, [&](auto k) { return of(rates.before_rad_s, k); }),
-        curve("gyroscope, calibrated", kAfter, [&](auto k) { return of(rates.after_rad_s, k); })};
-  };
   std::vector<Chart> charts;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto of = [&](const auto& all, std::size_t k) { return all[k](axis); };
+    const auto rate_about = [&](const Interval&, const Vector3d& rate) { return rate(axis); };
+    std::vector<Curve> curves;
+    for (const Source& source : sources) curves.push_back(curve(source, rate_about));
     charts.push_back({.title = fmt::format("about {}", std::array{"x", "y", "z"}[axis]),
                       .x_label = "time [s]",
                       .y_label = "rate [rad/s]",
-                      .curves = both(of)});
-    auto& curves = charts.back().curves;
-    curves.insert(curves.begin(), curve("images", kImages, [&](std::size_t k) {
-                    return of(rates.images_rad_s, k);
-                  }));
+                      .curves = std::move(curves)});
   }
+  const auto difference = [](const Interval& one, const Vector3d& rate) {
+    return (rate - one.rate_rad_s).norm();
+  };
   charts.push_back({.title = "difference from the images",
                     .x_label = "time [s]",
                     .y_label = "|difference| [rad/s]",
-                    .curves = both([&](const auto& all, std::size_t k) {
-                      return (all[k] - rates.images_rad_s[k]).norm();
-                    })});
+                    .curves = {curve(sources[1], difference), curve(sources[2], difference)}});
   return charts;
 }
 

@@ -24,9 +24,11 @@ std::string to_text(const CameraCalibration& calibration);
 std::string to_text(const SelfCalibration& calibration);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
-/// Rates about the camera's axes of images and gyroscope, before and after the fit, and their
-/// differences.
-std::vector<Chart> gyroscope_charts(const RatesOverTime& rates);
+/// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,
+/// and their differences.
+std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
+                                    const Gyroscope& gyroscope,
+                                    const GyroscopeFit& fit);
 
 /// A sentence if rotation or clock differ from the recording's by five standard deviations and by
 /// more than 5 deg or half a frame; empty otherwise.

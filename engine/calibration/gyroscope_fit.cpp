@@ -374,30 +374,4 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
   return fit;
 }
 
-RatesOverTime rates_over_time(const std::vector<ImageRotations>& windows,
-                              const Gyroscope& gyroscope,
-                              const GyroscopeFit& fit) {
-  const RateIntegral integral(gyroscope);
-  RatesOverTime rates;
-  const auto camera_rate = [&](const Interval& one, const State& state) -> Vector3d {
-    const std::int64_t offset_ns = to_ns(state.offset_s);
-    const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
-    if (!rate) return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    return state.R_gyro_camera.transpose() * (*rate - state.bias);
-  };
-  const State before{gyroscope.R_gyro_camera,
-                     1e-9 * static_cast<double>(gyroscope.time_offset_ns),
-                     gyroscope.bias_rad_s};
-  const State after{fit.R_gyro_camera, fit.time_offset_s, fit.bias_rad_s};
-  const std::vector<Interval> intervals = intervals_of(windows);
-  for (const Interval& one : intervals) {
-    const std::int64_t middle_ns = one.from_ns + (one.to_ns - one.from_ns) / 2;
-    rates.time_s.push_back(1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns));
-    rates.images_rad_s.push_back(one.rate_rad_s);
-    rates.before_rad_s.push_back(camera_rate(one, before));
-    rates.after_rad_s.push_back(camera_rate(one, after));
-  }
-  return rates;
-}
-
 }  // namespace gpo

@@ -44,16 +44,4 @@ struct GyroscopeFit {
 GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
                            const Gyroscope& gyroscope);
 
-/// Angular rates in camera axes, at the middles between a window's frames.
-struct RatesOverTime {
-  std::vector<double> time_s;  ///< since the first one, camera clock
-  std::vector<Eigen::Vector3d> images_rad_s;
-  std::vector<Eigen::Vector3d> before_rad_s;  ///< gyroscope with the recording's calibration
-  std::vector<Eigen::Vector3d> after_rad_s;   ///< gyroscope after the fit
-};
-
-RatesOverTime rates_over_time(const std::vector<ImageRotations>& windows,
-                              const Gyroscope& gyroscope,
-                              const GyroscopeFit& fit);
-
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "engine/synthesis/random.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -26,6 +27,20 @@ const Palette& pick_palette(Random& random);
 cv::Mat blank_canvas(cv::Size size, const cv::Scalar& color);
 /// Height by width.
 double ratio_of(const cv::Mat& canvas);
+/// Bilinear interpolation of pixels, clamped to the edges.
+template <typename Float, typename Pixel>
+Float bilinear(const cv::Mat& pixels, double col, double row) {
+  const double x = std::clamp(col, 0.0, pixels.cols - 1.001);
+  const double y = std::clamp(row, 0.0, pixels.rows - 1.001);
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const auto a = static_cast<float>(x - x0);
+  const auto b = static_cast<float>(y - y0);
+  const auto* top = pixels.ptr<Pixel>(y0) + x0;
+  const auto* bottom = pixels.ptr<Pixel>(y0 + 1) + x0;
+  return (Float(top[0]) * (1 - a) + Float(top[1]) * a) * (1 - b) +
+         (Float(bottom[0]) * (1 - a) + Float(bottom[1]) * a) * b;
+}
 /// Part of a canvas, with shared pixels.
 cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
 

@@ -106,18 +106,6 @@ struct SurfaceKind {
 constexpr std::array<SurfaceKind, 4> kSurfaceKinds = {
     {{"wood", wood}, {"parquet", parquet}, {"plaster", plaster}, {"bricks", bricks}}};
 
-cv::Vec4f interpolate(const cv::Mat& image, double col, double row) {
-  const double x = std::clamp(col, 0.0, image.cols - 1.001);
-  const double y = std::clamp(row, 0.0, image.rows - 1.001);
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const auto a = static_cast<float>(x - x0);
-  const auto b = static_cast<float>(y - y0);
-  const auto at = [&](int r, int c) { return cv::Vec4f(image.at<cv::Vec4b>(r, c)); };
-  return (at(y0, x0) * (1 - a) + at(y0, x0 + 1) * a) * (1 - b) +
-         (at(y0 + 1, x0) * (1 - a) + at(y0 + 1, x0 + 1) * a) * b;
-}
-
 /// Color of the face under the sheet, which has a soft shadow around it.
 cv::Vec3f cover(const cv::Vec3f& under,
                 const Sheet& sheet,
@@ -130,7 +118,7 @@ cv::Vec3f cover(const cv::Vec3f& under,
   if (outside.maxCoeff() > 0) return under * dark;
   const double col = (in_sheet.x() / sheet.size.x() + 0.5) * sheet.image.cols - 0.5;
   const double row = (0.5 - in_sheet.y() / sheet.size.y()) * sheet.image.rows - 0.5;
-  const cv::Vec4f ink = interpolate(sheet.image, col, row);
+  const cv::Vec4f ink = bilinear<cv::Vec4f, cv::Vec4b>(sheet.image, col, row);
   const float opacity = ink[3] / 255;
   return under * (dark * (1 - opacity)) + cv::Vec3f(ink[0], ink[1], ink[2]) * opacity;
 }

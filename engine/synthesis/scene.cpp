@@ -280,27 +280,10 @@ Scene make_scene(const Recipe& recipe, int threads, const std::function<void()>&
 }
 
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v) {
-  const double x = std::clamp(u * texture.cols - 0.5, 0.0, texture.cols - 1.001);
-  const double y = std::clamp(v * texture.rows - 0.5, 0.0, texture.rows - 1.001);
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const auto a = static_cast<float>(x - x0);
-  const auto b = static_cast<float>(y - y0);
-  if (texture.type() == CV_32FC1) {
-    const auto* top = texture.ptr<float>(y0) + x0;
-    const auto* bottom = texture.ptr<float>(y0 + 1) + x0;
-    const float value =
-        (top[0] * (1 - a) + top[1] * a) * (1 - b) + (bottom[0] * (1 - a) + bottom[1] * a) * b;
-    return {value, value, value};
-  }
-  const auto* top = texture.ptr<cv::Vec3b>(y0) + x0;
-  const auto* bottom = texture.ptr<cv::Vec3b>(y0 + 1) + x0;
-  cv::Vec3f color;
-  for (int k = 0; k < 3; ++k) {
-    color[k] = (top[0][k] * (1 - a) + top[1][k] * a) * (1 - b) +
-               (bottom[0][k] * (1 - a) + bottom[1][k] * a) * b;
-  }
-  return color;
+  const double col = u * texture.cols - 0.5;
+  const double row = v * texture.rows - 0.5;
+  return texture.type() == CV_32FC1 ? cv::Vec3f::all(bilinear<float, float>(texture, col, row))
+                                    : bilinear<cv::Vec3f, cv::Vec3b>(texture, col, row);
 }
 
 }  // namespace gpo

@@ -61,13 +61,13 @@ std::optional<Adjustment> started(PlaneProblem& problem, const Camera& camera, i
   Adjustment start;
   start.lens = lens_of(camera);
   const double focal_px = std::sqrt(camera.fx * camera.fy);
-  for (ObservedPlane& plane : problem.planes) {
-    const PlaneMosaic mosaic = plane_mosaic(plane, camera);
-    plane = placed_part(plane, mosaic);
+  std::vector<PlaneMosaic> mosaics;
+  for (const ObservedPlane& plane : problem.planes) {
+    mosaics.push_back(plane_mosaic(plane, camera));
     std::optional<AdjustedPlane> found;
     int suited = 0;
-    for (const Vector3d& normal : likely_normals(mosaic, focal_px, kMostNormals)) {
-      auto suiting = start_of(mosaic, focal_px, normal);
+    for (const Vector3d& normal : likely_normals(mosaics.back(), focal_px, kMostNormals)) {
+      auto suiting = start_of(mosaics.back(), focal_px, normal);
       if (!suiting) continue;
       found = std::move(suiting);
       if (suited++ == n) break;
@@ -75,8 +75,14 @@ std::optional<Adjustment> started(PlaneProblem& problem, const Camera& camera, i
     if (!found) return std::nullopt;
     start.planes.push_back(*std::move(found));
   }
+  problem.planes = filtered(problem.planes, [&](std::size_t p, std::size_t i, int k) {
+    return mosaics[p].H_i_m[i].allFinite() &&
+           mosaics[p].points.col(problem.planes[p].views[i].points[k]).allFinite();
+  });
   const ViewErrors errors = reprojection_errors(problem, start);
-  problem.planes = visible_part(std::move(problem.planes), errors);
+  problem.planes = filtered(problem.planes, [&](std::size_t p, std::size_t i, int k) {
+    return std::isfinite(errors[p][i][k]);  // infinite behind the camera
+  });
   return start;
 }
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
+#include <utility>
 
 namespace gpo {
 namespace {
@@ -19,8 +21,7 @@ constexpr double kMostViewMedian = 3;       // relative to the median of all vie
 constexpr double kMedianOfNormal = 0.6745;  // median absolute value of a standard normal variable
 
 /// Returns the observations of a view in the columns for which `is_kept`.
-template <typename Predicate>
-PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
+PlaneView part_of(const PlaneView& view, const auto& is_kept) {
   std::vector<int> columns, points;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k) {
     if (!is_kept(k)) continue;
@@ -32,8 +33,6 @@ PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
           view.raw_px(Eigen::all, columns),
           view.flow_px(Eigen::all, columns)};
 }
-
-PlaneView emptied(const PlaneView& view) { return {view.frame, {}, Eigen::Matrix2Xd(2, 0)}; }
 
 /// Number of views of each point.
 std::vector<int> counts_of(const ObservedPlane& plane) {
@@ -50,7 +49,7 @@ void clean(ObservedPlane& plane) {
     for (PlaneView& view : plane.views) {
       const std::size_t before = view.points.size();
       view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViewsOfPoint; });
-      if (std::ssize(view.points) < kLeastPoints) view = emptied(view);
+      if (std::ssize(view.points) < kLeastPoints) view = {view.frame, {}, Eigen::Matrix2Xd(2, 0)};
       changed |= view.points.size() != before;
     }
   }
@@ -68,25 +67,12 @@ std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes) {
   return planes;
 }
 
-ObservedPlane placed_part(const ObservedPlane& plane, const PlaneMosaic& mosaic) {
-  ObservedPlane placed = plane;
-  for (std::size_t i = 0; i < plane.views.size(); ++i) {
-    const PlaneView& view = plane.views[i];
-    placed.views[i] = part_of(view, [&](int k) {
-      return mosaic.H_i_m[i].allFinite() && mosaic.points.col(view.points[k]).allFinite();
-    });
-  }
-  clean(placed);
-  return placed;
-}
-
-std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
-                                        const ViewErrors& errors) {
+std::vector<ObservedPlane> filtered(
+    std::vector<ObservedPlane> planes,
+    const std::function<bool(std::size_t, std::size_t, int)>& is_kept) {
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    for (std::size_t i = 0; PlaneView & view : planes[p].views) {
-      view = part_of(view, [&](int k) { return std::isfinite(errors[p][i][k]); });
-      ++i;
-    }
+    for (std::size_t i = 0; i < planes[p].views.size(); ++i)
+      planes[p].views[i] = part_of(planes[p].views[i], [&](int k) { return is_kept(p, i, k); });
     clean(planes[p]);
   }
   return planes;
@@ -94,6 +80,7 @@ std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
 
 std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
   std::vector<ObservedPlane> few = planes;
+  std::vector<std::vector<bool>> chosen;  // points of each plane
   for (ObservedPlane& plane : few) {
     std::erase_if(plane.views, [](const PlaneView& view) { return view.points.empty(); });
     const auto count = std::ssize(plane.views);
@@ -107,12 +94,12 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
     for (int j = 0; j < plane.points; ++j)
       if (counts[j] >= kLeastViewsOfPoint) often.push_back(j);
     const std::size_t step = std::max<std::size_t>(1, often.size() / kFewPoints);
-    std::vector<bool> chosen(plane.points, false);
-    for (std::size_t k = 0; k < often.size(); k += step) chosen[often[k]] = true;
-    for (PlaneView& view : plane.views)
-      view = part_of(view, [&](int k) { return chosen[view.points[k]]; });
+    chosen.emplace_back(plane.points, false);
+    for (std::size_t k = 0; k < often.size(); k += step) chosen.back()[often[k]] = true;
   }
-  return cleaned(std::move(few));
+  return cleaned(filtered(few, [&](std::size_t p, std::size_t i, int k) {
+    return chosen[p][few[p].views[i].points[k]];
+  }));
 }
 
 std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
@@ -125,20 +112,17 @@ std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
       if (view.size() > 0) medians.push_back(median_of(view));
   if (medians.empty()) return planes;
   const double most_median_px = kMostViewMedian * median(medians);
-  std::vector<ObservedPlane> kept = planes;
+  std::set<std::pair<std::size_t, std::size_t>> far;
   for (std::size_t p = 0; p < planes.size(); ++p) {
     for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
-      PlaneView& view = kept[p].views[i];
-      if (median_of(errors[p][i]) > most_median_px) {
-        left_out.push_back(view.frame);
-        view = emptied(view);
-      } else {
-        view = part_of(planes[p].views[i], [&](int k) { return errors[p][i][k] <= most_px; });
-      }
+      if (median_of(errors[p][i]) <= most_median_px) continue;
+      left_out.push_back(planes[p].views[i].frame);
+      far.emplace(p, i);
     }
-    clean(kept[p]);
   }
-  return kept;
+  return filtered(planes, [&](std::size_t p, std::size_t i, int k) {
+    return !far.contains({p, i}) && errors[p][i][k] <= most_px;
+  });
 }
 
 std::vector<double> finite(const ViewErrors& errors) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_start.h"
 
+#include <functional>
 #include <vector>
 
 namespace gpo {
@@ -12,16 +12,15 @@ namespace gpo {
 // These functions drop observations. Points and views keep their indices, so that an adjustment
 // remains valid. A view may be left without a point.
 
-/// Returns the planes without points in fewer than 3 views and without views of fewer than 8
-/// points.
+/// Returns the planes without points in fewer than 3 views, views of fewer than 8 points, and
+/// planes without observations.
 std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes);
 
-/// Returns the observations that a mosaic places.
-ObservedPlane placed_part(const ObservedPlane& plane, const PlaneMosaic& mosaic);
-
-/// Returns the planes without observations behind the camera, which have infinite errors.
-std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
-                                        const ViewErrors& errors);
+/// Returns the observations for which `is_kept(plane, view, column)`, without points in fewer than
+/// 3 views and without views of fewer than 8 points.
+std::vector<ObservedPlane> filtered(
+    std::vector<ObservedPlane> planes,
+    const std::function<bool(std::size_t plane, std::size_t view, int column)>& is_kept);
 
 /// Returns a few views, spread evenly, and some of their points: enough to compare starts.
 std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes);
