@@ -6,7 +6,7 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress_bar.h"
 #include "engine/base/error.h"
-#include "engine/calibration/gyroscope_report.h"
+#include "engine/calibration/calibration_report.h"
 #include "engine/experiment/figure.h"
 #include "engine/files/output_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
@@ -27,7 +27,7 @@ void write_figure(const std::filesystem::path& file,
   const Figure figure{
       "gyroscope",
       fmt::format("{}: rotation rates in the camera's axes", recording.name),
-      gyroscope_charts(rates_over_time(windows, *recording.gyroscope, fit)),
+      gyroscope_charts(windows, *recording.gyroscope, fit),
       fmt::format("clock {:+.2f} +- {:.2f} ms, rotation +- {:.2f} deg, residual {:.2f} deg",
                   1e3 * fit.time_offset_s,
                   1e3 * fit.time_offset_sigma_s,

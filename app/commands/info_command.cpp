@@ -4,7 +4,7 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "engine/base/error.h"
-#include "engine/calibration/gyroscope_report.h"
+#include "engine/calibration/calibration_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/inspection/report/topic_info.h"

@@ -7,6 +7,7 @@
 #include "app/terminal/progress_bar.h"
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
+#include "engine/calibration/calibration_report.h"
 #include "engine/experiment/results_file.h"
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
@@ -171,15 +172,10 @@ Camera start_of(const Recording& recording) {
 SelfCalibration calibrate(const Recording& recording,
                           const CalibrationProgress& progress,
                           const std::stop_token& stop) {
-  // Without its axes a gyroscope tells nothing of the camera.
-  const bool with_gyroscope = recording.gyroscope && recording.T_body_camera;
-  return calibrate_from_plane(*recording.images,
-                              start_of(recording),
-                              with_gyroscope ? &*recording.gyroscope : nullptr,
-                              recording.timestamps_ns,
-                              {},
-                              progress,
-                              stop);
+  TimedGyroscope timed;
+  if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
+    timed = {&*recording.gyroscope, recording.timestamps_ns};
+  return calibrate_from_plane(*recording.images, start_of(recording), timed, progress, stop);
 }
 
 /// Keeps what was found, and gives it to the recording as it will be read the next time.

@@ -23,20 +23,22 @@ namespace {
 
 using Views = std::vector<CalibrationView>;
 
+constexpr int kMostViews = 60;
 constexpr int kLeastViews = 8;
 constexpr int kBlocks = 10;
-constexpr double kMostTimesMedian = 2;  // the RMS of a view that is kept
+constexpr double kMostTimesMedian = 2;  // RMS of a view
 constexpr double kLeastSlantDeg = 10;
-constexpr double kMostFocalSigma = 0.05;  // of the focal length
+constexpr double kMostFocalSigma = 0.05;  // share of the focal length
+
 // A coefficient is vague beyond either; those of lenses are of the order of 1.
 constexpr double kMostSigma = 10;
-constexpr double kMostShift = 0.25;   // of the corner of the picture, of its distance
+constexpr double kMostShift = 0.25;   // shift of the image corner by its distance
 constexpr double kTellsFromZero = 3;  // standard deviations
-// A board is bent where that explains so much of what is left over; of a flat one it explains some
-// 2 % of it (146 more unknowns among 5000 residuals).
+// Share of the RMS above which a bend explains too little: of a flat board it explains some 2 %
+// (146 more unknowns among 5000 residuals).
 constexpr double kWorthBending = 0.93;
 
-/// Leaves out the views that fit far worse than the others and solves again, while there are such.
+/// Solves, and again without views that fit far worse than the others while there are any.
 std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const LensStart& start) {
   constexpr int kRounds = 4;
   LensStart next = start;
@@ -44,9 +46,8 @@ std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const L
   for (int round = 0; solution && round < kRounds; ++round) {
     const double most = kMostTimesMedian * median(solution->view_rms_px);
     Views good;
-    for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t i = 0; i < views.size(); ++i)
       if (solution->view_rms_px[i] <= most) good.push_back(views[i]);
-    }
     if (good.size() == views.size() || good.size() < kLeastViews) break;
     views = std::move(good);
     next.camera = solution->camera;
@@ -56,44 +57,39 @@ std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const L
   return solution;
 }
 
-/// sigma^2 = (g - 1) / g sum (theta_i - mean)^2 over the solutions without one of g blocks of time.
-/// Nothing where one of them fails.
-std::optional<std::vector<double>> jackknife_sigmas(const Views& views,
-                                                    const Board& board,
-                                                    const LensStart& start) {
+/// sigma^2 = (g - 1) / g sum (theta_i - mean)^2 over the solutions without one of g blocks of time;
+/// empty if one of them fails.
+std::vector<double> jackknife_sigmas(const Views& views,
+                                     const Board& board,
+                                     const LensStart& start) {
   const int count = static_cast<int>(views.size());
   const int blocks = std::min(kBlocks, count);
   std::vector<std::optional<LensFit>> solutions(blocks);
   in_parallel(blocks, static_cast<int>(std::thread::hardware_concurrency()), [&](int block) {
     Views others;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < count; ++i)
       if (i * blocks / count != block) others.push_back(views[i]);
-    }
     solutions[block] = fit_lens(others, board, start);
   });
-  const std::size_t unknowns = parameters(start.camera).size();
-  std::vector<double> mean(unknowns, 0);
-  std::vector<double> sigmas(unknowns, 0);
-  for (const auto& solution : solutions) {
-    if (!solution) return std::nullopt;
-    const auto values = parameters(solution->camera);
-    for (std::size_t k = 0; k < unknowns; ++k) mean[k] += values[k] / blocks;
+  const auto unknowns = std::ssize(parameters(start.camera));
+  Eigen::ArrayXXd values(unknowns, blocks);
+  for (int block = 0; block < blocks; ++block) {
+    if (!solutions[block]) return {};
+    const auto one = parameters(solutions[block]->camera);
+    values.col(block) = Eigen::Map<const Eigen::ArrayXd>(one.data(), unknowns);
   }
-  for (const auto& solution : solutions) {
-    const auto values = parameters(solution->camera);
-    for (std::size_t k = 0; k < unknowns; ++k) sigmas[k] += std::pow(values[k] - mean[k], 2);
-  }
-  for (double& sigma : sigmas) sigma = std::sqrt(sigma * (blocks - 1) / blocks);
-  return sigmas;
+  const Eigen::ArrayXd mean = values.rowwise().mean();
+  const Eigen::ArrayXd squares = (values.colwise() - mean).square().rowwise().sum();
+  const Eigen::ArrayXd sigmas = (squares * (blocks - 1) / blocks).sqrt();
+  return {sigmas.begin(), sigmas.end()};
 }
 
-/// A camera with standard deviations, and the views that it rests on.
+/// A camera with standard deviations, and its views.
 struct Estimate {
-  std::optional<LensFit> solution;  ///< nothing where the views fix no camera
-  std::vector<double> sigmas;       ///< one a parameter; empty where single views decide
+  std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
+  std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
   Views views;
-  std::vector<std::string> left_at_0;  ///< a sentence for each coefficient that is held
-  bool bent = false;                   ///< the board is taken as it is, not as a plane
+  bool bent = false;  ///< with the shape of the board
 };
 
 Estimate estimate(const Views& views,
@@ -111,20 +107,19 @@ Estimate estimate(const Views& views,
     next.bent = true;
     Views kept = views;
     const auto bent = fit_without_bad(kept, board, next);
-    next.bent = bent && bent->rms_px < kWorthBending * result.solution->rms_px;
+    next.bent = result.bent = bent && bent->rms_px < kWorthBending * result.solution->rms_px;
     if (next.bent) {
       result.solution = bent;
       result.views = std::move(kept);
       next.camera = bent->camera;
     }
-    result.bent = next.bent;
   }
-  if (const auto sigmas = jackknife_sigmas(result.views, board, next)) result.sigmas = *sigmas;
+  result.sigmas = jackknife_sigmas(result.views, board, next);
   return result;
 }
 
-/// The least squares' own standard deviations, where they are larger. They take longer than all
-/// the rest, so only the last estimate gets them.
+/// Replaces standard deviations by those of the least squares, where these are larger. They take
+/// longer than all the rest, so only the last estimate gets them.
 void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return;
   const auto fit = fit_lens(
@@ -135,16 +130,15 @@ void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficien
     estimate.sigmas[k] = std::max(estimate.sigmas[k], fit->sigmas[k]);
 }
 
-/// The farthest corner of the picture from its middle [focal lengths].
+/// Distance of the farthest image corner from the principal point [focal lengths].
 double image_radius(const Camera& camera) {
   const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
   const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
   return std::hypot(x / camera.fx, y / camera.fy);
 }
 
-/// A coefficient that the views do not determine: they do not tell it from 0, and it is vague by
-/// itself or for the corner of the picture. Of several the last, without which the lens is
-/// simplest. Nothing where all are determined.
+/// The last coefficient that the views do not determine: not significantly different from 0, and
+/// vague by itself or at the image corner. nullopt if all are determined.
 std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
                                                     const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;
@@ -161,11 +155,13 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
   return std::nullopt;
 }
 
-/// A polynomial with more terms than the views determine fits them as well with thousands as with
-/// nothing, and is wrong wherever no view was: such terms are held at 0, one after the other.
-Estimate estimate_determined(const Views& views, const Board& board, const Camera& start) {
+/// Estimates with undetermined coefficients fixed at 0, one after the other, each with a sentence:
+/// a polynomial with too many terms fits the views with huge coefficients and is wrong elsewhere.
+Estimate estimate_determined(const Views& views,
+                             const Board& board,
+                             const Camera& start,
+                             std::vector<std::string>& left_at_0) {
   HeldCoefficients held;
-  std::vector<std::string> left_at_0;
   Estimate result = estimate(views, board, start, held);
   const auto names = parameter_names(start);
   while (const auto vague = undetermined_coefficient(result, held)) {
@@ -175,34 +171,29 @@ Estimate estimate_determined(const Views& views, const Board& board, const Camer
                     result.solution->camera.coefficients[*vague],
                     result.sigmas[4 + *vague]));
     const int flag = coefficients_of(start.distortion)[*vague].hold;
-    for (std::size_t k = 0; k < start.coefficients.size(); ++k) {
+    for (std::size_t k = 0; k < start.coefficients.size(); ++k)
       if (coefficients_of(start.distortion)[k].hold == flag) held.insert(k);
-    }
     result = estimate(views, board, start, held);
   }
   add_own_sigmas(result, board, held);
-  result.left_at_0 = std::move(left_at_0);
   return result;
 }
 
-/// "the focal length", ... : the first that is known to less than a share of the focal length;
-/// nothing where all are known.
+/// "the focal length (fx)", ...: the first that is not determined; empty if all are.
 std::string undetermined_intrinsics(const Estimate& estimate) {
   if (estimate.sigmas.empty()) return "the focal length";
   constexpr std::array kNames = {"the focal length (fx)",
                                  "the focal length (fy)",
                                  "the principal point (cx)",
                                  "the principal point (cy)"};
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
+  for (std::size_t k = 0; k < kNames.size(); ++k)
     if (estimate.sigmas[k] > kMostFocalSigma * estimate.solution->camera.fx) return kNames[k];
-  }
   return "";
 }
 
-/// Share of 8 x 6 cells of the picture that hold a corner.
+/// Share of 8 x 6 cells of the image with a corner.
 double coverage(const Views& views, cv::Size size) {
-  constexpr int kColumns = 8;
-  constexpr int kRows = 6;
+  constexpr int kColumns = 8, kRows = 6;
   std::set<std::pair<int, int>> cells;
   for (const CalibrationView& view : views) {
     for (const auto& corner : view.corners) {
@@ -217,28 +208,24 @@ double coverage(const Views& views, cv::Size size) {
 
 std::vector<std::string> warnings_of(const CameraCalibration& result) {
   std::vector<std::string> warnings;
-  if (result.coverage < 0.6) {
+  if (result.coverage < 0.6)
     warnings.push_back(
-        fmt::format("the board was seen in {:.0f} % of the picture only: the lens is not known in "
-                    "the rest; move the board into the corners",
+        fmt::format("The board covers only {:.0f} % of the image, the lens is unknown in the rest: "
+                    "move the board into the corners",
                     100 * result.coverage));
-  }
-  if (result.slant_deg < 25) {
+  if (result.slant_deg < 25)
     warnings.push_back(
-        fmt::format("the board was hardly slanted (up to {:.0f} deg): the focal length is little "
-                    "certain; look at it from the side",
+        fmt::format("The board was slanted by only {:.0f} deg, so the focal length is uncertain: "
+                    "film the board from the side",
                     result.slant_deg));
-  }
-  if (result.sigmas[0] > 0.01 * result.camera.fx) {
-    warnings.push_back(fmt::format("the focal length is known to {:.1f} % only",
+  if (result.sigmas[0] > 0.01 * result.camera.fx)
+    warnings.push_back(fmt::format("The uncertainty of the focal length is {:.1f} %",
                                    100 * result.sigmas[0] / result.camera.fx));
-  }
-  if (result.rms_px > 1) {
+  if (result.rms_px > 1)
     warnings.push_back(
-        fmt::format("corners are {:.2f} px off (RMS): blur, a board that is not flat, or another "
-                    "lens model",
+        fmt::format("The reprojection error is {:.2f} px RMS: blur, a board that is not flat, or "
+                    "another lens model",
                     result.rms_px));
-  }
   return warnings;
 }
 
@@ -251,7 +238,7 @@ Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
   Camera camera;
   camera.width = size.width;
   camera.height = size.height;
-  // What a fisheye of 180 degrees has; the other model finds its own start.
+  // That of a fisheye of 180 degrees; the other model finds its own start.
   camera.fx = camera.fy = size.width / std::numbers::pi;
   camera.cx = 0.5 * (size.width - 1);
   camera.cy = 0.5 * (size.height - 1);
@@ -269,33 +256,31 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   CameraCalibration result;
   result.examined = search.examined;
   result.found = static_cast<int>(search.views.size());
-  const Views views = choose_views(search, board, options.most_views);
-  if (views.size() < kLeastViews) {
-    return failed(
-        result,
-        fmt::format("the board was found, and sharp, in {} of {} pictures; at least {} are needed",
-                    views.size(),
-                    result.examined,
-                    kLeastViews));
-  }
-  const Estimate estimate = estimate_determined(views, board, unknown_camera(search.size, options));
+  const Views views = choose_views(search, board, kMostViews);
+  if (views.size() < kLeastViews)
+    return failed(result,
+                  fmt::format("found a sharp board in {} of {} images; at least {} are needed",
+                              views.size(),
+                              result.examined,
+                              kLeastViews));
+  std::vector<std::string> left_at_0;
+  const Estimate estimate =
+      estimate_determined(views, board, unknown_camera(search.size, options), left_at_0);
   const auto& solution = estimate.solution;
-  if (!solution) return failed(result, "the views fix no camera; show the board from more sides");
+  if (!solution)
+    return failed(result, "the views do not determine a camera; film the board from more sides");
   std::vector<double> slants_deg = solution->slant_deg;
   std::ranges::sort(slants_deg);
-  const double slant = quantile(slants_deg, 0.9);
-  if (slant < kLeastSlantDeg) {
+  result.slant_deg = quantile(slants_deg, 0.9);
+  if (result.slant_deg < kLeastSlantDeg)
+    return failed(result,
+                  fmt::format("the board is never slanted by more than {:.0f} deg, so focal length "
+                              "and distance cannot be separated; film the board from the side",
+                              result.slant_deg));
+  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty())
     return failed(
         result,
-        fmt::format("the board is never slanted by more than {:.0f} deg, so that nothing tells the "
-                    "focal length from the distance; look at it from the side",
-                    slant));
-  }
-  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty()) {
-    return failed(
-        result,
-        unknown + " depends on single views by more than 5 %; show the board from more sides");
-  }
+        unknown + " changes by more than 5 % with single views; film the board from more sides");
   result.ok = true;
   result.camera = solution->camera;
   result.sigmas = estimate.sigmas;
@@ -303,10 +288,8 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   result.bend_m = solution->bend_m;
   for (const auto& view : estimate.views) result.frames.push_back(view.frame);
   result.coverage = coverage(estimate.views, search.size);
-  result.slant_deg = slant;
   result.warnings = warnings_of(result);
-  result.warnings.insert(
-      result.warnings.end(), estimate.left_at_0.begin(), estimate.left_at_0.end());
+  result.warnings.insert(result.warnings.end(), left_at_0.begin(), left_at_0.end());
   return result;
 }
 

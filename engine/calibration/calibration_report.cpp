@@ -2,23 +2,153 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
-#include "engine/calibration/camera_parameters.h"
+#include "engine/calibration/gyroscope_alignment.h"
+#include "engine/calibration/lens_fit.h"
+#include "engine/geometry/pose.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
-
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+template <typename... Values>
+std::string row(const char* name, fmt::format_string<Values...> format, Values&&... values) {
+  return fmt::format("{:<12}{}\n", name, fmt::format(format, std::forward<Values>(values)...));
+}
+
+std::string warning_rows(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += row("warning", "{}", warning);
+  return text;
+}
+
+std::string warning_comments(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += fmt::format("# warning: {}\n", warning);
+  return text;
+}
+
+/// Digits of coefficients and standard deviations, and lines before intrinsics and sigmas.
+struct YamlStyle {
+  int coefficient_digits = 6;
+  int sigma_digits = 3;
+  const char* source = "";
+  const char* sigmas_remark = "";
+};
+
+/// Lines from `resolution` to `distortion_coefficients_sigma`, without a lens or sigmas if unknown.
+std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
+  const auto list = [](std::span<const double> values, int digits) {
+    std::string text;
+    for (const double value : values)
+      text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
+    return fmt::format("[{}]", text);
+  };
+  const std::vector<double> all = parameters(camera);
+  const std::span<const double> values = all, sigmas = camera.sigmas;
+  std::string text = fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\n{}intrinsics: {}  # fx, fy, cx, cy\n",
+      camera.width,
+      camera.height,
+      style.source,
+      list(values.first(4), 8));
+  if (camera.distortion != Distortion::none)
+    text += fmt::format(
+        "distortion_model: {}\ndistortion_coefficients: {}\n",
+        camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
+        list(values.subspan(4), style.coefficient_digits));
+  if (sigmas.size() != values.size()) return text;
+  text += fmt::format(
+      "{}intrinsics_sigma: {}\n", style.sigmas_remark, list(sigmas.first(4), style.sigma_digits));
+  if (values.size() > 4)
+    text += fmt::format("distortion_coefficients_sigma: {}\n",
+                        list(sigmas.subspan(4), style.sigma_digits));
+  return text;
+}
+
+/// "fx  600.00 +- 1.50 px" and so on, one row a parameter.
+std::string parameter_rows(const Camera& camera, const std::vector<double>& sigmas) {
+  const auto names = parameter_names(camera);
+  const auto values = parameters(camera);
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += i < 4 ? row(names[i].c_str(), "{:10.2f} +- {:.2f} px", values[i], sigmas[i])
+                  : row(names[i].c_str(), "{:10.5f} +- {:.5f}", values[i], sigmas[i]);
+  return text;
+}
+
 std::string seen(const CameraCalibration& calibration) {
-  return fmt::format("corners in {:.0f} % of the picture, board slanted by up to {:.0f} deg",
+  return fmt::format("corners in {:.0f} % of the image, board slanted by up to {:.0f} deg",
                      100 * calibration.coverage,
                      calibration.slant_deg);
 }
 
 std::string board(const CameraCalibration& calibration) {
-  return fmt::format("not flat: corners are up to {:.2g} mm off a plane, which is allowed for",
+  return fmt::format("not flat: corners are up to {:.2g} mm off a plane, which the fit includes",
                      1000 * calibration.bend_m);
+}
+
+std::string seen(const SelfCalibration& calibration) {
+  const PlaneLens& lens = calibration.lens;
+  return fmt::format(
+      "{} points in {} images{}, normals up to {:.0f} deg apart, moved by {:.2f} distances",
+      lens.points,
+      lens.views,
+      calibration.gyroscope ? " and the gyroscope" : "",
+      lens.tilt_deg,
+      lens.moved);
+}
+
+std::string readout(const PlaneLens& lens) {
+  return fmt::format("{:10.3f} +- {:.3f} frame intervals, first row to last",
+                     lens.lens[kReadout],
+                     lens.sigma[kReadout]);
+}
+
+std::vector<std::string> warnings_of(const PlaneLens& lens) {
+  std::vector<std::string> all;
+  std::vector<const char*> by_prior;
+  for (int k = 0; k < kLensUnknowns; ++k)
+    if (lens.prior_only[k]) by_prior.push_back(kLensNames[k]);
+  if (!by_prior.empty()) all.push_back(fmt::format("{}: prior only", fmt::join(by_prior, ", ")));
+  if (!lens.left_out.empty())
+    all.push_back(fmt::format("left out, as they disagree with the others: frames {}",
+                              fmt::join(lens.left_out, ", ")));
+  return all;
+}
+
+double rotation_between_deg(const Matrix3d& a, const Matrix3d& b) {
+  return degrees(so3_log(a.transpose() * b).norm());
+}
+
+/// The camera's axes as axes of the gyroscope, "x along -y, ..."; empty if one is not near any.
+std::string axes(const Matrix3d& R_gyro_camera) {
+  constexpr std::array kNames{"x", "y", "z"};
+  constexpr double kNear_deg = 20;
+  std::vector<std::string> all;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d axis = R_gyro_camera.col(k);
+    Eigen::Index at = 0;
+    axis.cwiseAbs().maxCoeff(&at);
+    if (std::abs(axis(at)) < std::cos(radians(kNear_deg))) return "";
+    all.push_back(fmt::format("{} along {}{}", kNames[k], axis(at) < 0 ? "-" : "", kNames[at]));
+  }
+  return fmt::format(" (the camera's {} of the gyroscope)", fmt::join(all, ", "));
+}
+
+std::string vector_text(const Vector3d& v, int digits) {
+  return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
 }  // namespace
@@ -30,35 +160,181 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
                                  calibration.rms_px,
                                  seen(calibration));
   if (calibration.bend_m > 0) text += fmt::format("# board {}\n", board(calibration));
-  for (const std::string& warning : calibration.warnings) {
-    text += fmt::format("# warning: {}\n", warning);
-  }
   Camera with_sigmas = calibration.camera;
   with_sigmas.sigmas = calibration.sigmas;
-  return text +
+  return text + warning_comments(calibration.warnings) +
          camera_yaml(with_sigmas,
                      {.sigmas_remark = "# standard deviations, from leaving out blocks of time\n"});
 }
 
 std::string to_text(const CameraCalibration& calibration) {
-  const auto names = parameter_names(calibration.camera);
-  const auto values = parameters(calibration.camera);
-  std::string text = row("views",
-                         fmt::format("{} used; the board was found in {} of {} pictures",
-                                     calibration.frames.size(),
-                                     calibration.found,
-                                     calibration.examined)) +
-                     row("RMS", fmt::format("{:.3f} px", calibration.rms_px));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const double sigma = calibration.sigmas[i];
-    text += row(names[i],
-                i < 4 ? fmt::format("{:10.2f} +- {:.2f} px", values[i], sigma)
-                      : fmt::format("{:10.5f} +- {:.5f}", values[i], sigma));
+  return row("views",
+             "{} used; found the board in {} of {} images",
+             calibration.frames.size(),
+             calibration.found,
+             calibration.examined) +
+         row("RMS", "{:.3f} px", calibration.rms_px) +
+         parameter_rows(calibration.camera, calibration.sigmas) +
+         row("seen", "{}", seen(calibration)) +
+         (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
+         warning_rows(calibration.warnings);
+}
+
+std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
+  const PlaneLens& lens = calibration.lens;
+  return fmt::format("# calibrated from {} and a plane in view, RMS {:.2f} px\n# {}\n# {}: {}\n",
+                     source,
+                     lens.rms_px,
+                     seen(calibration),
+                     kLensNames[kReadout],
+                     readout(lens)) +
+         warning_comments(warnings_of(lens)) +
+         camera_yaml(lens.camera, {.source = "source: self-calibrated\n"});
+}
+
+std::string to_text(const SelfCalibration& calibration) {
+  const PlaneLens& lens = calibration.lens;
+  return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
+         parameter_rows(lens.camera, lens.camera.sigmas) +
+         row(kLensNames[kReadout], "{}", readout(lens)) + warning_rows(warnings_of(lens));
+}
+
+std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
+  std::string text = fmt::format(
+      "# gyroscope on its camera, from {} windows of {}\n"
+      "# rotation +- {} deg about the camera's axes, clock +- {:.2f} ms\n"
+      "# bias {} +- {} rad/s\n",
+      fit.windows,
+      source,
+      vector_text(fit.rotation_sigma_deg, 3),
+      1e3 * fit.time_offset_sigma_s,
+      vector_text(fit.bias_rad_s, 5),
+      vector_text(fit.bias_sigma_rad_s, 5));
+  if (fit.drift)
+    text += fmt::format("# the clocks drift by {:.1f} +- {:.1f} us/s, not included in this file\n",
+                        1e6 * *fit.drift,
+                        1e6 * fit.drift_sigma);
+  text += camera_yaml(camera, {.coefficient_digits = 8, .sigma_digits = 4}) + "T_BS: [";
+  for (const auto& r : fit.R_gyro_camera.rowwise())
+    text += fmt::format("[{:.9f}, {:.9f}, {:.9f}, 0], ", r.x(), r.y(), r.z());
+  return text + fmt::format("[0, 0, 0, 1]]\ntimeshift_cam_imu: {:.6f}  # s\n", fit.time_offset_s);
+}
+
+std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
+  std::string windows = fmt::format("{} used", fit.windows);
+  if (fit.outliers > 0) windows += fmt::format(", {} outliers left out", fit.outliers);
+  std::string text =
+      row("windows", "{}", windows) +
+      row("rotation",
+          "{} deg, {:.2f} deg from the recording's{}",
+          vector_text(degrees(1) * so3_log(fit.R_gyro_camera), 2),
+          rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera),
+          axes(fit.R_gyro_camera)) +
+      row("  +-", "{} deg about the camera's axes", vector_text(fit.rotation_sigma_deg, 2)) +
+      row("clock",
+          "{:+.2f} +- {:.2f} ms (gyroscope's minus camera's; the recording has {:+.2f} ms)",
+          1e3 * fit.time_offset_s,
+          1e3 * fit.time_offset_sigma_s,
+          1e-6 * static_cast<double>(recorded.time_offset_ns));
+  if (fit.drift)
+    text += row("drift", "{:+.1f} +- {:.1f} us/s", 1e6 * *fit.drift, 1e6 * fit.drift_sigma);
+  return text +
+         row("bias",
+             "{} +- {} rad/s",
+             vector_text(fit.bias_rad_s, 4),
+             vector_text(fit.bias_sigma_rad_s, 4)) +
+         row("speeds", "correlation {:.3f}", fit.correlation) +
+         row("residual",
+             "{:.3f} deg RMS over a window (before {:.3f})",
+             fit.rms_deg,
+             fit.rms_before_deg) +
+         warning_rows(fit.warnings);
+}
+
+std::string why_it_does_not_fit(const GyroscopeFit& fit,
+                                const Gyroscope& recorded,
+                                double frame_period_s) {
+  constexpr double kMost_deg = 5;
+  constexpr double kSigmas = 5;
+  if (!fit.ok) return "";
+  std::vector<std::string> wrong;
+  const double apart_deg = rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera);
+  if (apart_deg > std::max(kMost_deg, kSigmas * fit.rotation_sigma_deg.maxCoeff()))
+    wrong.push_back(fmt::format("its axes are {:.0f} deg off", apart_deg));
+  const double late_s = fit.time_offset_s - 1e-9 * static_cast<double>(recorded.time_offset_ns);
+  if (std::abs(late_s) > std::max(0.5 * frame_period_s, kSigmas * fit.time_offset_sigma_s))
+    wrong.push_back(fmt::format("its clock is {:+.0f} ms off", 1e3 * late_s));
+  if (wrong.empty()) return "";
+  return fmt::format("the gyroscope does not fit the images: {}; run calibrate --gyroscope",
+                     fmt::join(wrong, ", "));
+}
+
+std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
+                                    const Gyroscope& gyroscope,
+                                    const GyroscopeFit& fit) {
+  constexpr double kGap_s = 0.3;  // between windows
+  const RateIntegral integral(gyroscope);
+  const std::vector<Interval> intervals = intervals_of(windows);
+  using Rate = std::function<Vector3d(const Interval&)>;
+  const auto by_gyroscope =
+      [&](const Matrix3d& R_gyro_camera, const Vector3d& bias, double offset_s) {
+        return [&integral, R_gyro_camera, bias, offset_ns = to_ns(offset_s)](const Interval& one) {
+          const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
+          if (!rate) return Vector3d(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+          return Vector3d(R_gyro_camera.transpose() * (*rate - bias));
+        };
+      };
+  struct Source {
+    const char* name;
+    std::uint32_t rgb;
+    Rate rate;
+  };
+  const std::array sources{
+      Source{"images", 0x222222, [](const Interval& one) { return one.rate_rad_s; }},
+      Source{"gyroscope, as recorded",
+             0xD55E00,
+             by_gyroscope(gyroscope.R_gyro_camera,
+                          gyroscope.bias_rad_s,
+                          1e-9 * static_cast<double>(gyroscope.time_offset_ns))},
+      Source{"gyroscope, calibrated",
+             0x0072B2,
+             by_gyroscope(fit.R_gyro_camera, fit.bias_rad_s, fit.time_offset_s)}};
+  const auto curve = [&](const Source& source, const auto& value) {
+    Curve one;
+    one.name = source.name;
+    one.rgb = source.rgb;
+    one.dotted = &source == &sources[1];
+    double last_s = 0;
+    for (const Interval& interval : intervals) {
+      const std::int64_t middle_ns = interval.from_ns + (interval.to_ns - interval.from_ns) / 2;
+      const double time_s = 1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns);
+      if (!one.x.empty() && time_s - last_s > kGap_s) {
+        one.x.push_back(last_s + 1e-6);
+        one.y.push_back(std::numeric_limits<double>::quiet_NaN());
+      }
+      one.x.push_back(last_s = time_s);
+      one.y.push_back(value(interval, source.rate(interval)));
+    }
+    return one;
+  };
+  std::vector<Chart> charts;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto rate_about = [&](const Interval&, const Vector3d& rate) { return rate(axis); };
+    std::vector<Curve> curves;
+    for (const Source& source : sources) curves.push_back(curve(source, rate_about));
+    charts.push_back({.title = fmt::format("about {}", std::array{"x", "y", "z"}[axis]),
+                      .x_label = "time [s]",
+                      .y_label = "rate [rad/s]",
+                      .curves = std::move(curves)});
   }
-  text += row("seen", seen(calibration));
-  if (calibration.bend_m > 0) text += row("board", board(calibration));
-  for (const std::string& warning : calibration.warnings) text += row("warning", warning);
-  return text;
+  const auto difference = [](const Interval& one, const Vector3d& rate) {
+    return (rate - one.rate_rad_s).norm();
+  };
+  charts.push_back({.title = "difference from the images",
+                    .x_label = "time [s]",
+                    .y_label = "|difference| [rad/s]",
+                    .curves = {curve(sources[1], difference), curve(sources[2], difference)}});
+  return charts;
 }
 
 }  // namespace gpo

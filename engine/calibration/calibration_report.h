@@ -2,18 +2,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/chart.h"
 #include "engine/calibration/calibrate.h"
+#include "engine/calibration/gyroscope_fit.h"
+#include "engine/calibration/self_calibration.h"
 
 #include <string>
+#include <vector>
 
 namespace gpo {
 
-/// camera.yaml as `read_calibration` reads it, with the standard deviations under keys of their
-/// own. `source`: what was calibrated, for people.
+/// Formats a camera.yaml for `read_calibration`, with standard deviations under keys of their own.
+/// `source` names the recording in a comment.
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source);
+std::string to_yaml(const SelfCalibration& calibration, const std::string& source);
+/// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`.
+std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source);
 
-/// A table for people, each line ended: each parameter with its standard deviation, what was used,
-/// warnings.
+/// Formats a table for people, one parameter or fact a line.
 std::string to_text(const CameraCalibration& calibration);
+std::string to_text(const SelfCalibration& calibration);
+std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
+
+/// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,
+/// and their differences.
+std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
+                                    const Gyroscope& gyroscope,
+                                    const GyroscopeFit& fit);
+
+/// A sentence if rotation or clock differ from the recording's by five standard deviations and by
+/// more than 5 deg or half a frame; empty otherwise.
+std::string why_it_does_not_fit(const GyroscopeFit& fit,
+                                const Gyroscope& recorded,
+                                double frame_period_s);
 
 }  // namespace gpo

@@ -22,28 +22,13 @@ namespace gpo {
 
 namespace {
 
-constexpr std::size_t kLeastCorners = 8;
-constexpr std::size_t kCornersOfTag = 4;
+constexpr int kLeastCorners = 8;
+constexpr int kCornersOfTag = 4;
 constexpr double kMostBlurred = 2;  // times the median width of edges
 
 using Feature = Eigen::Matrix<double, 6, 1>;
 
-std::vector<int> regular_sample(int count, int most) {
-  const int taken = std::min(count, most);
-  std::vector<int> sample;
-  sample.reserve(static_cast<std::size_t>(taken));
-  for (int i = 0; i < taken; ++i) {
-    sample.push_back(static_cast<int>(std::int64_t{i} * count / taken));
-  }
-  return sample;
-}
-
-std::size_t seen_count(const std::vector<Eigen::Vector2d>& corners) {
-  return std::count_if(
-      corners.begin(), corners.end(), [](const auto& corner) { return corner.allFinite(); });
-}
-
-/// Gray by bilinear interpolation; nothing outside of the picture.
+/// Gray level by bilinear interpolation; nullopt outside of the image.
 std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& at) {
   const int u = static_cast<int>(std::floor(at.x()));
   const int v = static_cast<int>(std::floor(at.y()));
@@ -55,8 +40,7 @@ std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& at) {
          b * ((1 - a) * px(u, v + 1) + a * px(u + 1, v + 1));
 }
 
-/// Width of the edge that runs through the middle between two corners: its height by its steepest
-/// slope.
+/// Width of the edge between two corners, at its middle: contrast by steepest slope.
 std::optional<double> edge_width(const cv::Mat& gray,
                                  const Eigen::Vector2d& a,
                                  const Eigen::Vector2d& b,
@@ -80,8 +64,8 @@ std::optional<double> edge_width(const cv::Mat& gray,
   return std::max(1.0, contrast / slope);
 }
 
-/// How far from an edge of the board it is plain on both sides, of the edge's length: a marker must
-/// not be met beside the edge of a square, nor a tag's code or its neighbor beside that of a tag.
+/// Width of the plain area on both sides of an edge [edge lengths]: between the edge of a square
+/// and its marker, or that of a tag and its code or neighbor.
 double gap_beside_edge(const Board& board) {
   if (board.markers) return (1 - board.markers->side_m / board.square_m) / 2;
   if (!board.tags) return 1;
@@ -91,7 +75,7 @@ double gap_beside_edge(const Board& board) {
 }
 
 /// The larger of the medians along rows and columns, since motion blurs in one direction; infinite
-/// where there is no contrast.
+/// without contrast.
 double edge_width(const cv::Mat& gray,
                   const std::vector<Eigen::Vector2d>& corners,
                   const Board& board) {
@@ -100,24 +84,17 @@ double edge_width(const cv::Mat& gray,
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
     const auto add = [&](int direction, int next) {
       if (!corners[i].allFinite() || !corners[next].allFinite()) return;
-      if (const auto width = edge_width(gray, corners[i], corners[next], reach)) {
+      if (const auto width = edge_width(gray, corners[i], corners[next], reach))
         widths[direction].push_back(*width);
-      }
     };
     if (i % board.columns + 1 < board.columns) add(0, i + 1);
     if (i + board.columns < static_cast<int>(corners.size())) add(1, i + board.columns);
   }
-  double largest = 0;
-  for (const auto& of_direction : widths) {
-    largest = std::max(
-        largest,
-        of_direction.empty() ? std::numeric_limits<double>::infinity() : median(of_direction));
-  }
-  return largest;
+  if (widths[0].empty() || widths[1].empty()) return std::numeric_limits<double>::infinity();
+  return std::max(median(widths[0]), median(widths[1]));
 }
 
-/// Where the board is in the picture, how large, how it is slanted, and when; scaled so that a
-/// distance of 0.1 is a view that differs.
+/// Place, size and slant of the board in the image, and time; 0.1 apart are different views.
 std::optional<Feature> feature_of(const CalibrationView& view,
                                   const Board& board,
                                   cv::Size size,
@@ -148,7 +125,7 @@ std::optional<Feature> feature_of(const CalibrationView& view,
 struct Candidate {
   const CalibrationView* view;
   Feature feature;
-  double sharpness;                                           ///< 1: as the median, at most 1.5
+  double sharpness;  ///< relative to the median, at most 1.5
   double distance = std::numeric_limits<double>::infinity();  ///< to the nearest chosen one
   bool chosen = false;
 };
@@ -174,22 +151,26 @@ BoardSearch find_calibration_views(const FrameCache& images,
                                    int most_frames,
                                    const std::function<void(int done, int of)>& progress,
                                    const std::stop_token& stop) {
-  const std::vector<int> frames = regular_sample(images.count(), most_frames);
+  const int taken = std::min(images.count(), most_frames);
+  std::vector<int> frames(static_cast<std::size_t>(taken));
+  for (int i = 0; i < taken; ++i)
+    frames[i] = static_cast<int>(std::int64_t{i} * images.count() / taken);
   BoardSearch search;
   search.size = images.bgr(frames.front()).size();
   std::mutex mutex;
   const auto patch = [&](int frame, const cv::Mat& gray) {
-    if (gray.size() != search.size) {
-      throw InputError(fmt::format("picture {}: found {}x{} pixels, expected {}x{} as in the first",
+    if (gray.size() != search.size)
+      throw InputError(fmt::format("image {}: found {}x{} pixels, expected {}x{} as in the first",
                                    frame,
                                    gray.cols,
                                    gray.rows,
                                    search.size.width,
                                    search.size.height));
-    }
     CalibrationView view{frame, find_board(gray, board)};
     const bool single_tag = board.tags && board.tags->alone;
-    const bool found = seen_count(view.corners) >= (single_tag ? kCornersOfTag : kLeastCorners);
+    const auto corners =
+        std::ranges::count_if(view.corners, [](const auto& px) { return px.allFinite(); });
+    const bool found = corners >= (single_tag ? kCornersOfTag : kLeastCorners);
     if (found) view.edge_px = edge_width(gray, view.corners, board);
     const std::scoped_lock lock(mutex);
     ++search.examined;
@@ -206,7 +187,7 @@ std::vector<CalibrationView> choose_views(const BoardSearch& search,
                                           int count) {
   if (search.views.empty()) return {};
   std::vector<Candidate> candidates = sharp_candidates(search, board);
-  // The next is always the one that is farthest from all that were chosen; first the sharpest.
+  // First the sharpest view, then always the one farthest from the chosen ones.
   const auto worth = [](const Candidate& one) {
     if (one.chosen) return -1.0;
     return std::isinf(one.distance) ? one.sharpness : one.distance * one.sharpness;
@@ -215,14 +196,12 @@ std::vector<CalibrationView> choose_views(const BoardSearch& search,
   for (int i = 0; i < taken; ++i) {
     Candidate& next = *std::ranges::max_element(candidates, {}, worth);
     next.chosen = true;
-    for (Candidate& other : candidates) {
+    for (Candidate& other : candidates)
       other.distance = std::min(other.distance, (other.feature - next.feature).norm());
-    }
   }
   std::vector<CalibrationView> views;
-  for (const Candidate& one : candidates) {
+  for (const Candidate& one : candidates)
     if (one.chosen) views.push_back(*one.view);
-  }
   return views;
 }
 

@@ -13,31 +13,30 @@
 
 namespace gpo {
 
-/// The board as one picture shows it.
+/// The board in one image.
 struct CalibrationView {
   int frame = 0;
-  std::vector<Eigen::Vector2d> corners;  ///< [raw px], as `find_board` gives them
-  double edge_px = 0;  ///< how wide the edges between squares are, at least 1; more where blurred
+  std::vector<Eigen::Vector2d> corners;  ///< [raw px], as `find_board` returns them
+  double edge_px = 0;                    ///< width of the edges between squares, at least 1
 };
 
-/// All that a search found, in the order of time.
+/// All views that a search found, in the order of time.
 struct BoardSearch {
-  cv::Size size;     ///< of the pictures [px]
-  int examined = 0;  ///< pictures
+  cv::Size size;     ///< image size [px]
+  int examined = 0;  ///< images
   std::vector<CalibrationView> views;
 };
 
-/// Looks for the board in a regular sample of at most `most_frames` pictures, on all processors.
-/// Views with fewer than 8 corners are left out. Throws InputError where a picture cannot be
-/// decoded, or has another size than the first.
+/// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
+/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size.
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
                                    const std::function<void(int done, int of)>& progress = {},
                                    const std::stop_token& stop = {});
 
-/// At most `count` views that differ most in place, size and slant, the sharper of similar ones; in
-/// the order of time. Views whose edges are more than twice as wide as the median are left out.
+/// Chooses at most `count` views that differ most in place, size and slant, the sharper ones of
+/// similar views, in the order of time. Leaves out views with edges of twice the median width.
 std::vector<CalibrationView> choose_views(const BoardSearch& search, const Board& board, int count);
 
 }  // namespace gpo

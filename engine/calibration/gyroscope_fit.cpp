@@ -12,28 +12,31 @@
 #include <cmath>
 #include <limits>
 
+#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kLongEnoughForDrift_s = 60;
-constexpr int kMostIterations = 30;
-/// Where Huber's loss has its knee, in robust standard deviations.
-constexpr double kKneeInSigmas = 2;
-/// A window counts as one whose pictures disagree where its frames' median is so many times that of
-/// all.
-constexpr double kDisagrees = 4;
-/// Beyond these nothing useful is known.
+constexpr int kMostRounds = 30;         // each with another knee of the loss
+constexpr int kStepsARound = 4;         // solver iterations
+constexpr double kSettled = 1e-7;       // norm of the last round's step
+constexpr double kKneeInSigmas = 2;     // knee of Huber's loss, in robust standard deviations
+constexpr double kMostWindowSigma = 4;  // window's robust sigma relative to that of all
+
+// A result beyond these is useless.
 constexpr double kMostRotationSigma_deg = 5;
 constexpr double kMostOffsetSigma_s = 0.03;
 constexpr double kLeastCorrelation = 0.5;
 
-/// Rotation (about the camera's axes), offset, bias, drift.
-using Parameters = Eigen::Matrix<double, 8, 1>;
+/// Steps of rotation (about the camera's axes), offset, bias, drift.
+constexpr int kUnknowns = 8;
+using Step = Eigen::Matrix<double, kUnknowns, 1>;
 
 struct State {
   Matrix3d R_gyro_camera;
@@ -42,7 +45,7 @@ struct State {
   double drift = 0;
 };
 
-State moved(const State& state, const Parameters& step) {
+State moved(const State& state, const Step& step) {
   return {state.R_gyro_camera * so3_exp(step.head<3>()),
           state.offset_s + step(3),
           state.bias + step.segment<3>(4),
@@ -53,11 +56,12 @@ State moved(const State& state, const Parameters& step) {
 struct Observed {
   const ImageRotations* window;
   Gyroscope samples;
-  double from_middle_s;  ///< of the recording to the window's first frame
+  double from_middle_s;  ///< time of the window's first frame
 };
 
-/// Residuals of its frames but the first [rad], 3 x n; empty where the samples do not cover it.
-Eigen::Matrix3Xd residuals(const Observed& observed, const State& state) {
+/// Residuals of all frames but the first [rad], 3 x n; empty if the samples do not cover the
+/// window.
+Matrix3Xd residuals(const Observed& observed, const State& state) {
   Gyroscope gyroscope = observed.samples;
   gyroscope.R_gyro_camera = state.R_gyro_camera;
   gyroscope.bias_rad_s = state.bias;
@@ -67,25 +71,70 @@ Eigen::Matrix3Xd residuals(const Observed& observed, const State& state) {
   const std::int64_t last_ns = window.timestamps_ns.back() + gyroscope.time_offset_ns;
   if (!why_not_covered(gyroscope, first_ns, last_ns).empty()) return {};
   const std::vector<Matrix3d> R_wc = gyro_rotations(gyroscope, window.timestamps_ns);
-  Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(R_wc.size()) - 1);
+  Matrix3Xd all(3, static_cast<Eigen::Index>(R_wc.size()) - 1);
   for (std::size_t i = 1; i < R_wc.size(); ++i)
     all.col(static_cast<Eigen::Index>(i) - 1) = so3_log(window.R_wc[i].transpose() * R_wc[i]);
   return all;
 }
 
-Gyroscope samples_around(const Gyroscope& gyroscope, std::int64_t from_ns, std::int64_t to_ns) {
-  const auto first = std::ranges::lower_bound(gyroscope.timestamps_ns, from_ns);
-  const auto last = std::ranges::upper_bound(gyroscope.timestamps_ns, to_ns);
-  const auto a = first - gyroscope.timestamps_ns.begin();
-  const auto b = last - gyroscope.timestamps_ns.begin();
-  Gyroscope part;
-  part.file = gyroscope.file;
-  part.timestamps_ns.assign(first, last);
-  part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + a, gyroscope.rates_rad_s.begin() + b);
-  if (gyroscope.lines.size() == gyroscope.timestamps_ns.size())
-    part.lines.assign(gyroscope.lines.begin() + a, gyroscope.lines.begin() + b);
-  return part;
+/// Scales residuals so that half of their squared norms are Huber's loss.
+Matrix3Xd huberized(Matrix3Xd all, double knee) {
+  for (auto r : all.colwise()) {
+    const double e = r.norm();
+    if (e > knee) r *= std::sqrt(knee * (2 * e - knee)) / e;
+  }
+  return all;
 }
+
+/// Derivatives of the (huberized) residuals by central differences, column-major 3n x `unknowns`;
+/// nullopt if the samples do not cover them.
+std::optional<Eigen::MatrixXd> jacobian(const Observed& observed,
+                                        const State& state,
+                                        double knee,
+                                        int unknowns) {
+  constexpr double kSteps[kUnknowns] = {1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-5};
+  Eigen::MatrixXd J(3 * (std::ssize(observed.window->R_wc) - 1), unknowns);
+  for (int k = 0; k < unknowns; ++k) {
+    const Step step = kSteps[k] * Step::Unit(k);
+    const Matrix3Xd plus = huberized(residuals(observed, moved(state, step)), knee);
+    const Matrix3Xd minus = huberized(residuals(observed, moved(state, -step)), knee);
+    if (plus.cols() == 0 || minus.cols() == 0) return std::nullopt;
+    J.col(k) = ((plus - minus) / (2 * kSteps[k])).reshaped();
+  }
+  return J;
+}
+
+/// Loss of a window as a function of a step.
+class WindowCost : public ceres::CostFunction {
+ public:
+  WindowCost(const Observed& observed, const State& state, double knee, int unknowns)
+      : observed_(observed), state_(state), knee_(knee) {
+    set_num_residuals(3 * (static_cast<int>(observed.window->R_wc.size()) - 1));
+    mutable_parameter_block_sizes()->push_back(unknowns);
+  }
+  bool Evaluate(double const* const* parameters,
+                double* values,
+                double** jacobians) const override {
+    const int unknowns = parameter_block_sizes()[0];
+    Step step = Step::Zero();
+    std::copy_n(parameters[0], unknowns, step.data());
+    const State state = moved(state_, step);
+    const Matrix3Xd all = huberized(residuals(observed_, state), knee_);
+    if (all.cols() == 0) return false;
+    std::copy_n(all.data(), all.size(), values);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    const auto J = jacobian(observed_, state, knee_, unknowns);
+    if (!J) return false;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        jacobians[0], J->rows(), J->cols()) = *J;
+    return true;
+  }
+
+ private:
+  const Observed& observed_;
+  const State& state_;
+  double knee_;
+};
 
 std::vector<Observed> observed_windows(const std::vector<ImageRotations>& windows,
                                        const Gyroscope& gyroscope,
@@ -98,138 +147,123 @@ std::vector<Observed> observed_windows(const std::vector<ImageRotations>& window
   for (const ImageRotations& window : windows) {
     const std::int64_t first_ns = window.timestamps_ns.front() + to_ns(state.offset_s - kMargin_s);
     const std::int64_t last_ns = window.timestamps_ns.back() + to_ns(state.offset_s + kMargin_s);
+    const auto& times = gyroscope.timestamps_ns;
+    const auto a = std::ranges::lower_bound(times, first_ns) - times.begin();
+    const auto b = std::ranges::upper_bound(times, last_ns) - times.begin();
+    Gyroscope part;
+    part.file = gyroscope.file;
+    part.timestamps_ns.assign(times.begin() + a, times.begin() + b);
+    part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + a, gyroscope.rates_rad_s.begin() + b);
+    if (gyroscope.lines.size() == times.size())
+      part.lines.assign(gyroscope.lines.begin() + a, gyroscope.lines.begin() + b);
     const double from_middle_s =
         1e-9 * static_cast<double>(window.timestamps_ns.front() - middle_ns);
-    all.push_back({&window, samples_around(gyroscope, first_ns, last_ns), from_middle_s});
+    all.push_back({&window, std::move(part), from_middle_s});
     if (residuals(all.back(), state).cols() == 0) all.pop_back();
   }
   return all;
 }
 
-/// A window's share of the normal equations.
-struct WindowNormals {
-  Eigen::Matrix<double, 8, 8> JtJ = Eigen::Matrix<double, 8, 8>::Zero();
-  Parameters Jtr = Parameters::Zero();
-};
+using Errors = std::vector<Matrix3Xd>;  // residuals of each window
 
-double huber(double e, double knee) { return e < knee ? 0.5 * e * e : knee * (e - 0.5 * knee); }
-
-struct Errors {
-  std::vector<Eigen::Matrix3Xd> of_window;
-  double cost = 0;
-};
-
-Errors errors_of(const std::vector<Observed>& windows, const State& state, double knee) {
+Errors errors_of(const std::vector<Observed>& windows, const State& state) {
   Errors errors;
-  for (const Observed& window : windows) {
-    errors.of_window.push_back(residuals(window, state));
-    if (errors.of_window.back().cols() == 0) errors.cost = std::numeric_limits<double>::infinity();
-    for (const auto& r : errors.of_window.back().colwise()) errors.cost += huber(r.norm(), knee);
-  }
+  for (const Observed& window : windows) errors.push_back(residuals(window, state));
   return errors;
-}
-
-/// By central differences; nothing where the samples do not cover them.
-std::optional<WindowNormals> normals_of(const Observed& window,
-                                        const State& state,
-                                        const Eigen::Matrix3Xd& errors,
-                                        double knee,
-                                        int unknowns) {
-  constexpr double kSteps[] = {1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-5};
-  std::vector<Eigen::Matrix3Xd> columns;
-  for (int k = 0; k < unknowns; ++k) {
-    const Parameters step = kSteps[k] * Parameters::Unit(k);
-    const Eigen::Matrix3Xd plus = residuals(window, moved(state, step));
-    const Eigen::Matrix3Xd minus = residuals(window, moved(state, -step));
-    if (plus.cols() == 0 || minus.cols() == 0) return std::nullopt;
-    columns.emplace_back((plus - minus) / (2 * kSteps[k]));
-  }
-  WindowNormals normals;
-  for (Eigen::Index i = 0; i < errors.cols(); ++i) {
-    Eigen::Matrix<double, 3, 8> J = Eigen::Matrix<double, 3, 8>::Zero();
-    for (int k = 0; k < unknowns; ++k) J.col(k) = columns[k].col(i);
-    const double e = errors.col(i).norm();
-    const double weight = e < knee ? 1 : knee / e;
-    normals.JtJ += weight * J.transpose() * J;
-    normals.Jtr += weight * J.transpose() * errors.col(i);
-  }
-  return normals;
 }
 
 double robust_sigma(const Errors& errors) {
   std::vector<double> norms;
-  for (const auto& of_window : errors.of_window)
+  for (const auto& of_window : errors)
     for (const auto& r : of_window.colwise()) norms.push_back(r.norm());
-  return std::max(1e-6, median(norms) / 1.538);  // of the norm of three unit Gaussians
+  return std::max(1e-6, median(norms) / 1.538);  // median norm of three standard normal variables
 }
+
+/// A window's part of the normal equations.
+struct WindowNormals {
+  Eigen::MatrixXd JtJ;
+  Eigen::VectorXd Jtr;
+};
 
 struct Refined {
   State state;
   Errors errors;
   std::vector<WindowNormals> normals;
-  double knee = 0;
 };
 
+/// Normal equations with Huber's weights; nullopt if the samples do not cover a window.
+std::optional<WindowNormals> normals_of(const Observed& observed,
+                                        const State& state,
+                                        double knee,
+                                        int unknowns) {
+  const Matrix3Xd errors = residuals(observed, state);
+  const auto J = jacobian(observed, state, std::numeric_limits<double>::infinity(), unknowns);
+  if (!J || errors.cols() == 0) return std::nullopt;
+  Eigen::MatrixXd weighted = *J;
+  for (Eigen::Index i = 0; i < errors.cols(); ++i)
+    weighted.middleRows<3>(3 * i) *= std::min(1.0, knee / errors.col(i).norm());
+  return WindowNormals{weighted.transpose() * *J, weighted.transpose() * errors.reshaped()};
+}
+
+/// One round of the solver; nullopt if the samples do not cover the windows.
+std::optional<Step> solver_step(const std::vector<Observed>& windows,
+                                const State& state,
+                                double knee,
+                                int unknowns) {
+  Step step = Step::Zero();
+  ceres::Problem problem;
+  for (const Observed& window : windows)
+    problem.AddResidualBlock(new WindowCost(window, state, knee, unknowns), nullptr, step.data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kStepsARound;
+  options.function_tolerance = 1e-14;
+  options.gradient_tolerance = 1e-14;
+  options.num_threads = 1;  // repeatable to the bit
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary.IsSolutionUsable() ? std::optional(step) : std::nullopt;
+}
+
 std::optional<Refined> refine(const std::vector<Observed>& windows, State state, int unknowns) {
-  Errors errors = errors_of(windows, state, 1);
-  Refined result{state, errors, {}, 0};
-  double damping = 1e-6;
-  for (int round = 0; round < kMostIterations; ++round) {
-    const double knee = kKneeInSigmas * robust_sigma(errors);
-    errors = errors_of(windows, state, knee);
-    Eigen::Matrix<double, 8, 8> A = Eigen::Matrix<double, 8, 8>::Zero();
-    Parameters g = Parameters::Zero();
-    result = {state, errors, {}, knee};
-    for (std::size_t w = 0; w < windows.size(); ++w) {
-      const auto normals = normals_of(windows[w], state, errors.of_window[w], knee, unknowns);
-      if (!normals) return std::nullopt;
-      result.normals.push_back(*normals);
-      A += normals->JtJ;
-      g += normals->Jtr;
-    }
-    for (int k = unknowns; k < 8; ++k) A(k, k) = 1;
-    bool settled = false;
-    for (int tries = 0; tries < 8; ++tries) {
-      Eigen::Matrix<double, 8, 8> damped = A;
-      damped.diagonal() *= 1 + damping;
-      const Parameters step = -solve_symmetric(damped, g);
-      const State next = moved(state, step);
-      if (errors_of(windows, next, knee).cost <= errors.cost) {
-        damping = std::max(1e-9, damping / 10);
-        state = next;
-        settled = step.norm() < 1e-7;
-        break;
-      }
-      damping *= 10;
-      settled = tries == 7;
-    }
-    if (settled) break;
+  double knee = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    knee = kKneeInSigmas * robust_sigma(errors_of(windows, state));
+    const auto step = solver_step(windows, state, knee, unknowns);
+    if (!step) return std::nullopt;
+    state = moved(state, *step);
+    if (step->norm() < kSettled) break;
+  }
+  Refined result{state, errors_of(windows, state), {}};
+  for (const Observed& window : windows) {
+    const auto normals = normals_of(window, state, knee, unknowns);
+    if (!normals) return std::nullopt;
+    result.normals.push_back(*normals);
   }
   return result;
 }
 
-/// Sandwich over windows, with what few of them cost.
+/// Sandwich over windows, corrected for their small number.
 Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  for (const WindowNormals& w : fit.normals) A += w.JtJ.topLeftCorner(unknowns, unknowns);
+  for (const WindowNormals& w : fit.normals) A += w.JtJ;
   const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
-  // Each window's residuals as if it had been left out (Bell and McCaffrey): the step that the
-  // others take without it.
+  // Each window's residuals as if it had been left out (Bell and McCaffrey).
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
   for (const WindowNormals& w : fit.normals) {
-    const Eigen::MatrixXd left = A - w.JtJ.topLeftCorner(unknowns, unknowns);
-    const Eigen::VectorXd x = solve_symmetric(left, w.Jtr.head(unknowns));
+    const Eigen::VectorXd x = solve_symmetric(A - w.JtJ, w.Jtr);
     covariance += x * x.transpose();
   }
   const auto n = static_cast<double>(fit.normals.size());
   covariance *= (n - 1) / n;
-  // Never less than independent frames would have.
+  // At least that of independent frames.
   const double sigma = robust_sigma(fit.errors);
   if (covariance.trace() < sigma * sigma * inverse.trace()) covariance = sigma * sigma * inverse;
   return covariance;
 }
 
-double rms_deg(const std::vector<Eigen::Matrix3Xd>& errors) {
+double rms_deg(const Errors& errors) {
   double squares = 0;
   Eigen::Index count = 0;
   for (const auto& e : errors) {
@@ -239,8 +273,7 @@ double rms_deg(const std::vector<Eigen::Matrix3Xd>& errors) {
   return degrees(std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, count))));
 }
 
-/// Whether rates with every axis turned around, which with a rotation is any mirror, fit far
-/// better.
+/// True if rates about inverted axes, which with a rotation are any mirrored axes, fit far better.
 bool is_mirrored(const Gyroscope& gyroscope,
                  const std::vector<Interval>& intervals,
                  double around_s,
@@ -248,9 +281,8 @@ bool is_mirrored(const Gyroscope& gyroscope,
   constexpr double kFarBetter = 0.25;
   Gyroscope mirrored = gyroscope;
   for (Vector3d& rate : mirrored.rates_rad_s) rate = -rate;
-  const RateIntegral integral(mirrored);
-  const auto start = best_start(integral, intervals, around_s);
-  return start && start->alignment.cost < kFarBetter * cost;
+  const auto alignment = best_alignment(RateIntegral(mirrored), intervals, around_s);
+  return alignment && alignment->cost < kFarBetter * cost;
 }
 
 GyroscopeFit failed_fit(std::string reason) {
@@ -259,14 +291,12 @@ GyroscopeFit failed_fit(std::string reason) {
   return fit;
 }
 
-/// Those whose median error is not far above that of all.
+/// Windows without outliers.
 std::vector<Observed> agreeing(const std::vector<Observed>& windows, const Errors& errors) {
   const double all = robust_sigma(errors);
   std::vector<Observed> kept;
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    const Errors one{{errors.of_window[w]}, 0};
-    if (robust_sigma(one) <= kDisagrees * all) kept.push_back(windows[w]);
-  }
+  for (std::size_t w = 0; w < windows.size(); ++w)
+    if (robust_sigma({errors[w]}) <= kMostWindowSigma * all) kept.push_back(windows[w]);
   return kept;
 }
 
@@ -274,14 +304,16 @@ std::string why_useless(const GyroscopeFit& fit) {
   if (fit.rotation_sigma_deg.maxCoeff() > kMostRotationSigma_deg)
     return fmt::format(
         "the camera turns too little, or about one axis only: the rotation between gyroscope and "
-        "camera is known to {:.1f} deg",
+        "camera is uncertain by {:.1f} deg",
         fit.rotation_sigma_deg.maxCoeff());
   if (fit.time_offset_sigma_s > kMostOffsetSigma_s)
-    return fmt::format("the camera turns too evenly: the clocks' offset is known to {:.0f} ms",
+    return fmt::format("the camera turns too evenly: the clock offset is uncertain by {:.0f} ms",
                        1e3 * fit.time_offset_sigma_s);
   if (fit.correlation < kLeastCorrelation)
-    return fmt::format("pictures and gyroscope turn differently: the speeds' correlation is {:.2f}",
-                       fit.correlation);
+    return fmt::format(
+        "images and gyroscope turn differently: their rates have a correlation of "
+        "{:.2f}",
+        fit.correlation);
   return "";
 }
 
@@ -291,30 +323,30 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
                            const Gyroscope& gyroscope) {
   const std::vector<Interval> intervals = intervals_of(windows);
   if (intervals.size() < kLeastIntervals)
-    return failed_fit(fmt::format("the pictures tell {} rotations, at least {} are needed",
+    return failed_fit(fmt::format("the images determine {} rotations, at least {} are needed",
                                   intervals.size(),
                                   kLeastIntervals));
   const RateIntegral integral(gyroscope);
   const double recorded_offset_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
-  const auto start = best_start(integral, intervals, recorded_offset_s);
-  if (!start) return failed_fit("the gyroscope does not cover the pictures");
-  State state{start->alignment.R, start->offset_s, start->alignment.bias};
+  const auto start = best_alignment(integral, intervals, recorded_offset_s);
+  if (!start) return failed_fit("the gyroscope does not cover the images");
+  const State state{start->R, start->offset_s, start->bias};
   std::vector<Observed> observed = observed_windows(windows, gyroscope, state);
   const std::size_t covered = observed.size();
   if (covered < 3)
     return failed_fit(
-        fmt::format("the gyroscope covers {} windows of pictures, at least 3 are needed", covered));
+        fmt::format("the gyroscope covers {} windows of images, at least 3 are needed", covered));
   const double span_s = 1e-9 * static_cast<double>(windows.back().timestamps_ns.back() -
                                                    windows.front().timestamps_ns.front());
-  const int unknowns = span_s > kLongEnoughForDrift_s ? 8 : 7;
-  auto refined = refine(observed, state, 7);
+  const int unknowns = span_s > kLongEnoughForDrift_s ? kUnknowns : kUnknowns - 1;
+  auto refined = refine(observed, state, kUnknowns - 1);
   if (refined) {
     observed = agreeing(observed, refined->errors);
     if (observed.size() >= 3) refined = refine(observed, refined->state, unknowns);
   }
-  if (!refined || observed.size() < 3) return failed_fit("the windows' rotations do not agree");
-  const Eigen::MatrixXd covariance = covariance_of(*refined, unknowns);
-  const Eigen::VectorXd sigmas = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  if (!refined || observed.size() < 3) return failed_fit("the rotations of the windows disagree");
+  const Eigen::VectorXd sigmas =
+      covariance_of(*refined, unknowns).diagonal().cwiseMax(0).cwiseSqrt();
   GyroscopeFit fit;
   fit.R_gyro_camera = refined->state.R_gyro_camera;
   fit.rotation_sigma_deg = sigmas.head<3>() * degrees(1);
@@ -322,55 +354,24 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
   fit.time_offset_sigma_s = sigmas(3);
   fit.bias_rad_s = refined->state.bias;
   fit.bias_sigma_rad_s = sigmas.segment<3>(4);
-  if (unknowns == 8) {
+  if (unknowns == kUnknowns) {
     fit.drift = refined->state.drift;
     fit.drift_sigma = sigmas(7);
   }
   std::vector<ImageRotations> used;
-  used.reserve(observed.size());
   for (const Observed& one : observed) used.push_back(*one.window);
   fit.correlation = correlation_of(pairs_at(integral, intervals_of(used), fit.time_offset_s));
-  fit.rms_deg = rms_deg(refined->errors.of_window);
+  fit.rms_deg = rms_deg(refined->errors);
   const State recorded{gyroscope.R_gyro_camera, recorded_offset_s, gyroscope.bias_rad_s};
-  fit.rms_before_deg =
-      rms_deg(errors_of(observed_windows(windows, gyroscope, recorded), recorded, 1).of_window);
+  fit.rms_before_deg = rms_deg(errors_of(observed_windows(windows, gyroscope, recorded), recorded));
   fit.windows = static_cast<int>(observed.size());
   fit.outliers = static_cast<int>(covered - observed.size());
-  if (is_mirrored(gyroscope, intervals, recorded_offset_s, start->alignment.cost))
+  if (is_mirrored(gyroscope, intervals, recorded_offset_s, start->cost))
     fit.warnings.emplace_back(
-        "the rates would fit better mirrored: one axis, or the order of two, has the wrong sign");
+        "mirrored rates would fit better: one axis, or the order of two, has the wrong sign");
   fit.reason = why_useless(fit);
   fit.ok = fit.reason.empty();
   return fit;
-}
-
-RatesOverTime rates_over_time(const std::vector<ImageRotations>& windows,
-                              const Gyroscope& gyroscope,
-                              const GyroscopeFit& fit) {
-  const RateIntegral integral(gyroscope);
-  RatesOverTime rates;
-  const auto camera_rate = [&](const Interval& one,
-                               double offset_s,
-                               const Matrix3d& R_gyro_camera,
-                               const Vector3d& bias) -> Vector3d {
-    const std::int64_t offset_ns = to_ns(offset_s);
-    const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
-    if (!rate) return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    return R_gyro_camera.transpose() * (*rate - bias);
-  };
-  const std::vector<Interval> intervals = intervals_of(windows);
-  for (const Interval& one : intervals) {
-    const std::int64_t middle_ns = one.from_ns + (one.to_ns - one.from_ns) / 2;
-    rates.time_s.push_back(1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns));
-    rates.images_rad_s.push_back(one.rate_rad_s);
-    rates.before_rad_s.push_back(camera_rate(one,
-                                             1e-9 * static_cast<double>(gyroscope.time_offset_ns),
-                                             gyroscope.R_gyro_camera,
-                                             gyroscope.bias_rad_s));
-    rates.after_rad_s.push_back(
-        camera_rate(one, fit.time_offset_s, fit.R_gyro_camera, fit.bias_rad_s));
-  }
-  return rates;
 }
 
 }  // namespace gpo

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/lens_fit.h"
 
-#include "engine/calibration/camera_parameters.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/board/board_pose.h"
@@ -16,9 +15,9 @@
 namespace gpo {
 namespace {
 
-const cv::TermCriteria kEnough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
+const cv::TermCriteria kConverged(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
 
-/// Corners that are seen, one list a view, as OpenCV wants them.
+/// Visible corners, one list a view.
 struct Correspondences {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> pixels;
@@ -40,21 +39,6 @@ Correspondences correspondences(const std::vector<CalibrationView>& views, const
   return result;
 }
 
-cv::Matx33d intrinsics_of(const Camera& camera) {
-  return {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-}
-
-/// Takes over what OpenCV found.
-void set_parameters(Camera& camera, const cv::Matx33d& K, const cv::Mat& coefficients) {
-  camera.fx = K(0, 0);
-  camera.fy = K(1, 1);
-  camera.cx = K(0, 2);
-  camera.cy = K(1, 2);
-  for (std::size_t i = 0; i < camera.coefficients.size(); ++i) {
-    camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
-  }
-}
-
 double slant_deg(const cv::Mat& rotation_vector) {
   const cv::Mat_<double> v(rotation_vector);
   const Eigen::Matrix3d R = so3_exp({v(0), v(1), v(2)});
@@ -74,13 +58,13 @@ constexpr std::array<LensCoefficient, 4> kEquidistant = {{{2, cv::fisheye::CALIB
                                                           {6, cv::fisheye::CALIB_FIX_K3},
                                                           {8, cv::fisheye::CALIB_FIX_K4}}};
 
-int flags_of(const HeldCoefficients& held, Distortion distortion) {
+int flags_of(const LensStart& start) {
   int flags = 0;
-  for (const std::size_t k : held) flags |= coefficients_of(distortion)[k].hold;
+  for (const std::size_t k : start.held) flags |= coefficients_of(start.camera.distortion)[k].hold;
   return flags;
 }
 
-/// Largest distance of points off the plane through them.
+/// Largest distance of points from the plane through them.
 double bend_of(const cv::Mat& points) {
   Eigen::Matrix3Xd all(3, points.total());
   for (int i = 0; i < all.cols(); ++i) {
@@ -92,90 +76,112 @@ double bend_of(const cv::Mat& points) {
   return (normal.transpose() * all).cwiseAbs().maxCoeff();
 }
 
-/// `columns`: of corners. The last of the first row is held, with the first and the last corner's
-/// height: the gauge of OpenCV's object releasing method (Strobl and Hirzinger 2011).
-LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
-  Camera camera = start.camera;
-  LensFit solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
-  cv::Mat sigmas;
-  // By LU: OpenCV's singular value decomposition of all views' unknowns takes seconds.
-  int flags = cv::CALIB_USE_LU | (start.known ? cv::CALIB_USE_INTRINSIC_GUESS : 0);
-  if (camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
-  if (camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
-  flags |= flags_of(start.held, camera.distortion);
-  cv::Mat points;
-  // With the board held, it is the same as cv::calibrateCamera.
-  solution.rms_px =
-      cv::calibrateCameraRO(seen.points,
-                            seen.pixels,
-                            {camera.width, camera.height},
-                            start.bent ? columns - 1 : -1,
-                            K,
-                            coefficients,
-                            rotations,
-                            translations,
-                            start.bent ? cv::OutputArray(points) : cv::noArray(),
-                            start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
-                            cv::noArray(),
-                            cv::noArray(),
-                            solution.view_rms_px,
-                            flags,
-                            kEnough);
-  if (start.bent) solution.bend_m = bend_of(points);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
-  for (std::size_t i = 0; start.with_sigmas && i < 4 + camera.coefficients.size(); ++i) {
-    solution.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
+/// Intrinsics and poses as OpenCV has them.
+struct CvSolution {
+  explicit CvSolution(const Camera& camera)
+      : K(cv::Matx33d(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1)),
+        coefficients(camera.coefficients, true) {}
+
+  /// Moves the result into `fit`.
+  void take(LensFit& fit) const {
+    fit.camera.fx = K.at<double>(0, 0);
+    fit.camera.fy = K.at<double>(1, 1);
+    fit.camera.cx = K.at<double>(0, 2);
+    fit.camera.cy = K.at<double>(1, 2);
+    for (std::size_t i = 0; i < fit.camera.coefficients.size(); ++i)
+      fit.camera.coefficients[i] = coefficients.at<double>(static_cast<int>(i));
+    for (const cv::Mat& rotation : rotations) fit.slant_deg.push_back(slant_deg(rotation));
   }
-  for (const auto& rotation : rotations) solution.slant_deg.push_back(slant_deg(rotation));
-  return solution;
+
+  cv::Mat K, coefficients;
+  std::vector<cv::Mat> rotations, translations;
+};
+
+/// `columns` of corners. OpenCV's object releasing method (Strobl and Hirzinger 2011) fixes the
+/// first corner, the last one of the first row, and the height of the last corner.
+LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
+  LensFit fit;
+  fit.camera = start.camera;
+  CvSolution solution(start.camera);
+  cv::Mat sigmas, points;
+  // LU, since a singular value decomposition of all views' unknowns takes seconds.
+  int flags = cv::CALIB_USE_LU | (start.known ? cv::CALIB_USE_INTRINSIC_GUESS : 0);
+  if (start.camera.coefficients.size() == 4) flags |= cv::CALIB_FIX_K3;
+  if (start.camera.coefficients.size() == 8) flags |= cv::CALIB_RATIONAL_MODEL;
+  fit.rms_px = cv::calibrateCameraRO(seen.points,
+                                     seen.pixels,
+                                     {start.camera.width, start.camera.height},
+                                     start.bent ? columns - 1 : -1,
+                                     solution.K,
+                                     solution.coefficients,
+                                     solution.rotations,
+                                     solution.translations,
+                                     start.bent ? cv::OutputArray(points) : cv::noArray(),
+                                     start.with_sigmas ? cv::OutputArray(sigmas) : cv::noArray(),
+                                     cv::noArray(),
+                                     cv::noArray(),
+                                     fit.view_rms_px,
+                                     flags | flags_of(start),
+                                     kConverged);
+  if (start.bent) fit.bend_m = bend_of(points);
+  solution.take(fit);
+  for (std::size_t i = 0; start.with_sigmas && i < 4 + fit.camera.coefficients.size(); ++i)
+    fit.sigmas.push_back(sigmas.at<double>(static_cast<int>(i)));
+  return fit;
 }
 
 LensFit fit_equidistant(const Correspondences& seen, const LensStart& start) {
-  Camera camera = start.camera;
-  LensFit solution;
-  cv::Mat K(intrinsics_of(camera));
-  cv::Mat coefficients(camera.coefficients, true);
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> translations;
+  LensFit fit;
+  fit.camera = start.camera;
+  CvSolution solution(start.camera);
+  auto& [K, coefficients, rotations, translations] = solution;
   int flags = cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW;
   if (start.known) flags |= cv::fisheye::CALIB_USE_INTRINSIC_GUESS;
-  flags |= flags_of(start.held, camera.distortion);
-  solution.rms_px = cv::fisheye::calibrate(seen.points,
-                                           seen.pixels,
-                                           {camera.width, camera.height},
-                                           K,
-                                           coefficients,
-                                           rotations,
-                                           translations,
-                                           flags,
-                                           kEnough);
-  set_parameters(camera, K, coefficients);
-  solution.camera = camera;
+  fit.rms_px = cv::fisheye::calibrate(seen.points,
+                                      seen.pixels,
+                                      {start.camera.width, start.camera.height},
+                                      K,
+                                      coefficients,
+                                      rotations,
+                                      translations,
+                                      flags | flags_of(start),
+                                      kConverged);
+  solution.take(fit);
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     std::vector<cv::Point2f> projected;
     cv::fisheye::projectPoints(
         seen.points[i], projected, rotations[i], translations[i], K, coefficients);
     const double norm = cv::norm(projected, seen.pixels[i]);
-    solution.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
-    solution.slant_deg.push_back(slant_deg(rotations[i]));
+    fit.view_rms_px.push_back(norm / std::sqrt(static_cast<double>(projected.size())));
   }
-  return solution;
+  return fit;
 }
 
 bool plausible(const Camera& camera) {
   const double largest = 20.0 * std::max(camera.width, camera.height);
   const auto all = parameters(camera);
-  return std::all_of(all.begin(), all.end(), [](double p) { return std::isfinite(p); }) &&
-         camera.fx > 0 && camera.fy > 0 && camera.fx < largest && camera.fy < largest &&
-         camera.cx > 0 && camera.cx < camera.width && camera.cy > 0 && camera.cy < camera.height;
+  return std::ranges::all_of(all, [](double p) { return std::isfinite(p); }) && camera.fx > 0 &&
+         camera.fy > 0 && camera.fx < largest && camera.fy < largest && camera.cx > 0 &&
+         camera.cx < camera.width && camera.cy > 0 && camera.cy < camera.height;
 }
 
 }  // namespace
+
+std::vector<std::string> parameter_names(const Camera& camera) {
+  std::vector<std::string> names{"fx", "fy", "cx", "cy", "k1", "k2"};
+  if (camera.distortion == Distortion::equidistant)
+    names.insert(names.end(), {"k3", "k4"});
+  else
+    names.insert(names.end(), {"p1", "p2", "k3", "k4", "k5", "k6"});
+  names.resize(4 + camera.coefficients.size());
+  return names;
+}
+
+std::vector<double> parameters(const Camera& camera) {
+  std::vector<double> values = {camera.fx, camera.fy, camera.cx, camera.cy};
+  values.insert(values.end(), camera.coefficients.begin(), camera.coefficients.end());
+  return values;
+}
 
 std::span<const LensCoefficient> coefficients_of(Distortion distortion) {
   if (distortion == Distortion::equidistant) return kEquidistant;
@@ -199,7 +205,7 @@ std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                            : fit_radial_tangential(seen, start, board.columns);
     if (plausible(solution.camera)) return solution;
   } catch (const cv::Exception&) {
-    // OpenCV's word for views that fix no camera.
+    // The views do not determine a camera.
   }
   return std::nullopt;
 }

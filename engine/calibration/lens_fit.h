@@ -9,49 +9,52 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gpo {
 
-/// Coefficients of the lens that are held at 0, by their places in `Camera::coefficients`.
+/// Names and values of the calibrated parameters: fx, fy, cx, cy, then the coefficients.
+std::vector<std::string> parameter_names(const Camera& camera);
+std::vector<double> parameters(const Camera& camera);
+
+/// Indices in `Camera::coefficients` of coefficients that are fixed at 0.
 using HeldCoefficients = std::set<std::size_t>;
 
-/// What is known of a coefficient before it is estimated.
+/// A coefficient of the lens model.
 struct LensCoefficient {
-  int power;  ///< of a point's distance from the middle in the point's relative shift
-  int hold;   ///< OpenCV's flag that leaves it at 0
+  int power;  ///< exponent of the distance from the image center in the relative shift of a point
+  int hold;   ///< OpenCV's flag that fixes it at 0
 };
 
-/// One for each place in `Camera::coefficients`, of the longest model.
+/// One per index in `Camera::coefficients`, for the longest model.
 std::span<const LensCoefficient> coefficients_of(Distortion distortion);
 
-/// From which camera, whether it is one already, and whether the least squares' own standard
-/// deviations are wanted, which takes longer than all the rest.
+/// Start of a least squares.
 struct LensStart {
   Camera camera;
-  bool known = false;
-  bool with_sigmas = true;
+  bool known = false;       ///< whether `camera` has a solution to start from
+  bool with_sigmas = true;  ///< compute standard deviations, which takes longer than all the rest
   HeldCoefficients held{};
-  /// The board's corners may be off their plane, and off their grid: paper bends, printers stretch.
-  /// Only where every view shows all of them, and not with an equidistant lens.
+  /// Estimate the corners' places, too: paper bends, printers stretch. See `can_tell_bend`.
   bool bent = false;
 };
 
-/// One least squares.
+/// Result of one least squares.
 struct LensFit {
   Camera camera;
   double rms_px = 0;
-  std::vector<double> sigmas;       ///< the least squares' own; empty where it tells none
+  std::vector<double> sigmas;       ///< empty if not computed
   std::vector<double> view_rms_px;  ///< one a view
   std::vector<double> slant_deg;    ///< one a view
-  double bend_m = 0;                ///< of a bent board: its corners' largest distance off a plane
+  double bend_m = 0;                ///< largest distance of a bent board's corners from a plane
 };
 
-/// Whether the views tell how a board bends.
+/// True if the views determine how a board bends: all corners in all views, no equidistant lens.
 bool can_tell_bend(const std::vector<CalibrationView>& views, Distortion distortion);
 
-/// The camera that brings the corners of all views nearest to where they were seen. Nothing where
-/// the least squares come to nothing sensible.
+/// Minimizes the reprojection errors of the corners in all views; nullopt if the result is not
+/// plausible.
 std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start);

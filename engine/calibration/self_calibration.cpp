@@ -2,68 +2,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/self_calibration.h"
 
-#include "engine/calibration/plane_views/gyro_rotations.h"
+#include "engine/calibration/plane/plane_chain.h"
+#include "engine/frontend/rotations.h"
+#include "engine/geometry/pose.h"
 
 #include <algorithm>
-#include <map>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <array>
+#include <cmath>
 
 namespace gpo {
 namespace {
 
-constexpr int kLeastReferences = 1;
+constexpr int kMostFrames = 400;
+constexpr std::size_t kMostPlanes = 4;  // the longest chains
+constexpr int kMostChainViews = 60;     // for one chain; half of it for more
+// Noise of a rotation and scale error of the rates, as phones have them.
+constexpr double kGyroNoise_rad = 3e-4;
+constexpr double kGyroScale = 3e-3;
 
-/// Those through which a plane was followed longest.
-std::vector<PlaneChain> longest(std::vector<PlaneChain> chains, int most) {
-  std::erase_if(chains, [](const PlaneChain& chain) {
-    return std::ssize(chain.references) < kLeastReferences;
-  });
-  std::ranges::stable_sort(chains, [](const PlaneChain& a, const PlaneChain& b) {
-    return a.H_i_first.size() > b.H_i_first.size();
-  });
-  if (std::ssize(chains) > most) chains.resize(most);
-  return chains;
+/// Rotations between successive views of a plane, where the gyroscope's samples cover them.
+GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
+                                     const std::vector<ObservedPlane>& planes) {
+  const Gyroscope& gyroscope = *timed.gyroscope;
+  GyroRotations gyro;
+  gyro.bias_sigma_rad_s = gyroscope.bias_sigma_rad_s;
+  for (const ObservedPlane& plane : planes) {
+    for (std::size_t i = 1; i < plane.views.size(); ++i) {
+      const int from = plane.views[i - 1].frame;
+      const int to = plane.views[i].frame;
+      const std::array times{timed.frame_times_ns[from], timed.frame_times_ns[to]};
+      const std::int64_t offset_ns = gyroscope.time_offset_ns;
+      if (!why_not_covered(gyroscope, times[0] + offset_ns, times[1] + offset_ns).empty()) continue;
+      const Rotations rotation = sensitive_gyro_rotations(gyroscope, times);
+      const double sigma_rad =
+          std::hypot(kGyroNoise_rad, kGyroScale * so3_log(rotation.R_wc[1]).norm());
+      gyro.rotations.push_back({from, to, rotation.R_wc[1], rotation.gyro->d_bias[1], sigma_rad});
+    }
+  }
+  return gyro;
 }
 
 }  // namespace
 
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
-                                     const Gyroscope* gyroscope,
-                                     std::span<const std::int64_t> frame_times_ns,
-                                     const SelfCalibrationOptions& options,
+                                     const TimedGyroscope& timed,
                                      const CalibrationProgress& progress,
                                      const std::stop_token& stop) {
-  const auto told = [&](const char* what) {
+  const auto step = [&](const char* what) {
     return [&progress, what](int done, int of) {
       if (progress) progress(what, done, of);
     };
   };
-  SelfCalibration result;
-  ChainImages chained{[&](int frame) { return images.gray(frame); },
-                        images.count(),
-                        1 + (images.count() - 1) / options.most_frames,
-                        told("following a plane"),
-                        stop};
-  result.frames = (chained.frames + chained.step - 1) / chained.step;
-  const Camera bent = with_likely_bend(chained, guess, options.chain);
-  const auto chains = longest(plane_chains(chained, bent, options.chain), options.most_planes);
-  result.chains = static_cast<int>(chains.size());
+  const ChainImages chained{[&](int frame) { return images.gray(frame); },
+                              images.count(),
+                              1 + (images.count() - 1) / kMostFrames,
+                              step("following a plane"),
+                              stop};
+  const Camera distorted = with_likely_distortion(chained, guess);
+  std::vector<PlaneChain> chains = plane_chains(chained, distorted);
+  std::erase_if(chains, [](const PlaneChain& chain) { return chain.references.empty(); });
+  std::ranges::stable_sort(
+      chains, std::greater{}, [](const PlaneChain& chain) { return chain.H_i_first.size(); });
+  if (chains.size() > kMostPlanes) chains.resize(kMostPlanes);
   std::vector<ObservedPlane> planes;
-  LinkOptions link = options.link;
-  link.most_images /= std::max(1, std::min(2, result.chains));
-  for (int k = 0; k < result.chains && !stop.stop_requested(); ++k) {
-    told("finding its points again")(k, result.chains);
-    planes.push_back(linked_views(chained, chains[k], bent, link));
+  const int count = static_cast<int>(chains.size());
+  for (int k = 0; k < count && !stop.stop_requested(); ++k) {
+    step("finding its points in other images")(k, count);
+    planes.push_back(
+        linked_views(chained, chains[k], distorted, kMostChainViews / std::min(2, count)));
   }
-  GyroRotations rotations;
-  if (gyroscope != nullptr) rotations = gyro_rotations(*gyroscope, frame_times_ns, planes);
-  result.gyroscope = !rotations.rotations.empty();
-  result.lens =
-      lens_from_planes(std::move(planes), rotations, bent, options.lens, told("the lens"), stop);
-  return result;
+  GyroRotations gyro;
+  if (timed.gyroscope != nullptr) gyro = gyro_rotations_between(timed, planes);
+  PlaneLens lens =
+      lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"), stop);
+  return {std::move(lens), !gyro.rotations.empty()};
 }
 
 }  // namespace gpo

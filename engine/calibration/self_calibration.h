@@ -3,55 +3,38 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_lens.h"
-#include "engine/calibration/plane_views/linked_views.h"
-#include "engine/calibration/plane_views/plane_chain.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/window/gyroscope.h"
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
 
 namespace gpo {
 
-struct SelfCalibrationOptions {
-  int most_frames = 400;  ///< that are looked at
-  int most_planes = 4;    ///< the longest stretches through which a plane is followed
-  ChainOptions chain = {};
-  LinkOptions link = {};
-  PlaneLensOptions lens = {};
-};
-
-/// A camera from what it sees, or why there is none.
+/// Result of a calibration without a board.
 struct SelfCalibration {
   PlaneLens lens;
-  int frames = 0;          ///< looked at
-  int chains = 0;          ///< stretches of time through which a plane was followed
-  bool gyroscope = false;  ///< helped
+  bool gyroscope = false;  ///< whether a gyroscope contributed
 };
 
-/// Told of what is done: "following a plane", 41 of 60.
+/// Receives the current step and its progress: "following a plane", 41 of 60.
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
 
-/// Calibrates a camera from a plane that its own pictures show (engine/method.md, "The lens from
-/// the plane"). `guess` has the pictures' size and roughly their field of view. The gyroscope, if
-/// any, needs its axes in the camera's; `frame_times_ns` is one a picture then. Throws InputError
-/// where a picture cannot be decoded.
+/// A gyroscope with its axes in those of the camera, and the time of each frame (camera clock).
+struct TimedGyroscope {
+  const Gyroscope* gyroscope = nullptr;
+  std::span<const std::int64_t> frame_times_ns = {};
+};
+
+/// Calibrates a camera by a plane in its images (engine/method.md, "The lens from the plane").
+/// `guess` has the size of the images and roughly their field of view. Throws InputError if an
+/// image cannot be decoded.
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
-                                     const Gyroscope* gyroscope = nullptr,
-                                     std::span<const std::int64_t> frame_times_ns = {},
-                                     const SelfCalibrationOptions& options = {},
+                                     const TimedGyroscope& timed = {},
                                      const CalibrationProgress& progress = {},
                                      const std::stop_token& stop = {});
-
-/// camera.yaml as `read_calibration` reads it; `source`: what was calibrated, for people.
-std::string to_yaml(const SelfCalibration& calibration, const std::string& source);
-
-/// A table for people, each line ended.
-std::string to_text(const SelfCalibration& calibration);
 
 }  // namespace gpo

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// What of the residuals does not depend on scale, velocity and gravity.
+/// Part of the residuals that does not depend on scale, velocity and gravity.
 VectorXd measured(const AlignmentProblem& problem, const Vector3d& bias, const Vector3d& lever) {
   VectorXd all(problem.centers.size());
   const Matrix3d& R_first = problem.path.front().R;
@@ -32,7 +32,7 @@ VectorXd measured(const AlignmentProblem& problem, const Vector3d& bias, const V
   return all;
 }
 
-/// A solution of s c_k - v t_k - (g_0 + B y) t_k^2 / 2 = measured; (s, v, y).
+/// Solves s c_k - v t_k - (g_0 + B y) t_k^2 / 2 = measured for (s, v, y).
 VectorXd linear_solution(const AlignmentProblem& problem, const Vector3d& g_0, const MatrixXd& B) {
   const Eigen::Index rows = problem.centers.size();
   MatrixXd A(rows, 4 + B.cols());
@@ -54,8 +54,8 @@ AlignmentState stepped(const AlignmentState& state, const VectorXd& step) {
   AlignmentState next = state;
   next.velocity += step.head<3>();
   const Vector3d down = state.gravity.normalized();
-  const Vector3d turned = down + normal_tangents(down) * step.segment<2>(3);
-  next.gravity = state.gravity.norm() * turned.normalized();
+  const Vector3d rotated = down + normal_tangents(down) * step.segment<2>(3);
+  next.gravity = state.gravity.norm() * rotated.normalized();
   next.log_scale += step(kScaleUnknown);
   next.bias += step.segment<3>(6);
   next.lever += step.segment<3>(9);

@@ -5,8 +5,7 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/plane.h"
 #include "engine/inertial/alignment_problem.h"
-#include "engine/inertial/imu_intervals.h"
-#include "engine/inertial/inertial_path.h"
+#include "engine/inertial/preintegration.h"
 
 #include <algorithm>
 #include <chrono>
@@ -27,10 +26,9 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr int kLeastFrames = 5;
-constexpr double kLeastForce_m_s2 = 5;  // of the mean specific force: less is free fall, or in g
+constexpr double kLeastForce_m_s2 = 5;  // mean specific force; less is free fall or in g
 constexpr double kMostForce_m_s2 = 20;
-constexpr double kMostMisfit = 100;  // ten standard deviations: other axes, another clock
-constexpr const char* kNotDetermined = "not determined, move faster or longer";
+constexpr double kMostMisfit = 100;  // ten standard deviations: other axes or clock
 
 InertialAlignment refused(std::string reason) {
   InertialAlignment result;
@@ -38,18 +36,18 @@ InertialAlignment refused(std::string reason) {
   return result;
 }
 
-/// The bias with which the gyroscope turns as the poses do, and what is not known of it then.
-struct TurnFit {
+/// The gyroscope's bias for which its rotations agree with those of the poses.
+struct BiasFit {
   Vector3d bias_rad_s;
   Matrix3d covariance;
 };
 
-/// One round of least squares over log((R_wc)^T R_gyro) = D db, the sensor's axes.
-TurnFit turn_fit(const UncertainPoses& poses,
+/// One round of least squares over log((R_wc)^T R_gyro) = D db, sensor axes.
+BiasFit fit_bias(const UncertainPoses& poses,
                  std::span<const Preintegration> between,
                  const Matrix3d& R_sensor_camera,
                  const Vector3d& bias_rad_s) {
-  constexpr double kAlike = 5;  // neighbors' errors are alike: so many count as one
+  constexpr double kAlike = 5;  // number of neighbors with similar errors
   const auto path = inertial_path(between, R_sensor_camera.transpose());
   Matrix3d N = 1e-12 * Matrix3d::Identity();
   Vector3d b = Vector3d::Zero();
@@ -68,13 +66,13 @@ TurnFit turn_fit(const UncertainPoses& poses,
   return {bias_rad_s + step, kAlike * left / freedom * N.inverse()};
 }
 
-/// Residuals less what is unknown without a prior.
+/// Number of residuals minus unknowns without a prior.
 double freedom_of(const AlignmentProblem& problem) {
   return static_cast<double>(problem.centers.size()) - 6;
 }
 
-/// What of the log scale's information is due to noise: the path's errors that are left once the
-/// measurements have smoothed it, V = S - C Sigma^-1 C^T, count as motion. Expectation. With
+/// Expected part of the log scale's information that is due to noise: the errors of the smoothed
+/// path, V = S - C Sigma^-1 C^T, look like motion. With
 /// Sigma = L L^T, K = L^-1 C^T L^-T and C^T = S + B P^T,
 ///   L^-1 V L^-T = K - (L^-1 B) (L^-1 P)^T - K^T K.
 double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_columns) {
@@ -95,7 +93,7 @@ double information_of_noise(const ResidualNoise& noise, const MatrixXd& other_co
 }
 
 MatrixXd prior_of(const AlignmentProblem& problem) {
-  constexpr double kHardlyAny = 1e-6;  // so that it can be inverted where nothing moves
+  constexpr double kHardlyAny = 1e-6;  // keeps it invertible without motion
   MatrixXd prior = MatrixXd::Zero(kAlignmentUnknowns, kAlignmentUnknowns);
   prior(kScaleUnknown, kScaleUnknown) = kHardlyAny;
   prior.diagonal().segment<3>(6).setConstant(std::pow(problem.bias_sigma_m_s2, -2));
@@ -103,14 +101,14 @@ MatrixXd prior_of(const AlignmentProblem& problem) {
   return prior;
 }
 
-/// Residuals and their derivatives around a state, in units of their noise.
+/// Residuals and their derivatives in units of their noise.
 struct WhiteResiduals {
   VectorXd r;
   MatrixXd J;
 };
 
-/// With the path that all measurements make likely (as total least squares has it) for the scale:
-/// with the noisy one it would shrink.
+/// The derivative by the scale has the smoothed path (total least squares), since the noisy one
+/// makes the scale too small.
 WhiteResiduals white_residuals(const AlignmentProblem& problem,
                                const AlignmentState& state,
                                const ResidualNoise& noise) {
@@ -130,15 +128,15 @@ struct Refinement {
   int iterations = 0;
 };
 
-/// Where all is linear but the scale: Gauss-Newton.
+/// Gauss-Newton; only the scale is not linear.
 Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   constexpr int kMostIterations = 12;
-  constexpr double kConverged = 1e-2;  // of a standard deviation
-  constexpr double kAlike = 5e-3;      // scales whose noise is the same
+  constexpr double kConverged = 1e-2;  // step in standard deviations
+  constexpr double kSameScale = 5e-3;  // change of log s that leaves the noise as it is
   const MatrixXd prior = prior_of(problem);
   Refinement result;
   for (; result.iterations < kMostIterations; ++result.iterations) {
-    if (!result.noise || std::abs(state.log_scale - result.noise->log_scale) > kAlike)
+    if (!result.noise || std::abs(state.log_scale - result.noise->log_scale) > kSameScale)
       result.noise = residual_noise(problem, state);
     if (!result.noise) return result;
     auto [white_r, white] = white_residuals(problem, state, *result.noise);
@@ -160,22 +158,20 @@ Refinement refine(const AlignmentProblem& problem, AlignmentState state) {
   return result;
 }
 
-/// Standard deviations from the information, less what of the scale's is noise.
-void tell_certainty(const Refinement& refined,
-                    const InertialOptions& options,
-                    InertialAlignment& result) {
+/// Computes standard deviations from the information, minus the part of the scale's that is noise.
+void add_certainty(const Refinement& refined,
+                   const InertialOptions& options,
+                   InertialAlignment& result) {
   const MatrixXd rough = inverse_of_symmetric(refined.information);
   MatrixXd others(refined.white.rows(), kAlignmentUnknowns - 1);
   others << refined.white.leftCols<kScaleUnknown>(),
       refined.white.rightCols<kAlignmentUnknowns - 1 - kScaleUnknown>();
   const double by_all = 1 / rough(kScaleUnknown, kScaleUnknown);
-  // At most a quarter of an observation's information is noise.
-  double by_noise = 0.25 * static_cast<double>(refined.white.rows());
+  // At most a quarter of an observation's information is noise, which is negligible beside much.
   constexpr double kNegligible = 100;
-  if (by_all < kNegligible * by_noise)
-    by_noise = information_of_noise(*refined.noise, others);
-  else
-    by_noise = 0;
+  const double most_by_noise = 0.25 * static_cast<double>(refined.white.rows());
+  const double by_noise =
+      by_all < kNegligible * most_by_noise ? information_of_noise(*refined.noise, others) : 0;
   const double by_motion = by_all - by_noise;
   const double scatter = 2 * std::sqrt(0.5 * std::max(0.0, by_noise));
   const double spread = std::max(1.0, result.misfit);
@@ -188,17 +184,17 @@ void tell_certainty(const Refinement& refined,
       by_motion > 0 ? std::sqrt(spread / by_motion) : std::numeric_limits<double>::infinity();
   const double surely = by_motion - scatter;
   result.scale_known = surely > 0 && std::sqrt(spread / surely) < options.most_scale_sigma;
-  if (!result.scale_known) result.scale_reason = kNotDetermined;
+  if (!result.scale_known) result.scale_reason = "not determined, move faster or longer";
 }
 
 std::string why_no_gravity(const Gyroscope& gyroscope, std::span<const Preintegration> between) {
-  // In the sensor's axes at each interval's start: short ones, so that turning hardly matters.
+  // In the sensor's axes at the start of each short interval, so that rotation hardly matters.
   double force = 0;
   for (const Preintegration& step : between) force += step.velocity.norm() / step.seconds;
   force /= static_cast<double>(between.size());
   if (force > kLeastForce_m_s2 && force < kMostForce_m_s2) return "";
   return fmt::format(
-      "{}: the accelerometer measures {:.2f} m/s^2 on average, where gravity alone is 9.8{}",
+      "{}: the accelerometer measures {:.2f} m/s^2 on average, but gravity alone is 9.8{}",
       gyroscope.file.filename().string(),
       force,
       force > 0.8 && force < 1.25 ? "; are its values in g?" : "");
@@ -212,45 +208,37 @@ std::vector<Vector3d> velocities(const AlignmentProblem& problem, const Alignmen
   return all;
 }
 
-/// The camera in the axes of the sensor, and how surely.
-void place_camera(const Gyroscope& gyroscope,
-                  const std::optional<Pose>& T_body_camera,
-                  const InertialOptions& options,
-                  AlignmentProblem& problem) {
-  const bool told = T_body_camera && T_body_camera->p_wc != Vector3d::Zero();
-  problem.lever_sigma_m = told ? options.told_lever_sigma_m : options.untold_lever_sigma_m;
-  problem.lever_m.setZero();
-  if (told)
-    problem.lever_m =
-        gyroscope.R_gyro_camera * T_body_camera->R_wc.transpose() * T_body_camera->p_wc;
-}
-
-void complete_covariance(const UncertainPoses& poses,
-                         const Matrix3d& of_bias,
-                         AlignmentProblem& problem) {
-  problem.covariance = poses.covariance;
-  if (poses.has_bias_covariance()) return;
-  const Eigen::Index rows = poses.center_rows();
-  problem.covariance.conservativeResizeLike(MatrixXd::Zero(rows + 3, rows + 3));
-  problem.covariance.bottomRightCorner<3, 3>() = of_bias;
-}
-
 AlignmentProblem alignment_problem(const UncertainPoses& poses,
                                    std::span<const Preintegration> between,
-                                   const Gyroscope& gyroscope,
-                                   const TurnFit& turns,
-                                   const std::optional<Pose>& T_body_camera,
-                                   const InertialOptions& options) {
+                                   const Matrix3d& R_sensor_camera,
+                                   const Matrix3d& bias_covariance) {
   AlignmentProblem problem;
-  problem.path = inertial_path(between, gyroscope.R_gyro_camera.transpose());
-  problem.centers.resize(poses.center_rows());
+  problem.path = inertial_path(between, R_sensor_camera.transpose());
+  const Eigen::Index rows = poses.center_rows();
+  problem.centers.resize(rows);
   for (std::size_t k = 1; k < poses.cameras.size(); ++k)
     problem.centers.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) = poses.cameras[k].p_wc;
   problem.inertial_noise = position_covariance(problem.path);
-  problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
-  place_camera(gyroscope, T_body_camera, options, problem);
-  complete_covariance(poses, turns.covariance, problem);
+  problem.covariance = poses.covariance;
+  if (!poses.has_bias_covariance()) {
+    problem.covariance.conservativeResizeLike(MatrixXd::Zero(rows + 3, rows + 3));
+    problem.covariance.bottomRightCorner<3, 3>() = bias_covariance;
+  }
   return problem;
+}
+
+/// Adds the priors of the accelerometer's bias and of the camera in sensor axes.
+void add_priors(const Gyroscope& gyroscope,
+                const std::optional<Pose>& T_body_camera,
+                const InertialOptions& options,
+                AlignmentProblem& problem) {
+  const bool calibrated = T_body_camera && T_body_camera->p_wc != Vector3d::Zero();
+  problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
+  problem.lever_sigma_m = calibrated ? options.told_lever_sigma_m : options.untold_lever_sigma_m;
+  problem.lever_m.setZero();
+  if (calibrated)
+    problem.lever_m =
+        gyroscope.R_gyro_camera * T_body_camera->R_wc.transpose() * T_body_camera->p_wc;
 }
 
 /// White noise of both sensors in the window.
@@ -262,13 +250,13 @@ ImuNoise noise_of(const Gyroscope& gyroscope,
   if (gyroscope.accelerations_m_s2.size() != gyroscope.timestamps_ns.size()) return noise;
   const auto shaken = accelerometer_noise_density(
       gyroscope, poses.times_ns.front() + offset_ns, poses.times_ns.back() + offset_ns);
-  // Values that are no numbers are told later.
+  // Values that are not finite are reported later.
   if (shaken && *shaken > noise.accelerometer) noise.accelerometer = *shaken;
   return noise;
 }
 
-/// Over the centers that are aligned, then the gyroscope's bias. The noise is that of the very
-/// state: with that of a scale a little off, covariances would come out negative.
+/// Over the aligned centers, then the gyroscope's bias. Needs the noise at exactly this state: that
+/// of a slightly different scale makes covariances negative.
 PosePull pull_of(const AlignmentProblem& problem, const AlignmentState& state, double misfit) {
   const Eigen::Index rows = problem.centers.size();
   const auto noise = residual_noise(problem, state);
@@ -282,7 +270,7 @@ PosePull pull_of(const AlignmentProblem& problem, const AlignmentState& state, d
   const MatrixXd left = inverse_of_symmetric(prior_of(problem) + J.transpose() * J);
   PosePull pull{G.transpose() * r, G.transpose() * G};
   pull.information.noalias() -= of_unknowns.transpose() * left * of_unknowns;
-  // A misfit beyond chance is the accelerations' own, which then tell less.
+  // A misfit beyond chance is due to the accelerations, which then weigh less.
   const double chance = 3 * std::sqrt(2 / freedom_of(problem));
   if (misfit > 1 + chance) {
     pull.gradient /= misfit;
@@ -291,44 +279,42 @@ PosePull pull_of(const AlignmentProblem& problem, const AlignmentState& state, d
   return pull;
 }
 
-/// An alignment, and what it was found by where it is ok.
-struct Alignment {
-  InertialAlignment inertial;
-  AlignmentProblem problem = {};
-  AlignmentState state = {};
-};
+}  // namespace
 
-Alignment alignment_of(const UncertainPoses& poses,
-                       const Gyroscope& gyroscope,
-                       const std::optional<Pose>& T_body_camera,
-                       const InertialOptions& options) {
+InertialAlignment align_inertial(const UncertainPoses& poses,
+                                 const Gyroscope& gyroscope,
+                                 const std::optional<Pose>& T_body_camera,
+                                 const InertialOptions& options,
+                                 PosePull* pull) {
   const auto begin = std::chrono::steady_clock::now();
   if (static_cast<int>(poses.cameras.size()) < kLeastFrames)
-    return {refused(fmt::format(
-        "{} frames, gravity and meters take {} at least", poses.cameras.size(), kLeastFrames))};
-  if (poses.covariance.size() == 0) return {refused("the uncertainty of the poses is unknown")};
+    return refused(fmt::format("gravity and metric scale need at least {} frames; there are {}",
+                               kLeastFrames,
+                               poses.cameras.size()));
+  if (poses.covariance.size() == 0) return refused("the uncertainty of the poses is unknown");
   const std::int64_t offset_ns =
       gyroscope.time_offset_ns + static_cast<std::int64_t>(std::llround(1e9 * poses.time_offset_s));
   const ImuNoise noise = noise_of(gyroscope, poses, offset_ns, options);
   const Vector3d bias = poses.bias_rad_s.value_or(gyroscope.bias_rad_s);
   ImuIntervals measured = imu_intervals(gyroscope, poses.times_ns, offset_ns, bias, noise);
-  if (!measured.reason.empty()) return {refused(measured.reason)};
+  if (!measured.reason.empty()) return refused(measured.reason);
   if (std::string reason = why_no_gravity(gyroscope, measured.between); !reason.empty())
-    return {refused(std::move(reason))};
-  const TurnFit turns = turn_fit(poses, measured.between, gyroscope.R_gyro_camera, bias);
+    return refused(std::move(reason));
+  const BiasFit fit = fit_bias(poses, measured.between, gyroscope.R_gyro_camera, bias);
   for (Preintegration& one : measured.between)
-    one = with_biases_moved(one, turns.bias_rad_s - bias, Vector3d::Zero());
+    one = with_biases_moved(one, fit.bias_rad_s - bias, Vector3d::Zero());
 
   AlignmentProblem problem =
-      alignment_problem(poses, measured.between, gyroscope, turns, T_body_camera, options);
+      alignment_problem(poses, measured.between, gyroscope.R_gyro_camera, fit.covariance);
+  add_priors(gyroscope, T_body_camera, options, problem);
   const Refinement refined = refine(problem, linear_start(problem, options.gravity_m_s2));
-  if (!refined.noise) return {refused("the poses' covariance is none")};
+  if (!refined.noise) return refused("the covariance of the poses is not positive definite");
   InertialAlignment result;
   result.misfit = refined.cost / freedom_of(problem);
   if (!(result.misfit < kMostMisfit))
-    return {refused(fmt::format(
+    return refused(fmt::format(
         "accelerations and poses disagree by {:.0f} times what is expected: other axes or clock?",
-        std::sqrt(result.misfit)))};
+        std::sqrt(result.misfit)));
   result.ok = true;
   result.iterations = refined.iterations;
   result.gravity_m_s2 = refined.state.gravity;
@@ -336,29 +322,29 @@ Alignment alignment_of(const UncertainPoses& poses,
   result.accelerometer_bias_m_s2 = refined.state.bias;
   result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
-  tell_certainty(refined, options, result);
+  add_certainty(refined, options, result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return {std::move(result), std::move(problem), refined.state};
+  if (pull != nullptr) *pull = pull_of(problem, refined.state, result.misfit);
+  return result;
 }
 
-}  // namespace
-
-InertialAlignment align_inertial(const UncertainPoses& poses,
-                                 const Gyroscope& gyroscope,
-                                 const std::optional<Pose>& T_body_camera,
-                                 const InertialOptions& options) {
-  return alignment_of(poses, gyroscope, T_body_camera, options).inertial;
-}
-
-PullingAlignment align_and_pull(const UncertainPoses& poses,
-                                const Gyroscope& gyroscope,
-                                const std::optional<Pose>& T_body_camera,
-                                const InertialOptions& options) {
-  Alignment alignment = alignment_of(poses, gyroscope, T_body_camera, options);
-  if (!alignment.inertial.ok) return {std::move(alignment.inertial), {}};
-  PosePull pull = pull_of(alignment.problem, alignment.state, alignment.inertial.misfit);
-  return {std::move(alignment.inertial), std::move(pull)};
+std::optional<int> poses_that_determine_scale(const UncertainPoses& poses,
+                                              const Gyroscope& gyroscope,
+                                              const std::optional<Pose>& T_body_camera,
+                                              const InertialOptions& options) {
+  const auto determined = [&](int count) {
+    const auto aligned =
+        align_inertial(first_poses(poses, count), gyroscope, T_body_camera, options);
+    return aligned.ok && aligned.scale_known;
+  };
+  int too_few = 1, enough = static_cast<int>(poses.cameras.size());
+  if (!determined(enough)) return std::nullopt;
+  while (enough - too_few > 1) {
+    const int between = (too_few + enough) / 2;
+    (determined(between) ? enough : too_few) = between;
+  }
+  return enough;
 }
 
 }  // namespace gpo

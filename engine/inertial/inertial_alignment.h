@@ -16,8 +16,8 @@
 
 namespace gpo {
 
-/// Whether gravity and meters are found: after the initialization, from its poses; together with
-/// it, so that accelerations move planes, poses and the gyroscope's bias, too; or not at all.
+/// When gravity and metric scale are estimated: after the initialization, from its poses; jointly,
+/// so that accelerations also change planes, poses and the gyroscope's bias; or never.
 enum class Gravity { after, joint, off };
 
 template <>
@@ -26,65 +26,64 @@ struct ChoiceKeys<Gravity> {
   static constexpr std::array keys{"after", "joint", "off"};
 };
 
-/// What is known of an accelerometer and its place before anything is measured.
+/// Priors of an accelerometer and its position.
 struct InertialOptions {
   double gravity_m_s2 = 9.81;
-  double bias_sigma_m_s2 = 0.1;  ///< of the accelerometer, each axis
-  /// Of the accelerations, white [m/s^2/sqrt(Hz)]; where they show more, that counts.
-  double noise_density = 2e-3;
-  double told_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, where it is told
-  double untold_lever_sigma_m = 0.05;  ///< where it is not: sensor and camera in one case
-  double most_scale_sigma = 0.2;       ///< of a scale that is known [-]
+  double bias_sigma_m_s2 = 0.1;        ///< accelerometer, each axis
+  double noise_density = 2e-3;         ///< least noise of the accelerations [m/s^2/sqrt(Hz)]
+  double told_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, if it is calibrated
+  double untold_lever_sigma_m = 0.05;  ///< if it is not: sensor and camera in one case
+  double most_scale_sigma = 0.2;       ///< largest uncertainty of a known scale [-]
 };
 
-/// Gravity and meters of poses up to scale, with one standard deviation. World = reference camera.
+/// Gravity and metric scale of poses up to scale, with one standard deviation. World = reference
+/// camera.
 struct InertialAlignment {
   bool ok = false;
-  std::string reason;                                      ///< why there is none, for people
-  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();  ///< down, in the world's axes
+  std::string reason;                                              ///< why it is not
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();          ///< down, world axes
   Eigen::Matrix3d direction_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
   double gravity_sigma_deg = 0;                                    ///< root of its trace
   double scale = 0;            ///< meters per unit of the poses (plane distance)
-  double log_scale_sigma = 0;  ///< infinite where nothing tells it [-]
+  double log_scale_sigma = 0;  ///< infinite if not determined [-]
   bool scale_known = false;
-  std::string scale_reason;  ///< why it is not, for people
-  /// Of the sensor in the world's axes, at the times of the poses that were taken.
+  std::string scale_reason;  ///< why it is not
+  /// Velocities of the sensor in world axes, at `times_ns` of the aligned poses.
   std::vector<Eigen::Vector3d> velocities_m_s;
   std::vector<std::int64_t> times_ns;
-  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();  ///< in the sensor's axes
+  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();  ///< sensor axes
   Eigen::Matrix3d accelerometer_bias_covariance = Eigen::Matrix3d::Zero();
-  /// Squared residuals by what their covariances say, per degree of freedom. Above one, all
+  /// Squared residuals relative to their covariances, per degree of freedom. If above one, all
   /// covariances here are multiplied by it.
   double misfit = 0;
-  bool joint = false;  ///< planes, poses and the gyroscope's bias were moved with it
+  bool joint = false;  ///< whether planes, poses and the gyroscope's bias changed with it
   int iterations = 0;
   double milliseconds = 0;
 };
 
-/// What accelerations say of the poses that they were aligned with, over the rows of the poses'
-/// covariance (engine/method.md, eq. 25): of anything x that is known together with them, and has
-/// the covariance C with them, x - C gradient, and Cov(x) - C information C^T.
+/// Correction of poses by the accelerations, over the rows of the poses' covariance
+/// (engine/method.md, eq. 25). Any x that has the covariance C with the poses becomes
+/// x - C gradient, and Cov(x) becomes Cov(x) - C information C^T.
 struct PosePull {
   Eigen::VectorXd gradient;
   Eigen::MatrixXd information;
 };
 
-struct PullingAlignment {
-  InertialAlignment inertial;
-  PosePull pull;  ///< empty where the alignment is not ok
-};
-
-/// Finds gravity, scale and velocities that make poses and accelerations agree (engine/method.md,
-/// eq. 21 to 24). `T_body_camera` is the camera in the body's axes [m]; where it is not told,
-/// or its translation is zero as loggers leave it, the translation is one more unknown.
+/// Estimates gravity, scale and velocities for which poses and accelerations agree
+/// (engine/method.md, eq. 21 to 24). `T_body_camera` is the camera in body axes [m]. If it is
+/// missing or has a zero translation, as loggers leave it, the translation is one more unknown.
+/// Also computes `pull` if the result is ok.
 InertialAlignment align_inertial(const UncertainPoses& poses,
                                  const Gyroscope& gyroscope,
                                  const std::optional<Pose>& T_body_camera,
-                                 const InertialOptions& options = {});
-/// The same, and what it says of the poses.
-PullingAlignment align_and_pull(const UncertainPoses& poses,
-                                const Gyroscope& gyroscope,
-                                const std::optional<Pose>& T_body_camera,
-                                const InertialOptions& options = {});
+                                 const InertialOptions& options = {},
+                                 PosePull* pull = nullptr);
+
+/// Number of poses, from the first one on, that determine the scale, by bisection; nullopt if all
+/// of them do not. The poses are those of the whole window, so a live window may take longer.
+std::optional<int> poses_that_determine_scale(const UncertainPoses& poses,
+                                              const Gyroscope& gyroscope,
+                                              const std::optional<Pose>& T_body_camera,
+                                              const InertialOptions& options = {});
 
 }  // namespace gpo

@@ -3,15 +3,17 @@
 #include "engine/inertial/uncertain_poses.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace gpo {
 
 UncertainPoses uncertain_poses(const Window& window, const Initialization& result) {
+  constexpr int kMostFrames = 60;
   const int all = window.frame_count();
-  const int step = (all - 1 + kMostAlignedFrames - 1) / kMostAlignedFrames;
+  const int step = (all - 1 + kMostFrames - 1) / kMostFrames;
   UncertainPoses poses;
-  std::vector<int> rows;  // of the centers that are taken, in a covariance of all
+  std::vector<int> rows;  // chosen rows of the covariance of all centers
   for (int i = 0; i < all; i += std::max(1, step)) {
     poses.cameras.push_back(result.cameras[i]);
     poses.times_ns.push_back(window.timestamps_ns[i]);
@@ -26,6 +28,17 @@ UncertainPoses uncertain_poses(const Window& window, const Initialization& resul
   poses.covariance = u.joint_covariance(rows, rows);
   poses.joint_rows = std::move(rows);
   return poses;
+}
+
+UncertainPoses first_poses(const UncertainPoses& poses, int count) {
+  UncertainPoses first = poses;
+  first.cameras.resize(count);
+  first.times_ns.resize(count);
+  std::vector<Eigen::Index> rows(first.center_rows());
+  std::iota(rows.begin(), rows.end(), 0);
+  for (Eigen::Index k = poses.center_rows(); k < poses.covariance.rows(); ++k) rows.push_back(k);
+  first.covariance = poses.covariance(rows, rows);
+  return first;
 }
 
 }  // namespace gpo

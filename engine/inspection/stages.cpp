@@ -3,7 +3,7 @@
 #include "engine/inspection/stages.h"
 
 #include "engine/base/error.h"
-#include "engine/inertial/scale_since.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_rotations.h"
 #include "engine/inspection/window/window_truth.h"
@@ -90,7 +90,8 @@ std::optional<int> metric_scale_from(const Window& window,
                                   const Sources& sources,
                                   const Finished& end) {
   if (!end.inertial || !end.inertial->ok || !end.inertial->scale_known) return std::nullopt;
-  const auto count = poses_that_constrain_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
+  const auto count =
+      poses_that_determine_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
   if (!count) return std::nullopt;
   const auto at = std::ranges::find(window.timestamps_ns, end.poses.times_ns[*count - 1]);
   return static_cast<int>(at - window.timestamps_ns.begin());

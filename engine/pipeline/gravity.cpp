@@ -137,15 +137,15 @@ std::optional<Initialization> pulled(const Window& window,
 }  // namespace
 
 InertialAlignment find_gravity(const Window& window,
+                               const Sources& sources,
                                const UncertainPoses& poses,
-                               const Gyroscope& gyroscope,
-                               const std::optional<Pose>& T_body_camera,
                                Gravity when,
                                Initialization& result) {
-  if (when != Gravity::joint || poses.joint_rows.empty())
-    return align_inertial(poses, gyroscope, T_body_camera);
-  auto [inertial, pull] = align_and_pull(poses, gyroscope, T_body_camera);
-  if (!inertial.ok) return inertial;
+  const bool joint = when == Gravity::joint && !poses.joint_rows.empty();
+  PosePull pull;
+  InertialAlignment inertial =
+      align_inertial(poses, *sources.gyroscope, sources.T_body_camera, {}, joint ? &pull : nullptr);
+  if (!joint || !inertial.ok) return inertial;
   auto moved = pulled(window, result, poses, pull);
   if (!moved) return inertial;
   result = std::move(*moved);

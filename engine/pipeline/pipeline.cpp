@@ -35,8 +35,7 @@ void add_gravity(const Window& window, const Sources& sources, Gravity when, Fin
       gyroscope->accelerations_m_s2.empty())
     return;
   end.poses = uncertain_poses(window, end.initialization);
-  end.inertial =
-      find_gravity(window, end.poses, *gyroscope, sources.T_body_camera, when, end.initialization);
+  end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
 }
 
 }  // namespace

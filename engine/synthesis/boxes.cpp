@@ -23,33 +23,28 @@ void draw_pages(cv::Mat& canvas, const cv::Scalar& cover, Random& random) {
 
 void draw_book(BoxFaces& faces, Random& random) {
   const Palette& palette = pick_palette(random);
-  const cv::Scalar& cover = palette[static_cast<std::size_t>(random.below(3))];
+  const cv::Scalar& cover = palette[random.below(3)];
   const std::string title = pick_title(random);
   for (cv::Mat& side : faces.sides) draw_pages(side, cover, random);
-  // The spine faces who sits at the desk.
   cv::Mat& spine = faces.sides[0];
   const double h = ratio_of(spine);
   spine.setTo(cover);
   part(spine, 0.05, 0, 0.02, h).setTo(palette.back());
   part(spine, 0.93, 0, 0.02, h).setTo(palette.back());
   draw_text(spine, title, {0.12, 0.75 * h}, {0.5 * h, palette.back(), Face::serif, 0.5});
-  draw_text(spine,
-            pick_word(random) + " press",
-            {0.7, 0.68 * h},
-            {0.3 * h, palette.back(), Face::sans, 0.2});
-
+  const std::string press = pick_word(random) + " press";
+  draw_text(spine, press, {0.7, 0.68 * h}, {0.3 * h, palette.back(), Face::sans, 0.2});
   cv::Mat& top = faces.top;
   const double tall = ratio_of(top);
   top.setTo(cover);
   cv::Mat image = part(top, 0.1, 0.34 * tall, 0.8, 0.5 * tall);
-  if (random.uniform() < 0.5) {
+  if (random.uniform() < 0.5)
     paint_mosaic(image, 40, palette, random);
-  } else {
+  else
     paint_shapes(image, 40, palette, random);
-  }
   draw_text(top, title, {0.1, 0.2 * tall}, {0.1, palette.back(), Face::serif, 0.8});
-  draw_text(
-      top, pick_words(3, random), {0.1, 0.28 * tall}, {0.04, palette.back(), Face::sans, 0.8});
+  const TextStyle small{0.04, palette.back(), Face::sans, 0.8};
+  draw_text(top, pick_words(3, random), {0.1, 0.28 * tall}, small);
   draw_text(top, "A. " + pick_word(random), {0.1, 0.93 * tall}, {0.04, palette.back()});
 }
 
@@ -61,8 +56,8 @@ void draw_carton(BoxFaces& faces, Random& random) {
     paint_shapes(side, 46, palette, random);
     part(side, 0.1, 0.22 * h, 0.8, 0.3 * h).setTo(palette.front());
     draw_text(side, title, {0.16, 0.42 * h}, {0.14 * h, palette.back(), Face::serif, 0.68});
-    draw_text(
-        side, "fine tea, 20 bags", {0.16, 0.49 * h}, {0.045 * h, palette.back(), Face::sans, 0.68});
+    const TextStyle small{0.045 * h, palette.back(), Face::sans, 0.68};
+    draw_text(side, "fine tea, 20 bags", {0.16, 0.49 * h}, small);
     part(side, 0, 0, 1, 0.06 * h).setTo(palette[1]);
   }
   paint_mosaic(faces.top, 24, palette, random);
@@ -71,20 +66,17 @@ void draw_carton(BoxFaces& faces, Random& random) {
   draw_text(faces.top, title, {0.2, 0.57 * h}, {0.14 * h, palette.front(), Face::serif, 0.6});
 }
 
-/// The puzzle of 3 x 3 x 3 stones, scrambled.
+/// A scrambled puzzle of 3 x 3 x 3 cubes.
 void draw_cube(BoxFaces& faces, Random& random) {
   const Palette stickers = {
       rgb(0xb71c1c), rgb(0x1b5e20), rgb(0x0d47a1), rgb(0xf9a825), rgb(0xef6c00), rgb(0xf5f5f5)};
   const auto draw_face = [&](cv::Mat& face) {
     face.setTo(rgb(0x161616));
+    const double h = ratio_of(face);
     for (int i = 0; i < 9; ++i) {
       const int row = i / 3;
-      part(face,
-           (i % 3 + 0.08) / 3,
-           ratio_of(face) * (row + 0.08) / 3,
-           0.84 / 3,
-           ratio_of(face) * 0.84 / 3)
-          .setTo(stickers[static_cast<std::size_t>(random.below(6))]);
+      part(face, (i % 3 + 0.08) / 3, h * (row + 0.08) / 3, 0.84 / 3, h * 0.84 / 3)
+          .setTo(random.pick(stickers));
     }
   };
   for (cv::Mat& side : faces.sides) draw_face(side);
@@ -92,25 +84,22 @@ void draw_cube(BoxFaces& faces, Random& random) {
 }
 
 void draw_plank(cv::Mat& face, std::uint64_t seed) {
-  const double w = face.cols;
+  const double length = std::max(face.cols, face.rows);
   const bool lying = face.cols >= face.rows;
   for (int row = 0; row < face.rows; ++row) {
     for (int col = 0; col < face.cols; ++col) {
-      const double along = (lying ? col : row) / std::max<double>(w, face.rows);
-      const double across = (lying ? row : col) / std::max<double>(w, face.rows);
+      const double along = (lying ? col : row) / length;
+      const double across = (lying ? row : col) / length;
       const double bend = fractal_noise(3 * along, 9 * across, 3, seed);
       const double grain = fractal_noise(9 * along, 140 * across, 2, seed + 1);
       const double ring = 0.5 + 0.5 * std::sin(60 * across + 14 * bend);
-      const cv::Scalar color = rgb(0xc99a62) * (0.72 + 0.3 * ring * ring + 0.3 * (grain - 0.5));
-      face.at<cv::Vec4b>(row, col) = {cv::saturate_cast<uchar>(color[0]),
-                                      cv::saturate_cast<uchar>(color[1]),
-                                      cv::saturate_cast<uchar>(color[2]),
-                                      255};
+      face.at<cv::Vec4b>(row, col) =
+          opaque(rgb(0xc99a62) * (0.72 + 0.3 * ring * ring + 0.3 * (grain - 0.5)));
     }
   }
 }
 
-/// Of one piece of wood: a board, a leg.
+/// One piece of wood: a board, a leg.
 void draw_wooden(BoxFaces& faces, Random& random) {
   for (cv::Mat& side : faces.sides) draw_plank(side, random.bits());
   draw_plank(faces.top, random.bits());
@@ -124,7 +113,7 @@ void draw_books(cv::Mat row, Random& random) {
     const double width = h * random.uniform(0.1, 0.26);
     const double height = h * random.uniform(0.7, 0.95);
     const Palette& palette = pick_palette(random);
-    const auto& cover = palette[static_cast<std::size_t>(random.below(palette.size()))];
+    const cv::Scalar& cover = random.pick(palette);
     cv::Mat spine = part(row, x, h - height, std::min(width, 0.99 - x), height);
     if (!spine.empty() && random.uniform() < 0.93) {
       spine.setTo(cover);
@@ -137,7 +126,7 @@ void draw_books(cv::Mat row, Random& random) {
   }
 }
 
-/// A bookcase, open in front; its boards are about 0.28 of its width apart.
+/// A bookcase, open in front, with boards about 0.28 of its width apart.
 void draw_shelf(BoxFaces& faces, Random& random) {
   draw_wooden(faces, random);
   cv::Mat& front = faces.sides[0];
@@ -159,7 +148,7 @@ constexpr std::array<BoxKind, 5> kBoxKinds = {{{"book", draw_book},
                                                {"shelf", draw_shelf},
                                                {"wooden", draw_wooden}}};
 
-/// A cover's dark contact line with the desk, and light that fades downwards.
+/// Light that fades downwards to a dark contact line with the desk.
 void shade_side(cv::Mat& side) {
   for (int row = 0; row < side.rows; ++row) {
     const double below = static_cast<double>(side.rows - 1 - row) / side.rows;
@@ -180,9 +169,8 @@ BoxFaces draw_box(const std::string& kind, cv::Vec3d size_px, Random random) {
     faces.sides[i] = blank_canvas({cvRound(width), cvRound(size_px[2])}, rgb(0x808080));
   }
   faces.top = blank_canvas({cvRound(size_px[0]), cvRound(size_px[1])}, rgb(0x808080));
-  for (const BoxKind& known : kBoxKinds) {
+  for (const BoxKind& known : kBoxKinds)
     if (kind == known.key) known.draw(faces, random);
-  }
   for (cv::Mat& side : faces.sides) shade_side(side);
   return faces;
 }

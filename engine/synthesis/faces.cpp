@@ -3,7 +3,6 @@
 
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/random.h"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +17,7 @@ cv::Vec3f wood(double x, double y, std::uint64_t seed) {
   constexpr double kPlank = 0.21;
   const double plank = std::floor(y / kPlank);
   const double in_plank = y / kPlank - plank;
-  const auto board_seed =
-      seed + static_cast<std::uint64_t>(static_cast<std::int64_t>(plank) + 1000);
+  const auto board_seed = seed + static_cast<std::uint64_t>(std::int64_t(plank) + 1000);
   const double shift = 7.3 * plank;
   const double bend = fractal_noise(x * 1.6 + shift, y * 5, 3, board_seed);
   const double rings =
@@ -36,22 +34,22 @@ cv::Vec3f wood(double x, double y, std::uint64_t seed) {
   return color * static_cast<float>(1 - 0.45 * std::exp(-joint * joint / (2 * 0.0008 * 0.0008)));
 }
 
-/// A number in [0, 1) for each brick or plank, whatever its neighbors have.
+/// A random number in [0, 1) for each brick or plank.
 double lot(double row, double column, std::uint64_t seed) {
   const auto stream = static_cast<std::uint64_t>(static_cast<std::int64_t>(row) * 4096 +
                                                  static_cast<std::int64_t>(column) + (1 << 24));
   return Random(seed, stream).uniform();
 }
 
-/// Where a place lies in rows of bricks that are each shifted along.
+/// The brick at a place, in rows that are each shifted along.
 struct Laid {
-  double row, column;  ///< which one
-  double tone;         ///< its own, 0 .. 1
-  double edge;         ///< distance to its nearest edge [m]
+  double row;
+  double tone;  ///< random, 0 .. 1
+  double edge;  ///< distance to its nearest edge [m]
 };
 struct Courses {
-  double length, height;  ///< of a brick [m]
-  double shift;           ///< of a row from the one below, in lengths
+  double length, height;  ///< size of a brick [m]
+  double shift;           ///< between successive rows [lengths]
 };
 Laid laid(double x, double y, const Courses& courses, std::uint64_t seed) {
   const auto& [length, height, shift] = courses;
@@ -62,7 +60,6 @@ Laid laid(double x, double y, const Courses& courses, std::uint64_t seed) {
   const double in_column = along - column;
   return {
       row,
-      column,
       lot(row, column, seed),
       std::min(std::min(in_row, 1 - in_row) * height, std::min(in_column, 1 - in_column) * length)};
 }
@@ -71,7 +68,7 @@ float soft_line(double distance, double width) {
   return static_cast<float>(std::exp(-distance * distance / (2 * width * width)));
 }
 
-/// Narrow staves of oak along x, each of its own tone.
+/// Narrow staves of oak along x, each with a tone of its own.
 cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
   const Laid stave = laid(x, y, {0.26, 0.036, 0.381966}, seed);
   const double bend = fractal_noise(x * 6 + 17 * stave.tone, y * 24 + 5 * stave.row, 2, seed + 1);
@@ -101,39 +98,27 @@ cv::Vec3f bricks(double x, double y, std::uint64_t seed) {
   return mortar * (1 - t) + clay * t;
 }
 
-/// Colors at a place in meters at scale 1.
 struct SurfaceKind {
   const char* key;
+  /// Color at a place in meters at scale 1.
   cv::Vec3f (*color)(double x, double y, std::uint64_t seed);
 };
 constexpr std::array<SurfaceKind, 4> kSurfaceKinds = {
     {{"wood", wood}, {"parquet", parquet}, {"plaster", plaster}, {"bricks", bricks}}};
 
-cv::Vec4f interpolate(const cv::Mat& image, double col, double row) {
-  const double x = std::clamp(col, 0.0, image.cols - 1.001);
-  const double y = std::clamp(row, 0.0, image.rows - 1.001);
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const auto a = static_cast<float>(x - x0);
-  const auto b = static_cast<float>(y - y0);
-  const auto at = [&](int r, int c) { return cv::Vec4f(image.at<cv::Vec4b>(r, c)); };
-  return (at(y0, x0) * (1 - a) + at(y0, x0 + 1) * a) * (1 - b) +
-         (at(y0 + 1, x0) * (1 - a) + at(y0 + 1, x0 + 1) * a) * b;
-}
-
-/// The color of the face with the sheet over it; a soft shadow runs around the sheet.
+/// Color of the face under the sheet, which has a soft shadow around it.
 cv::Vec3f cover(const cv::Vec3f& under,
                 const Sheet& sheet,
                 const Eigen::Vector2d& place,
                 double scale) {
-  const Eigen::Vector2d in_sheet = sheet.turn * (place - sheet.center);
+  const Eigen::Vector2d in_sheet = sheet.R_sheet_face * (place - sheet.center);
   const Eigen::Array2d outside = in_sheet.array().abs() - sheet.size.array() / 2;
   const double distance = outside.max(0).matrix().norm() / scale;
   const float dark = distance > 0.006 ? 1.0F : static_cast<float>(0.72 + 0.28 * distance / 0.006);
   if (outside.maxCoeff() > 0) return under * dark;
   const double col = (in_sheet.x() / sheet.size.x() + 0.5) * sheet.image.cols - 0.5;
   const double row = (0.5 - in_sheet.y() / sheet.size.y()) * sheet.image.rows - 0.5;
-  const cv::Vec4f ink = interpolate(sheet.image, col, row);
+  const cv::Vec4f ink = bilinear<cv::Vec4f, cv::Vec4b>(sheet.image, col, row);
   const float opacity = ink[3] / 255;
   return under * (dark * (1 - opacity)) + cv::Vec3f(ink[0], ink[1], ink[2]) * opacity;
 }
@@ -156,15 +141,11 @@ cv::Mat paint_face(const PaintedFace& face,
                    int threads) {
   const double per_meter = kFaceTexelsPerMeter / face.scale;
   cv::Mat texture = empty_map(face, per_meter, CV_8UC3);
-  const auto* known = std::ranges::find(
-      kSurfaceKinds, kind, [](const SurfaceKind& k) { return std::string(k.key); });
+  const auto* known = std::ranges::find(kSurfaceKinds, kind, &SurfaceKind::key);
   in_parallel(texture.rows, threads, [&](int row) {
     for (int col = 0; col < texture.cols; ++col) {
       const Eigen::Vector2d p = texel_place(face, col, row, per_meter) / face.scale;
-      const cv::Vec3f color = known->color(p.x(), p.y(), seed);
-      texture.at<cv::Vec3b>(row, col) = cv::Vec3b(cv::saturate_cast<uchar>(color[0]),
-                                                  cv::saturate_cast<uchar>(color[1]),
-                                                  cv::saturate_cast<uchar>(color[2]));
+      texture.at<cv::Vec3b>(row, col) = known->color(p.x(), p.y(), seed);
     }
   });
   return texture;
@@ -183,14 +164,10 @@ void lay_sheet(cv::Mat& texture, const PaintedFace& face, const Sheet& sheet, in
     for (int col = area.x; col < area.x + area.width; ++col) {
       const cv::Vec3f under = texture.at<cv::Vec3b>(row, col);
       cv::Vec3f sum(0, 0, 0);
-      for (const double dr : {-0.25, 0.25}) {
-        for (const double dc : {-0.25, 0.25}) {
+      for (const double dr : {-0.25, 0.25})
+        for (const double dc : {-0.25, 0.25})
           sum += cover(under, sheet, texel_place(face, col + dc, row + dr, per_meter), face.scale);
-        }
-      }
-      texture.at<cv::Vec3b>(row, col) = cv::Vec3b(cv::saturate_cast<uchar>(sum[0] / 4),
-                                                  cv::saturate_cast<uchar>(sum[1] / 4),
-                                                  cv::saturate_cast<uchar>(sum[2] / 4));
+      texture.at<cv::Vec3b>(row, col) = sum / 4;
     }
   });
 }

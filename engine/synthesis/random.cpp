@@ -40,7 +40,7 @@ double value_noise(double x, double y, std::uint64_t seed) {
   return blend(top, bottom, b);
 }
 
-/// Layers of the plane's noise, blended.
+/// Blends two layers of noise in the plane.
 double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
   const std::int64_t layer = round_down(p.z());
   const auto below = static_cast<std::uint64_t>(layer);
@@ -49,12 +49,10 @@ double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
                ease(p.z() - static_cast<double>(layer)));
 }
 
-/// Sum over octaves of `noise(size, seed)`, from large to small.
+/// Weighted mean of `noise(size, seed)` over octaves, from large to small.
 template <typename Noise>
-double sum_octaves(int octaves, std::uint64_t seed, const Noise& noise) {
-  double sum = 0;
-  double weight = 0;
-  double size = 1;
+double mean_of_octaves(int octaves, std::uint64_t seed, const Noise& noise) {
+  double sum = 0, weight = 0, size = 1;
   for (int octave = 0; octave < octaves; ++octave, size /= 2) {
     sum += size * noise(size, mix(seed + static_cast<std::uint64_t>(octave)));
     weight += size;
@@ -82,14 +80,14 @@ double Random::normal() {
 }
 
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed) {
-  return sum_octaves(octaves, seed, [&](double size, std::uint64_t its_seed) {
-    return value_noise(x / size, y / size, its_seed);
+  return mean_of_octaves(octaves, seed, [&](double size, std::uint64_t octave_seed) {
+    return value_noise(x / size, y / size, octave_seed);
   });
 }
 
 double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed) {
-  return sum_octaves(octaves, seed, [&](double size, std::uint64_t its_seed) {
-    return value_noise(place / size, its_seed);
+  return mean_of_octaves(octaves, seed, [&](double size, std::uint64_t octave_seed) {
+    return value_noise(place / size, octave_seed);
   });
 }
 

@@ -23,7 +23,11 @@ const Bounds kDegrees{-3600, 3600, "deg"};
 const Bounds kSeed{0, 9e15};
 
 std::uint64_t read_seed(StrictMap& map, const std::string& key) {
-  return static_cast<std::uint64_t>(map.integer(key, kSeed, 1));
+  return map.integer<std::uint64_t>(key, kSeed, 1);
+}
+
+double read_angle(StrictMap& map, const std::string& key) {
+  return radians(map.number(key, kDegrees, 0));
 }
 
 Camera read_camera(StrictMap& map) {
@@ -36,9 +40,8 @@ Camera read_camera(StrictMap& map) {
   camera.fy = k[1];
   camera.cx = k[2];
   camera.cy = k[3];
-  if (camera.fx < 1 || camera.fy < 1) {
+  if (camera.fx < 1 || camera.fy < 1)
     map.fail("intrinsics", "a focal length below 1", "[fx, fy, cx, cy] in pixels");
-  }
   const std::string model =
       map.choice("distortion_model", {"none", "radial-tangential", "equidistant"});
   if (model == "none") return camera;
@@ -60,7 +63,7 @@ Pose read_pose(StrictMap& map, const std::string& key) {
   return {R, T.topRightCorner<3, 1>()};
 }
 
-/// `scale` turns the file's unit into ours; `duration` is the time from start to end.
+/// `scale` converts the file's unit; `duration` is the time from start to end [s].
 template <int N>
 Path<N> read_path(StrictMap map, const Bounds& range, double scale, double duration) {
   Path<N> path;
@@ -73,7 +76,7 @@ Path<N> read_path(StrictMap map, const Bounds& range, double scale, double durat
     Harmonic<N> harmonic;
     harmonic.amplitude = scale * entry.vector<N>("amplitude", range);
     harmonic.frequency = entry.number("frequency", {0, 20, "Hz"});
-    harmonic.phase = radians(entry.number("phase", kDegrees, 0));
+    harmonic.phase = read_angle(entry, "phase");
     entry.finish();
     path.harmonics.push_back(harmonic);
   }
@@ -94,17 +97,17 @@ Trajectory read_trajectory(StrictMap map, double duration) {
 
 BoardRecipe read_board(StrictMap map) {
   BoardRecipe board;
-  board.columns = static_cast<int>(map.integer("columns", {2, 50}));
-  board.rows = static_cast<int>(map.integer("rows", {2, 50}));
+  board.columns = map.integer("columns", {2, 50});
+  board.rows = map.integer("rows", {2, 50});
   board.square = map.number("square", kLength);
   board.margin = map.number("margin", {0, 1, "m"}, 0.015);
   board.center = map.vector<2>("center", kMeters);
-  board.angle = radians(map.number("angle", kDegrees, 0));
+  board.angle = read_angle(map, "angle");
   map.finish();
   return board;
 }
 
-constexpr double kLargestFace = 5;  ///< width or height of a desk, at scale 1 [m]
+constexpr double kLargestFace = 5;  // width or height of a desk at scale 1 [m]
 
 std::vector<PrintRecipe> read_prints(StrictMap& map, double scale) {
   std::vector<PrintRecipe> prints;
@@ -113,7 +116,7 @@ std::vector<PrintRecipe> read_prints(StrictMap& map, double scale) {
     print.kind = entry.choice("kind", print_kinds());
     print.center = entry.vector<2>("center", kMeters);
     print.size = entry.vector<2>("size", {0.01 * scale, 3 * scale, "m"});
-    print.angle = radians(entry.number("angle", kDegrees, 0));
+    print.angle = read_angle(entry, "angle");
     entry.finish();
     prints.push_back(print);
   }
@@ -125,14 +128,10 @@ BoxRecipe read_box(StrictMap map, double scale) {
   box.kind = map.choice("kind", box_kinds());
   box.center = map.vector<2>("center", kMeters);
   box.size = map.vector<3>("size", {0.005 * scale, 3 * scale, "m"});
-  box.angle = radians(map.number("angle", kDegrees, 0));
+  box.angle = read_angle(map, "angle");
   box.base = map.number("base", {0, 3 * scale, "m"}, 0);
   map.finish();
   return box;
-}
-
-std::string read_surface(StrictMap& map, const std::string& otherwise) {
-  return map.has("surface") ? map.choice("surface", surface_kinds()) : otherwise;
 }
 
 WallRecipe read_wall(StrictMap map, double scale) {
@@ -141,37 +140,35 @@ WallRecipe read_wall(StrictMap map, double scale) {
   wall.from = map.vector<2>("from", kMeters);
   wall.to = map.vector<2>("to", kMeters);
   const double length = (wall.to - wall.from).norm();
-  if (length < side.low || length > side.high) {
+  if (length < side.low || length > side.high)
     map.fail("to",
              fmt::format("a wall {:.4g} m long", length),
              fmt::format("from {} to {} m", side.low, side.high));
-  }
   wall.height = map.number("height", side);
-  wall.surface = read_surface(map, wall.surface);
+  wall.surface = map.choice("surface", surface_kinds(), wall.surface);
   wall.texture_seed = read_seed(map, "texture_seed");
   wall.prints = read_prints(map, scale);
   map.finish();
   return wall;
 }
 
-/// What there is to paint has to fit into memory.
+/// Refuses walls that do not fit into memory.
 void check_walls(StrictMap& map, const DeskRecipe& desk) {
   constexpr double kMostArea = 60;  // [m^2] at scale 1: about 0.5 GB of texels
   double area = desk.size.prod();
   for (const WallRecipe& wall : desk.walls) area += (wall.to - wall.from).norm() * wall.height;
   const double most = kMostArea * desk.scale * desk.scale;
-  if (area > most) {
+  if (area > most)
     map.fail("walls",
              fmt::format("{:.4g} m^2 of walls and floor", area),
              fmt::format("at most {} at scale {}", most, desk.scale));
-  }
 }
 
 DeskRecipe read_desk(StrictMap map) {
   DeskRecipe desk;
   desk.scale = map.number("scale", {1, 10}, 1);
   desk.size = map.vector<2>("size", {0.05, kLargestFace * desk.scale, "m"});
-  desk.surface = read_surface(map, desk.surface);
+  desk.surface = map.choice("surface", surface_kinds(), desk.surface);
   desk.texture_seed = read_seed(map, "texture_seed");
   if (map.has("board")) desk.board = read_board(map.map("board"));
   desk.prints = read_prints(map, desk.scale);
@@ -184,27 +181,25 @@ DeskRecipe read_desk(StrictMap map) {
 
 RubbleRecipe read_heap(StrictMap map) {
   RubbleRecipe heap;
-  heap.count = static_cast<int>(map.integer("count", {1, 1000}));
+  heap.count = map.integer("count", {1, 1000});
   heap.size = map.vector<2>("size", {0.01, 20, "m"});
-  if (heap.size[0] > heap.size[1]) {
+  if (heap.size[0] > heap.size[1])
     map.fail("size", "the greatest first", "[least, greatest] in meters");
-  }
   heap.low = map.vector<3>("low", kMeters);
   heap.high = map.vector<3>("high", kMeters);
-  if ((heap.low.array() > heap.high.array()).any()) {
+  if ((heap.low.array() > heap.high.array()).any())
     map.fail("high", "a corner below `low`", "x, y and z of at least those of `low`");
-  }
   heap.seed = read_seed(map, "seed");
   map.finish();
   return heap;
 }
 
-/// `period` is the time from frame to frame [s]: a picture is read before the next one begins.
+/// `period` from frame to frame [s] limits the readout time.
 ImageRecipe read_image(StrictMap map, double period) {
   ImageRecipe image;
   image.format = map.choice("format", {"jpg", "png"});
-  image.quality = static_cast<int>(map.integer("quality", {1, 100}, image.quality));
-  image.samples = static_cast<int>(map.integer("samples", {1, 16}, image.samples));
+  image.quality = map.integer("quality", {1, 100}, image.quality);
+  image.samples = map.integer("samples", {1, 16}, image.samples);
   image.noise = map.number("noise", {0, 100, "gray levels"}, 0);
   image.blur = map.number("blur", {0, 20, "px"}, 0);
   image.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
@@ -219,47 +214,42 @@ GyroscopeRecipe read_gyroscope(StrictMap map) {
   gyroscope.rate = map.number("rate", {1, 10000, "Hz"});
   gyroscope.noise_density = map.number("noise_density", {0, 1, "rad/s/sqrt(Hz)"}, 0);
   gyroscope.bias = map.vector<3>("bias", {-1, 1, "rad/s"});
-  if (map.has("calibrated_bias")) {
+  if (map.has("calibrated_bias"))
     gyroscope.calibrated_bias = map.vector<3>("calibrated_bias", {-1, 1, "rad/s"});
-  }
   map.finish();
   return gyroscope;
 }
 
-/// Numbers that are each in their range can together ask for more than a memory holds.
+/// Refuses combinations of valid numbers that do not fit into memory.
 void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
   const double rays =
       double(recipe.camera.width) * recipe.camera.height * std::pow(recipe.image.samples, 2);
-  if (rays > kMostRays) {
+  if (rays > kMostRays)
     top.fail("picture",
              fmt::format("{:.0f} rays (width x height x samples^2)", rays),
              fmt::format("at most {:.0f}", kMostRays));
-  }
   const double samples = recipe.frame_count / recipe.frame_rate * recipe.gyroscope.rate;
-  if (samples > kMostSamples) {
+  if (samples > kMostSamples)
     top.fail("gyroscope",
              fmt::format("{:.0f} samples (rate x time)", samples),
              fmt::format("at most {:.0f}", kMostSamples));
-  }
 }
 
-/// A path on which the camera has no direction of view, or dives below the desk, has no picture.
+/// Refuses a path without a viewing direction, or below the desk.
 void check_trajectory(StrictMap& top, const Recipe& recipe) {
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
     const CameraMotion motion = camera_motion(recipe.trajectory, t);
-    if (!motion.pose.R_wc.allFinite() || !motion.rate_c.allFinite() || motion.rate_c.norm() > 100) {
+    if (!motion.pose.R_wc.allFinite() || !motion.rate_c.allFinite() || motion.rate_c.norm() > 100)
       top.fail("trajectory",
                "no direction of view in frame " + std::to_string(frame),
                "look_at away from position, and not along up");
-    }
-    if (has_desk(recipe) && motion.pose.p_wc.z() <= 0) {
+    if (has_desk(recipe) && motion.pose.p_wc.z() <= 0)
       top.fail("trajectory",
                "a camera below the desk in frame " + std::to_string(frame),
                "position above z = 0");
-    }
   }
 }
 
@@ -278,20 +268,19 @@ Recipe read_recipe(const std::filesystem::path& file) {
   camera.finish();
 
   StrictMap frames = top.map("frames");
-  recipe.frame_count = static_cast<int>(frames.integer("count", {1, 100000}));
+  recipe.frame_count = frames.integer("count", {1, 100000});
   recipe.frame_rate = frames.number("rate", {0.1, 1000, "Hz"});
-  recipe.start_ns = frames.integer("start_ns", {1e9, 9e18, "ns"});
+  recipe.start_ns = frames.integer<std::int64_t>("start_ns", {1e9, 9e18, "ns"});
   frames.finish();
 
   recipe.trajectory =
       read_trajectory(top.map("trajectory"), (recipe.frame_count - 1) / recipe.frame_rate);
   for (StrictMap& heap : top.list("rubble")) recipe.rubble.push_back(read_heap(heap));
-  // A desk in a room is called its floor; a heap of rocks needs neither.
-  const bool floor = top.has("floor");
-  if (floor) recipe.desk = read_desk(top.map("floor"));
-  if (!floor && (recipe.rubble.empty() || top.has("desk"))) {
+  // `floor` is the desk of a room; rubble needs neither.
+  if (top.has("floor"))
+    recipe.desk = read_desk(top.map("floor"));
+  else if (recipe.rubble.empty() || top.has("desk"))
     recipe.desk = read_desk(top.map("desk"));
-  }
   recipe.image = read_image(top.map("picture"), 1 / recipe.frame_rate);
   recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
   top.finish();

@@ -4,7 +4,6 @@
 
 #include "engine/base/parallel.h"
 #include "engine/synthesis/random.h"
-#include "engine/synthesis/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,31 +16,148 @@
 namespace gpo {
 namespace {
 
-constexpr float kBoardWhite[3] = {232, 237, 239};
-constexpr float kBoardBlack[3] = {38, 36, 36};
-constexpr double kFloorHeight = -0.73;  ///< [m]
+const cv::Vec3f kBoardWhite(232, 237, 239);
+const cv::Vec3f kBoardBlack(38, 36, 36);
+constexpr double kFloorHeight = -0.73;  // [m]
+constexpr double kMiss = std::numeric_limits<double>::infinity();
+
+/// origin + t along, in the axes of the thing that it meets.
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d along;  ///< not a unit vector: t is the same in all axes
+};
+
+// The first point where a ray meets a thing: 0 < t < farthest, infinite for a miss.
+
+struct BoxHit {
+  double t = kMiss;
+  int axis = 0;  ///< across the face
+};
+/// In the axes of the box.
+BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest) {
+  const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
+  const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());
+  BoxHit hit{0, 0};
+  double leave = kMiss;
+  for (int k = 0; k < 3; ++k) {
+    const double a = (low[k] - ray.origin[k]) / ray.along[k];
+    const double b = (high[k] - ray.origin[k]) / ray.along[k];
+    if (std::min(a, b) > hit.t) hit = {std::min(a, b), k};
+    leave = std::min(leave, std::max(a, b));
+  }
+  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
+  return hit;
+}
+
+cv::Vec3f box_color(const SceneBox& box, const BoxHit& hit, const Ray& ray) {
+  const Eigen::Vector3d p = (ray.origin + hit.t * ray.along).cwiseQuotient(box.size);
+  if (hit.axis == 2) return sample_texture(box.top, p.x() + 0.5, 0.5 - p.y());
+  if (hit.axis == 0)
+    return ray.along.x() < 0 ? sample_texture(box.sides[1], p.y() + 0.5, 1 - p.z())
+                             : sample_texture(box.sides[3], 0.5 - p.y(), 1 - p.z());
+  return ray.along.y() > 0 ? sample_texture(box.sides[0], p.x() + 0.5, 1 - p.z())
+                           : sample_texture(box.sides[2], 0.5 - p.x(), 1 - p.z());
+}
+
+struct WallHit {
+  double t = kMiss;
+  double u = 0;  ///< fraction of the wall's length, from its foot
+  double v = 0;  ///< fraction of its height, from the top down
+};
+/// In the world.
+WallHit hit_wall(const SceneWall& wall, const Ray& ray) {
+  const Eigen::Vector3d normal(wall.along.y(), -wall.along.x(), 0);
+  const double t = normal.dot(wall.foot - ray.origin) / normal.dot(ray.along);
+  if (!(t > 0) || !std::isfinite(t)) return {};
+  const Eigen::Vector3d p = ray.origin + t * ray.along - wall.foot;
+  const double u = p.dot(wall.along) / wall.size.x();
+  const double v = 1 - p.z() / wall.size.y();
+  if (u < 0 || u > 1 || v < 0 || v > 1) return {};
+  return {t, u, v};
+}
+
+struct RockHit {
+  double t = kMiss;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< in the axes of the rock
+};
+/// In the axes of the rock: the chord of the sphere, shortened by each half-space.
+RockHit hit_rock(const SceneRock& rock, const Ray& ray, double farthest) {
+  const double a = ray.along.squaredNorm();
+  const double b = ray.origin.dot(ray.along);
+  const double inside = b * b - a * (ray.origin.squaredNorm() - 1);
+  if (inside < 0) return {};
+  RockHit hit;
+  hit.t = (-b - std::sqrt(inside)) / a;
+  if (hit.t >= farthest) return {};  // cuts only move it away
+  hit.normal = ray.origin + hit.t * ray.along;
+  double leave = (-b + std::sqrt(inside)) / a;
+  for (const SceneRock::Cut& cut : rock.cuts) {
+    const double slope = cut.normal.dot(ray.along);
+    const double within = cut.distance - cut.normal.dot(ray.origin);
+    if (slope > 0) {
+      leave = std::min(leave, within / slope);
+    } else if (slope < 0 && within / slope > hit.t) {
+      hit = {within / slope, cut.normal};
+    } else if (slope == 0 && within < 0) {
+      return {};
+    }
+  }
+  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
+  return hit;
+}
+
+/// Brightness of the block of stone, interpolated, at a place in [-1, 1]^3.
+float sample_stone(const cv::Mat& stone, const Eigen::Vector3d& place) {
+  const int texels = stone.size[0];
+  int at[3];
+  float part[3];
+  for (int k = 0; k < 3; ++k) {
+    const double x = std::clamp((place[k] + 1) / 2 * (texels - 1), 0.0, texels - 1.001);
+    at[k] = static_cast<int>(x);
+    part[k] = static_cast<float>(x - at[k]);
+  }
+  const auto along = [&](int i, int j) {
+    const uchar* p = stone.ptr<uchar>(at[0] + i, at[1] + j) + at[2];
+    return static_cast<float>(p[0]) * (1 - part[2]) + static_cast<float>(p[1]) * part[2];
+  };
+  const float near = along(0, 0) * (1 - part[1]) + along(0, 1) * part[1];
+  const float far = along(1, 0) * (1 - part[1]) + along(1, 1) * part[1];
+  return near * (1 - part[0]) + far * part[0];
+}
+
+/// With light from the sky, and more from above on the left.
+cv::Vec3f rock_color(const SceneRock& rock,
+                     const cv::Mat& stone,
+                     const RockHit& hit,
+                     const Ray& ray) {
+  const Eigen::Vector3d lamp(-0.48, -0.36, 0.8);
+  const Eigen::Vector3d normal = (rock.R_unit_world.transpose() * hit.normal).normalized();
+  const double light = 0.34 + 0.2 * normal.z() + 0.75 * std::max(0.0, normal.dot(lamp));
+  const Eigen::Vector3d place = rock.grain * (ray.origin + hit.t * ray.along);
+  return rock.tint * (static_cast<float>(light) * sample_stone(stone, place));
+}
 
 bool overlap(const Cone& a, const Cone& b) {
   return a.axis.dot(b.axis) >= a.cosine * b.cosine - a.sine * b.sine;
 }
 
-/// A thing as one camera pose sees it, in the thing's own axes.
+/// A thing seen from a camera pose, in its own axes.
 struct Seen {
   Eigen::Vector3d eye;
   Eigen::Matrix3d R_own_c;
-  std::optional<Cone> cone;  ///< around the sphere around it; none for an eye in that sphere
+  std::optional<Cone> cone;  ///< around its bounding sphere; nullopt for an eye in that sphere
 
   Ray ray(const Eigen::Vector3d& ray_c) const { return {eye, R_own_c * ray_c}; }
 };
 
-/// A camera pose with what all its rays share.
+/// A camera pose and all things seen from it.
 struct Eye {
   Pose pose;
   std::vector<Seen> boxes;
   std::vector<Seen> rocks;
 };
 
-/// What rays of one eye through a part of the picture may meet: places in its lists.
+/// Indices of things that rays of one eye through a part of the image may meet.
 struct Candidates {
   std::vector<std::size_t> boxes;
   std::vector<std::size_t> rocks;
@@ -63,38 +179,26 @@ Eye make_eye(const Scene& scene, const Pose& pose) {
     const Eigen::Vector3d middle = box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2);
     eye.boxes.push_back(seen(box.R_box_world, box.origin, middle, box.size.squaredNorm() / 4));
   }
-  for (const SceneRock& rock : scene.rocks) {
+  for (const SceneRock& rock : scene.rocks)
     eye.rocks.push_back(seen(rock.R_unit_world, rock.center, rock.center, rock.reach * rock.reach));
-  }
   return eye;
 }
 
-/// Nothing beside the squares; their colors are computed, so that corners are exact.
-const float* board_color(const BoardRecipe& board,
-                         const Eigen::Matrix3d& turn,
-                         double x,
-                         double y) {
-  const double dx = x - board.center.x();
-  const double dy = y - board.center.y();
-  const double u = turn(0, 0) * dx + turn(0, 1) * dy;
-  const double v = turn(1, 0) * dx + turn(1, 1) * dy;
-  const double column = u / board.square + (board.columns + 1) / 2.0;
-  const double row = v / board.square + (board.rows + 1) / 2.0;
-  if (column < 0 || row < 0 || column >= board.columns + 1 || row >= board.rows + 1) return nullptr;
-  const bool black = (static_cast<int>(column) + static_cast<int>(row)) % 2 == 0;
-  return black ? kBoardBlack : kBoardWhite;
-}
-
+/// The color of a desk at a place. Squares of a board are computed, so that corners are exact.
 cv::Vec3f desk_color(const Scene& scene, double x, double y) {
   const double u = x / scene.desk_size.x() + 0.5;
   const double v = 0.5 - y / scene.desk_size.y();
-  if (scene.board) {
-    if (const float* color = board_color(*scene.board, scene.R_board_world, x, y)) {
-      const float light = sample_texture(scene.light, u, v)[0];
-      return {color[0] * light, color[1] * light, color[2] * light};
-    }
-  }
-  return sample_texture(scene.desk, u, v);
+  if (!scene.board) return sample_texture(scene.desk, u, v);
+  const BoardRecipe& board = *scene.board;
+  const Eigen::Matrix3d& R = scene.R_board_world;
+  const double dx = x - board.center.x();
+  const double dy = y - board.center.y();
+  const double column = (R(0, 0) * dx + R(0, 1) * dy) / board.square + (board.columns + 1) / 2.0;
+  const double row = (R(1, 0) * dx + R(1, 1) * dy) / board.square + (board.rows + 1) / 2.0;
+  if (column < 0 || row < 0 || column >= board.columns + 1 || row >= board.rows + 1)
+    return sample_texture(scene.desk, u, v);
+  const bool black = (static_cast<int>(column) + static_cast<int>(row)) % 2 == 0;
+  return (black ? kBoardBlack : kBoardWhite) * sample_texture(scene.light, u, v)[0];
 }
 
 /// A dim room beyond the desk, without texture: a floor below, a wall above.
@@ -106,34 +210,16 @@ cv::Vec3f room_color(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) 
   return wall + (cv::Vec3f(58, 62, 72) - wall) * static_cast<float>(std::exp(-distance / 3));
 }
 
-/// The nearest of the things of one sort, and where it is hit.
+/// The nearest hit of the things of one sort.
 template <typename Hit>
 struct Nearest {
   Hit hit;
   std::size_t which = 0;
-};
-template <typename Thing, typename Hit>
-Nearest<Hit> nearest_of(const std::vector<Thing>& things,
-                        const std::vector<Seen>& seen,
-                        const std::vector<std::size_t>& candidates,
-                        Hit (*hit_thing)(const Thing&, const Ray&, double farthest),
-                        const Eigen::Vector3d& ray_c) {
-  Nearest<Hit> nearest;
-  for (const std::size_t i : candidates) {
-    const Hit hit = hit_thing(things[i], seen[i].ray(ray_c), nearest.hit.t);
-    if (hit.t < nearest.hit.t) nearest = {hit, i};
-  }
-  return nearest;
-}
 
-Nearest<WallHit> nearest_wall(const std::vector<SceneWall>& walls, const Ray& ray) {
-  Nearest<WallHit> nearest;
-  for (std::size_t i = 0; i < walls.size(); ++i) {
-    const WallHit hit = hit_wall(walls[i], ray);
-    if (hit.t < nearest.hit.t) nearest = {hit, i};
+  void take(const Hit& other, std::size_t i) {
+    if (other.t < hit.t) *this = {other, i};
   }
-  return nearest;
-}
+};
 
 cv::Vec3f trace(const Scene& scene,
                 const Eye& eye,
@@ -142,33 +228,34 @@ cv::Vec3f trace(const Scene& scene,
   if (!std::isfinite(slope.x())) return {0, 0, 0};
   const Eigen::Vector3d ray_c(slope.x(), slope.y(), 1);
   const Ray ray{eye.pose.p_wc, eye.pose.R_wc * ray_c};
-  const auto box = nearest_of(scene.boxes, eye.boxes, candidates.boxes, hit_box, ray_c);
-  const auto rock = nearest_of(scene.rocks, eye.rocks, candidates.rocks, hit_rock, ray_c);
-  const auto wall = nearest_wall(scene.walls, ray);
+  Nearest<BoxHit> box;
+  for (const std::size_t i : candidates.boxes)
+    box.take(hit_box(scene.boxes[i], eye.boxes[i].ray(ray_c), box.hit.t), i);
+  Nearest<RockHit> rock;
+  for (const std::size_t i : candidates.rocks)
+    rock.take(hit_rock(scene.rocks[i], eye.rocks[i].ray(ray_c), rock.hit.t), i);
+  Nearest<WallHit> wall;
+  for (std::size_t i = 0; i < scene.walls.size(); ++i) wall.take(hit_wall(scene.walls[i], ray), i);
   const double to_desk = -ray.origin.z() / ray.along.z();
   const double x = ray.origin.x() + to_desk * ray.along.x();
   const double y = ray.origin.y() + to_desk * ray.along.y();
   const bool on_desk =
       to_desk > 0 && std::abs(x) < scene.desk_size.x() / 2 && std::abs(y) < scene.desk_size.y() / 2;
-  const double desk_t = on_desk ? to_desk : std::numeric_limits<double>::infinity();
+  const double desk_t = on_desk ? to_desk : kMiss;
   const double t = std::min({box.hit.t, rock.hit.t, wall.hit.t, desk_t});
   if (!std::isfinite(t)) return room_color(ray.origin, ray.along);
-  if (t == box.hit.t) {
+  if (t == box.hit.t)
     return box_color(scene.boxes[box.which], box.hit, eye.boxes[box.which].ray(ray_c));
-  }
-  if (t == rock.hit.t) {
-    const Ray own = eye.rocks[rock.which].ray(ray_c);
-    return rock_color(scene.rocks[rock.which], scene.stone, rock.hit, own);
-  }
-  if (t == wall.hit.t) {
+  if (t == rock.hit.t)
+    return rock_color(
+        scene.rocks[rock.which], scene.stone, rock.hit, eye.rocks[rock.which].ray(ray_c));
+  if (t == wall.hit.t)
     return sample_texture(scene.walls[wall.which].texture, wall.hit.u, wall.hit.v);
-  }
   return desk_color(scene, x, y);
 }
 
 std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
   std::vector<Eye> eyes;
-  eyes.reserve(poses.size());
   for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
   return eyes;
 }
@@ -177,37 +264,32 @@ Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
   return Eigen::Vector3d(slope.x(), slope.y(), 1).normalized();
 }
 
-/// Around all rays; nothing where the lens sees nothing.
+/// The cone around all rays; nullopt where the lens has none.
 std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& slope : slopes) {
+  for (const auto& slope : slopes)
     if (std::isfinite(slope.x())) sum += direction(slope);
-  }
   if (sum.isZero()) return std::nullopt;
   const Eigen::Vector3d axis = sum.normalized();
   double cosine = 1;
-  for (const auto& slope : slopes) {
+  for (const auto& slope : slopes)
     if (std::isfinite(slope.x())) cosine = std::min(cosine, axis.dot(direction(slope)));
-  }
-  cosine -= 1e-9;  // rounding must not lose a thing that is just touched
+  cosine -= 1e-9;  // more than rounding
   return Cone{axis, cosine, std::sqrt(1 - cosine * cosine)};
 }
 
 std::vector<std::size_t> within(const Cone& cone, const std::vector<Seen>& things) {
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < things.size(); ++i) {
+  for (std::size_t i = 0; i < things.size(); ++i)
     if (!things[i].cone || overlap(cone, *things[i].cone)) found.push_back(i);
-  }
   return found;
 }
 
-/// For each eye.
 std::vector<Candidates> find_candidates(const std::vector<Eye>& eyes,
                                         const std::optional<Cone>& cone) {
   std::vector<Candidates> candidates(eyes.size());
-  for (std::size_t i = 0; cone && i < eyes.size(); ++i) {
+  for (std::size_t i = 0; cone && i < eyes.size(); ++i)
     candidates[i] = {within(*cone, eyes[i].boxes), within(*cone, eyes[i].rocks)};
-  }
   return candidates;
 }
 
@@ -221,8 +303,8 @@ void render_row(
     if (col % RayMap::kSpan == 0) candidates = find_candidates(eyes, *cone++);
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
-      // 23 has no factor in common with any number of samples: each pose gets its sample, and a
-      // sample's time has little to do with its place in the pixel.
+      // 23 is coprime to any number of samples: each pose gets its sample, at a time that hardly
+      // depends on its place in the pixel.
       const std::size_t time = (k * 23) % eyes.size();
       sum += trace(scene, eyes[time], candidates[time], *ray++);
     }

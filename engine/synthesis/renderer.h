@@ -16,40 +16,39 @@
 
 namespace gpo {
 
-/// Directions within an angle of an axis, less than a quarter turn; in camera axes.
+/// Directions in camera axes within an angle of less than 90 deg from an axis.
 struct Cone {
   Eigen::Vector3d axis;  ///< unit vector
-  double cosine;         ///< of the angle
+  double cosine;         ///< cosine of the angle
   double sine;
 };
 
-/// The rays of a camera's picture: samples x samples a pixel, on a regular grid about the pixel's
+/// Rays of a camera's image: samples x samples a pixel, on a regular grid around the pixel's
 /// center, through the exact lens model. Computed once for all frames.
 struct RayMap {
   int width = 0;
   int height = 0;
   int samples = 1;
-  /// (x/z, y/z) in camera axes, pixel by pixel, sample by sample; NaN where the lens sees nothing.
+  /// (x/z, y/z) in camera axes, by pixel and sample; NaN beyond the lens model's valid radius.
   std::vector<Eigen::Vector2f> rays;
-  /// Around the rays of each span of pixels, row by row, which share what they may meet; none where
-  /// the lens sees nothing.
+  /// Cones around the rays of each span of pixels, row by row, which share candidates; nullopt
+  /// beyond the lens model's valid radius.
   static constexpr int kSpan = 16;
   std::vector<std::optional<Cone>> cones;
 
-  int spans() const { return (width + kSpan - 1) / kSpan; }  ///< a row
+  int spans() const { return (width + kSpan - 1) / kSpan; }  ///< per row
 };
 RayMap make_ray_map(const Camera& camera, int samples, int threads);
 
-/// The light that falls on the picture, CV_32FC3 in gray levels, without lens blur and noise.
-/// Sample k of each pixel is seen from poses[k % size]: poses spread over the exposure make motion
-/// blur.
+/// Light on the image, CV_32FC3 in gray levels, before lens blur and noise. Sample k of each pixel
+/// is seen from poses[k % size]: poses over the exposure make motion blur.
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
-/// The same where each row is seen from poses of its own (rolling shutter).
+/// The same with poses for each row (rolling shutter).
 using RowPoses = std::function<std::vector<Pose>(int row)>;
 cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads);
 
-/// Lens blur, vignette, gain and noise: CV_8UC3. Equal for equal seeds, whatever the threads.
+/// Adds lens blur, vignette, gain and noise: CV_8UC3. The same for equal seeds and any threads.
 cv::Mat expose(const cv::Mat& light,
                const ImageRecipe& image,
                double gain,

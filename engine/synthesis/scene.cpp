@@ -7,6 +7,7 @@
 #include "engine/synthesis/random.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -15,23 +16,25 @@
 namespace gpo {
 namespace {
 
-constexpr double kLightTexelsPerMeter = 400;  ///< at scale 1
-const cv::Vec3f kBoardPaper(232, 237, 239);
+constexpr double kLightTexelsPerMeter = 400;  // at scale 1
+const cv::Scalar kBoardPaper(232, 237, 239, 255);
 
-struct PrintLayout {
-  const std::vector<PrintRecipe>& prints;
-  Eigen::Vector2d origin;  ///< from which their centers are
+/// A surface with prints, whose centers are relative to `origin`.
+struct FaceRecipe {
+  PaintedFace face;
+  const std::string& surface;
   std::uint64_t seed;
+  const std::vector<PrintRecipe>& prints;
+  Eigen::Vector2d origin;
 };
 
-/// Draws the prints and lays them, the last one on top.
-void lay_prints(cv::Mat& texture,
-                const PaintedFace& face,
-                const PrintLayout& layout,
-                int threads,
-                const std::function<void()>& step) {
+/// Paints a surface and its prints, the last one on top.
+cv::Mat paint_with_prints(const FaceRecipe& recipe,
+                          int threads,
+                          const std::function<void()>& step) {
+  const auto& [face, surface, seed, prints, origin] = recipe;
+  cv::Mat texture = paint_face(face, surface, seed, threads);
   step();
-  const auto& [prints, origin, seed] = layout;
   const double per_meter = kSheetTexelsPerMeter / face.scale;
   for (std::size_t i = 0; i < prints.size(); ++i) {
     const PrintRecipe& print = prints[i];
@@ -45,6 +48,7 @@ void lay_prints(cv::Mat& texture,
               threads);
     step();
   }
+  return texture;
 }
 
 PaintedFace face_of(const DeskRecipe& desk) { return {desk.size, desk.scale}; }
@@ -70,7 +74,7 @@ std::vector<cv::Point> footprint(const DeskRecipe& desk,
   return corners;
 }
 
-/// Shadow of all boxes in the light of a broad window at the back on the left, 0 .. 1.
+/// Shadow of all boxes, 0 .. 1, in the light of a broad window at the back on the left.
 cv::Mat cast_shadows(const DeskRecipe& desk) {
   cv::Mat sum = empty_map(face_of(desk), light_texels(desk), CV_32FC1);
   sum.setTo(0);
@@ -96,12 +100,10 @@ cv::Mat make_light(const DeskRecipe& desk) {
   cv::Mat light = empty_map(face_of(desk), light_texels(desk), CV_32FC1);
   const cv::Mat shadow = cast_shadows(desk);
   cv::Mat contact(light.size(), CV_32FC1, cv::Scalar(0));
-  for (const BoxRecipe& box : desk.boxes) {
+  for (const BoxRecipe& box : desk.boxes)
     if (box.base == 0) cv::fillConvexPoly(contact, footprint(desk, box, {0, 0}), 1.0, cv::LINE_8);
-  }
-  for (const WallRecipe& wall : desk.walls) {
+  for (const WallRecipe& wall : desk.walls)
     cv::line(contact, light_texel(desk, wall.from), light_texel(desk, wall.to), 1.0, 12);
-  }
   cv::GaussianBlur(contact, contact, {}, 0.012 * kLightTexelsPerMeter);
   for (int row = 0; row < light.rows; ++row) {
     for (int col = 0; col < light.cols; ++col) {
@@ -121,9 +123,7 @@ void apply_light(Scene& scene, int threads) {
       const float light = sample_texture(
           scene.light, (col + 0.5) / scene.desk.cols, (row + 0.5) / scene.desk.rows)[0];
       auto& texel = scene.desk.at<cv::Vec3b>(row, col);
-      for (int k = 0; k < 3; ++k) {
-        texel[k] = cv::saturate_cast<uchar>(static_cast<float>(texel[k]) * light);
-      }
+      texel = cv::Vec3f(texel) * light;
     }
   });
 }
@@ -142,8 +142,8 @@ SceneBox make_box(const BoxRecipe& box, double scale, Random random) {
   return scene_box;
 }
 
-/// Light on a wall: less the more it faces the window at the back on the left from behind, and less
-/// towards its foot.
+/// Light on a wall: less if it faces away from the window at the back on the left, and towards its
+/// foot.
 float wall_light(const SceneWall& wall, double height, double scale) {
   const Eigen::Vector3d facing(wall.along.y(), -wall.along.x(), 0);
   const double direct = 0.84 + 0.12 * facing.dot(Eigen::Vector3d(-0.8, -0.6, 0));
@@ -159,10 +159,10 @@ SceneWall make_wall(const WallRecipe& recipe,
   wall.foot = {recipe.from.x(), recipe.from.y(), 0};
   wall.along = Eigen::Vector3d(foot.x(), foot.y(), 0).normalized();
   wall.size = {foot.norm(), recipe.height};
-  const PaintedFace face{wall.size, scale};
-  wall.texture = paint_face(face, recipe.surface, recipe.texture_seed, threads);
-  lay_prints(
-      wall.texture, face, {recipe.prints, -wall.size / 2, recipe.texture_seed}, threads, step);
+  wall.texture = paint_with_prints(
+      {{wall.size, scale}, recipe.surface, recipe.texture_seed, recipe.prints, -wall.size / 2},
+      threads,
+      step);
   for (int row = 0; row < wall.texture.rows; ++row) {
     const double height = (1 - (row + 0.5) / wall.texture.rows) * wall.size.y();
     cv::Mat pixels = wall.texture.row(row);
@@ -171,21 +171,18 @@ SceneWall make_wall(const WallRecipe& recipe,
   return wall;
 }
 
-}  // namespace
-
-Scene make_scene(const DeskRecipe& desk, int threads, const std::function<void()>& step) {
+Scene make_desk(const DeskRecipe& desk, int threads, const std::function<void()>& step) {
   Scene scene;
   scene.desk_size = desk.size;
   scene.board = desk.board;
-  scene.desk = paint_face(face_of(desk), desk.surface, desk.texture_seed, threads);
-  lay_prints(scene.desk, face_of(desk), {desk.prints, {0, 0}, desk.texture_seed}, threads, step);
+  scene.desk = paint_with_prints(
+      {face_of(desk), desk.surface, desk.texture_seed, desk.prints, {0, 0}}, threads, step);
   if (desk.board) {
     const BoardRecipe& board = *desk.board;
     scene.R_board_world = turn_into(board.angle);
     const Eigen::Vector2d size = Eigen::Vector2d(board.columns + 1, board.rows + 1) * board.square +
                                  Eigen::Vector2d::Constant(2 * board.margin);
-    const cv::Mat paper(
-        8, 8, CV_8UC4, cv::Scalar(kBoardPaper[0], kBoardPaper[1], kBoardPaper[2], 255));
+    const cv::Mat paper(8, 8, CV_8UC4, kBoardPaper);
     lay_sheet(scene.desk,
               face_of(desk),
               {board.center, size, scene.R_board_world.topLeftCorner<2, 2>(), paper},
@@ -199,120 +196,94 @@ Scene make_scene(const DeskRecipe& desk, int threads, const std::function<void()
     scene.boxes.push_back(make_box(desk.boxes[i], desk.scale, Random(desk.texture_seed, 1000 + i)));
     step();
   }
-  for (const WallRecipe& wall : desk.walls) {
+  for (const WallRecipe& wall : desk.walls)
     scene.walls.push_back(make_wall(wall, desk.scale, threads, step));
-  }
   return scene;
 }
 
+constexpr int kStone = 144;  // texels along an edge of the block of stone
+
+Eigen::Vector3d pick_direction(Random& random) {
+  Eigen::Vector3d v;
+  for (double& coordinate : v) coordinate = random.normal();
+  return v.normalized();
+}
+
+Eigen::Matrix3d pick_turn(Random& random) {
+  Eigen::Vector4d q;
+  for (double& coordinate : q) coordinate = random.normal();
+  return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
+}
+
+cv::Vec3f pick_tint(Random& random) {
+  static const std::array<cv::Vec3f, 4> kStones = {
+      {{0.80F, 0.92F, 1.0F}, {0.97F, 0.98F, 1.0F}, {0.66F, 0.80F, 1.0F}, {0.98F, 1.0F, 0.94F}}};
+  const cv::Vec3f& stone = random.pick(kStones);
+  return stone * static_cast<float>(random.uniform(0.7, 1.15));
+}
+
+SceneRock make_rock(const RubbleRecipe& heap, Random random) {
+  SceneRock rock;
+  for (int k = 0; k < 3; ++k) rock.center[k] = random.uniform(heap.low[k], heap.high[k]);
+  // More small ones.
+  const double pick = random.uniform();
+  rock.reach = (heap.size[0] + (heap.size[1] - heap.size[0]) * pick * pick) / 2;
+  Eigen::Vector3d axes;
+  for (double& axis : axes) axis = rock.reach * random.uniform(0.6, 1);
+  rock.R_unit_world = axes.cwiseInverse().asDiagonal() * pick_turn(random);
+  constexpr int kCuts = 9;
+  for (int i = 0; i < kCuts; ++i) {
+    const Eigen::Vector3d normal = pick_direction(random);
+    rock.cuts.push_back({normal, random.uniform(0.62, 0.96)});
+  }
+  rock.tint = pick_tint(random);
+  rock.grain = random.uniform(0.6, 1);
+  return rock;
+}
+
+/// Brightness of stone: layers, grains of two minerals and dark cracks.
+double brightness(const Eigen::Vector3d& p) {
+  const double tone = fractal_noise(3 * p, 4, 1);
+  const double grain = fractal_noise(13 * p, 2, 2);
+  const double crack = std::abs(fractal_noise(4 * p, 3, 3) - 0.5);
+  const double speck = std::clamp((fractal_noise(19 * p, 1, 4) - 0.68) * 9, 0.0, 1.0);
+  const double base = 0.5 + 1.1 * (tone - 0.5) + 0.75 * (grain - 0.5);
+  return (base + 0.35 * speck) * (1 - 0.6 * std::exp(-crack * crack / (2 * 0.012 * 0.012)));
+}
+
+/// A block of stone to cut rocks from: CV_8UC1, a cube of brightness.
+cv::Mat make_stone(int threads) {
+  cv::Mat stone(std::vector{kStone, kStone, kStone}, CV_8UC1);
+  in_parallel(kStone, threads, [&](int i) {
+    for (int j = 0; j < kStone; ++j) {
+      for (int k = 0; k < kStone; ++k) {
+        const Eigen::Vector3d place = Eigen::Vector3d(i, j, k) * (2.0 / (kStone - 1));
+        stone.at<uchar>(i, j, k) = cv::saturate_cast<uchar>(255 * brightness(place));
+      }
+    }
+  });
+  return stone;
+}
+
+}  // namespace
+
 Scene make_scene(const Recipe& recipe, int threads, const std::function<void()>& step) {
   Scene scene;
-  if (has_desk(recipe)) scene = make_scene(recipe.desk, threads, step);
+  if (has_desk(recipe)) scene = make_desk(recipe.desk, threads, step);
   if (recipe.rubble.empty()) return scene;
   step();
   scene.stone = make_stone(threads);
-  for (const RubbleRecipe& heap : recipe.rubble) pile_rocks(scene.rocks, heap);
+  for (const RubbleRecipe& heap : recipe.rubble)
+    for (int i = 0; i < heap.count; ++i)
+      scene.rocks.push_back(make_rock(heap, Random(heap.seed, static_cast<std::uint64_t>(i))));
   return scene;
 }
 
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v) {
-  const double x = std::clamp(u * texture.cols - 0.5, 0.0, texture.cols - 1.001);
-  const double y = std::clamp(v * texture.rows - 0.5, 0.0, texture.rows - 1.001);
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const auto a = static_cast<float>(x - x0);
-  const auto b = static_cast<float>(y - y0);
-  if (texture.type() == CV_32FC1) {
-    const auto* top = texture.ptr<float>(y0) + x0;
-    const auto* bottom = texture.ptr<float>(y0 + 1) + x0;
-    const float value =
-        (top[0] * (1 - a) + top[1] * a) * (1 - b) + (bottom[0] * (1 - a) + bottom[1] * a) * b;
-    return {value, value, value};
-  }
-  const auto* top = texture.ptr<cv::Vec3b>(y0) + x0;
-  const auto* bottom = texture.ptr<cv::Vec3b>(y0 + 1) + x0;
-  cv::Vec3f color;
-  for (int k = 0; k < 3; ++k) {
-    color[k] = (top[0][k] * (1 - a) + top[1][k] * a) * (1 - b) +
-               (bottom[0][k] * (1 - a) + bottom[1][k] * a) * b;
-  }
-  return color;
-}
-
-// Slabs.
-BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest) {
-  const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
-  const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());
-  BoxHit hit{0, 0};
-  double leave = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const double a = (low[k] - ray.origin[k]) / ray.along[k];
-    const double b = (high[k] - ray.origin[k]) / ray.along[k];
-    if (std::min(a, b) > hit.t) hit = {std::min(a, b), k};
-    leave = std::min(leave, std::max(a, b));
-  }
-  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
-  return hit;
-}
-
-cv::Vec3f box_color(const SceneBox& box, const BoxHit& hit, const Ray& ray) {
-  const Eigen::Vector3d p = (ray.origin + hit.t * ray.along).cwiseQuotient(box.size);
-  if (hit.axis == 2) return sample_texture(box.top, p.x() + 0.5, 0.5 - p.y());
-  if (hit.axis == 0) {
-    return ray.along.x() < 0 ? sample_texture(box.sides[1], p.y() + 0.5, 1 - p.z())
-                             : sample_texture(box.sides[3], 0.5 - p.y(), 1 - p.z());
-  }
-  return ray.along.y() > 0 ? sample_texture(box.sides[0], p.x() + 0.5, 1 - p.z())
-                           : sample_texture(box.sides[2], 0.5 - p.x(), 1 - p.z());
-}
-
-WallHit hit_wall(const SceneWall& wall, const Ray& ray) {
-  const Eigen::Vector3d normal(wall.along.y(), -wall.along.x(), 0);
-  const double t = normal.dot(wall.foot - ray.origin) / normal.dot(ray.along);
-  if (!(t > 0) || !std::isfinite(t)) return {};
-  const Eigen::Vector3d p = ray.origin + t * ray.along - wall.foot;
-  const double u = p.dot(wall.along) / wall.size.x();
-  const double v = 1 - p.z() / wall.size.y();
-  if (u < 0 || u > 1 || v < 0 || v > 1) return {};
-  return {t, u, v};
-}
-
-// The sphere's chord, shortened by each half-space.
-RockHit hit_rock(const SceneRock& rock, const Ray& ray, double farthest) {
-  const double a = ray.along.squaredNorm();
-  const double b = ray.origin.dot(ray.along);
-  const double inside = b * b - a * (ray.origin.squaredNorm() - 1);
-  if (inside < 0) return {};
-  RockHit hit;
-  hit.t = (-b - std::sqrt(inside)) / a;
-  if (hit.t >= farthest) return {};  // cuts only move it away
-  hit.normal = ray.origin + hit.t * ray.along;
-  double leave = (-b + std::sqrt(inside)) / a;
-  for (const SceneRock::Cut& cut : rock.cuts) {
-    const double slope = cut.normal.dot(ray.along);
-    const double within = cut.distance - cut.normal.dot(ray.origin);
-    if (slope > 0) {
-      leave = std::min(leave, within / slope);
-    } else if (slope < 0 && within / slope > hit.t) {
-      hit = {within / slope, cut.normal};
-    } else if (slope == 0 && within < 0) {
-      return {};
-    }
-  }
-  if (!(hit.t > 0 && hit.t <= leave && hit.t < farthest)) return {};
-  return hit;
-}
-
-/// Light from the sky, and more of it from above on the left.
-cv::Vec3f rock_color(const SceneRock& rock,
-                     const cv::Mat& stone,
-                     const RockHit& hit,
-                     const Ray& ray) {
-  const Eigen::Vector3d lamp(-0.48, -0.36, 0.8);
-  const Eigen::Vector3d normal = (rock.R_unit_world.transpose() * hit.normal).normalized();
-  const double light = 0.34 + 0.2 * normal.z() + 0.75 * std::max(0.0, normal.dot(lamp));
-  const Eigen::Vector3d place = rock.grain * (ray.origin + hit.t * ray.along);
-  return rock.tint * (static_cast<float>(light) * sample_stone(stone, place));
+  const double col = u * texture.cols - 0.5;
+  const double row = v * texture.rows - 0.5;
+  return texture.type() == CV_32FC1 ? cv::Vec3f::all(bilinear<float, float>(texture, col, row))
+                                    : bilinear<cv::Vec3f, cv::Vec3b>(texture, col, row);
 }
 
 }  // namespace gpo

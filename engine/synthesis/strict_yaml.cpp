@@ -15,9 +15,8 @@ namespace {
 std::string expectation(const char* what, const Bounds& range) {
   std::string text = what;
   if (!range.unit.empty()) text += fmt::format(" [{}]", range.unit);
-  if (std::isfinite(range.low) && std::isfinite(range.high)) {
+  if (std::isfinite(range.low) && std::isfinite(range.high))
     return text + fmt::format(" from {} to {}", range.low, range.high);
-  }
   return std::isfinite(range.low) ? text + fmt::format(" of at least {}", range.low) : text;
 }
 
@@ -35,9 +34,8 @@ StrictMap::StrictMap(YamlEntry map) : map_(std::move(map)) {
   std::set<std::string> keys;
   for (const auto& entry : map_.node) {
     const auto key = entry.first.as<std::string>("");
-    if (!keys.insert(key).second) {
+    if (!keys.insert(key).second)
       yaml_fail(below(map_, key, entry.first), "a second time", "each key once");
-    }
   }
 }
 
@@ -50,24 +48,26 @@ void StrictMap::fail(const std::string& key,
 }
 
 bool StrictMap::has(const std::string& key) {
-  asked_.insert(key);
+  requested_.insert(key);
   return find(map_, key).has_value();
 }
 
 YamlEntry StrictMap::take(const std::string& key, const std::string& expected) {
-  asked_.insert(key);
+  requested_.insert(key);
   return at(map_, key, expected);
 }
 
-double StrictMap::number(const std::string& key, const Bounds& range) {
+double StrictMap::number(const std::string& key,
+                         const Bounds& range,
+                         std::optional<double> otherwise) {
+  if (otherwise && !has(key)) return *otherwise;
   return number_within(take(key, expectation("a number", range)), range);
 }
 
-double StrictMap::number(const std::string& key, const Bounds& range, double otherwise) {
-  return has(key) ? number(key, range) : otherwise;
-}
-
-std::int64_t StrictMap::integer(const std::string& key, const Bounds& range) {
+std::int64_t StrictMap::read_integer(const std::string& key,
+                                     const Bounds& range,
+                                     std::optional<std::int64_t> otherwise) {
+  if (otherwise && !has(key)) return *otherwise;
   const std::string expected = expectation("a whole number", range);
   const YamlEntry entry = take(key, expected);
   const std::int64_t value = gpo::integer(entry, expected);
@@ -76,19 +76,14 @@ std::int64_t StrictMap::integer(const std::string& key, const Bounds& range) {
   return value;
 }
 
-std::int64_t StrictMap::integer(const std::string& key,
-                                const Bounds& range,
-                                std::int64_t otherwise) {
-  return has(key) ? integer(key, range) : otherwise;
-}
-
-std::string StrictMap::choice(const std::string& key, const std::vector<std::string>& choices) {
+std::string StrictMap::choice(const std::string& key,
+                              const std::vector<std::string>& choices,
+                              const std::optional<std::string>& otherwise) {
+  if (otherwise && !has(key)) return *otherwise;
   const std::string expected = fmt::format("one of {}", fmt::join(choices, ", "));
   const YamlEntry entry = take(key, expected);
   std::string chosen = text(entry, expected);
-  if (std::find(choices.begin(), choices.end(), chosen) == choices.end()) {
-    yaml_fail(entry, expected);
-  }
+  if (std::ranges::find(choices, chosen) == choices.end()) yaml_fail(entry, expected);
   return chosen;
 }
 
@@ -103,9 +98,8 @@ std::vector<double> StrictMap::numbers(const std::string& key,
   const int size = static_cast<int>(list.node.size());
   if (!list.node.IsSequence() || size < least || size > most) yaml_fail(list, expected);
   std::vector<double> values;
-  for (const auto& node : list.node) {
+  for (const auto& node : list.node)
     values.push_back(number_within({list.file, list.key, node}, range));
-  }
   return values;
 }
 
@@ -118,20 +112,18 @@ std::vector<StrictMap> StrictMap::list(const std::string& key) {
   const YamlEntry list = take(key, expected);
   if (!list.node.IsSequence() || list.node.size() > kMost) yaml_fail(list, expected);
   std::vector<StrictMap> maps;
-  for (std::size_t i = 0; i < list.node.size(); ++i) {
+  for (std::size_t i = 0; i < list.node.size(); ++i)
     maps.push_back(StrictMap({list.file, fmt::format("{}[{}]", list.key, i), list.node[i]}));
-  }
   return maps;
 }
 
 void StrictMap::finish() const {
   for (const auto& entry : map_.node) {
     const auto key = entry.first.as<std::string>("");
-    if (asked_.count(key) == 0) {
+    if (!requested_.contains(key))
       yaml_fail(below(map_, key, entry.first),
                 "an unknown key",
-                fmt::format("one of {}", fmt::join(asked_, ", ")));
-    }
+                fmt::format("one of {}", fmt::join(requested_, ", ")));
   }
 }
 

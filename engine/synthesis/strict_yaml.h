@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,33 +15,39 @@
 
 namespace gpo {
 
-/// Bounds of a number, both included, with the unit for people.
+/// Bounds of a number, both included, with its unit.
 struct Bounds {
   double low;
   double high;
   std::string unit = "";
 };
 
-/// One map of a YAML file, read strictly: each getter throws InputError that names file, line, key,
-/// what was found and what was expected; `finish` refuses keys that nobody asked for.
+/// A map of a YAML file, read strictly. Each getter throws InputError with file, line, key, the
+/// value and the expectation; `finish` refuses keys that were not requested.
 class StrictMap {
  public:
-  /// The file's top level.
+  /// Reads the top level of a file.
   static StrictMap open(const std::filesystem::path& file);
 
   bool has(const std::string& key);
-  double number(const std::string& key, const Bounds& range);
-  double number(const std::string& key, const Bounds& range, double otherwise);
-  std::int64_t integer(const std::string& key, const Bounds& range);
-  std::int64_t integer(const std::string& key, const Bounds& range, std::int64_t otherwise);
-  std::string choice(const std::string& key, const std::vector<std::string>& choices);
+  // A missing key is an error unless there is `otherwise`.
+  double number(const std::string& key, const Bounds& range, std::optional<double> otherwise = {});
+  template <typename T = int>
+  T integer(const std::string& key,
+            const Bounds& range,
+            std::optional<std::int64_t> otherwise = {}) {
+    return static_cast<T>(read_integer(key, range, otherwise));
+  }
+  std::string choice(const std::string& key,
+                     const std::vector<std::string>& choices,
+                     const std::optional<std::string>& otherwise = {});
   std::vector<double> numbers(const std::string& key, const Bounds& range, int least, int most);
   template <int N>
   Eigen::Matrix<double, N, 1> vector(const std::string& key, const Bounds& range) {
     return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
   }
   StrictMap map(const std::string& key);
-  /// Of maps, as many as a person writes; empty where the key is absent.
+  /// Returns at most 200 maps; empty without the key.
   std::vector<StrictMap> list(const std::string& key);
   void finish() const;
   [[noreturn]] void fail(const std::string& key,
@@ -50,9 +57,12 @@ class StrictMap {
  private:
   explicit StrictMap(YamlEntry map);
   YamlEntry take(const std::string& key, const std::string& expected);
+  std::int64_t read_integer(const std::string& key,
+                            const Bounds& range,
+                            std::optional<std::int64_t> otherwise);
 
   YamlEntry map_;
-  std::set<std::string> asked_;
+  std::set<std::string> requested_;
 };
 
 }  // namespace gpo

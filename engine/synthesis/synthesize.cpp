@@ -36,9 +36,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMargin_s = 0.1;
-constexpr double kPhase = 0.37;  ///< of the samples' grid to the frames', in sample periods
+constexpr double kPhase = 0.37;  // shift of samples relative to frames [sample periods]
 constexpr std::uint64_t kGyroscopeStream = 1;
-constexpr int kDecimals = 9;  ///< of rates, accelerations and velocities
+constexpr int kDecimals = 9;  // in rates, accelerations and velocities
 
 std::string camera_yaml(const Recipe& recipe) {
   std::string text = fmt::format(
@@ -47,10 +47,9 @@ std::string camera_yaml(const Recipe& recipe) {
       transformation_yaml(recipe.T_body_camera),
       recipe.frame_rate,
       lens_yaml(recipe.camera));
-  if (recipe.image.rolling_shutter > 0) {
+  if (recipe.image.rolling_shutter > 0)
     text += fmt::format("rolling_shutter: {}  # [s] from first to last row; stamp: middle row\n",
                         recipe.image.rolling_shutter);
-  }
   return text;
 }
 
@@ -64,23 +63,21 @@ std::string imu_yaml(const GyroscopeRecipe& gyroscope) {
       transformation_yaml(Pose{}),
       gyroscope.rate,
       gyroscope.noise_density);
-  if (gyroscope.calibrated_bias) {
+  if (gyroscope.calibrated_bias)
     text += fmt::format("gyroscope_bias: {}  # [rad/s], as calibrated, not as it is\n",
                         yaml_list(*gyroscope.calibrated_bias));
-  }
   return text;
 }
 
 std::string imu_csv(const Recipe& recipe) {
   std::string text = std::string(kGyroscopeHead) + kAccelerometerHead + "\n";
-  for (const ImuSample& sample : simulate_imu(recipe)) {
+  for (const ImuSample& sample : simulate_imu(recipe))
     text += std::to_string(sample.timestamp_ns) + cells(sample.rate_b, kDecimals) +
             cells(sample.specific_force_b, kDecimals) + "\n";
-  }
   return text;
 }
 
-/// The accelerometer, being perfect, has a bias of 0.
+/// Includes a bias of 0 of the perfect accelerometer.
 std::string truth_csv(const Recipe& recipe) {
   std::string text = std::string("#timestamp") + kPoseHead +
                      ",v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
@@ -98,7 +95,7 @@ std::string truth_csv(const Recipe& recipe) {
   return text;
 }
 
-/// The camera's poses over an exposure about a time [s]; one where there is no motion blur.
+/// Camera poses over an exposure around a time [s]; one without motion blur.
 std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
   const ImageRecipe& image = recipe.image;
   const int count = image.exposure > 0 ? image.samples * image.samples : 1;
@@ -108,29 +105,6 @@ std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
     poses.push_back(camera_motion(recipe.trajectory, seconds + offset).pose);
   }
   return poses;
-}
-
-/// All rows of a global shutter share their poses.
-cv::Mat render_frame(const Recipe& recipe,
-                     const Scene& scene,
-                     const RayMap& rays,
-                     std::int64_t timestamp_ns,
-                     int threads) {
-  const auto row_poses = [&](int row) {
-    return exposure_poses(recipe, row_seconds(recipe, timestamp_ns, row));
-  };
-  if (recipe.image.rolling_shutter > 0) return render(scene, rays, row_poses, threads);
-  return render(scene, rays, row_poses(0), threads);
-}
-
-void write_frame(const fs::path& file, const cv::Mat& image, int quality) {
-  std::vector<int> parameters;
-  if (file.extension() == ".jpg") {
-    parameters = {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
-  }
-  std::vector<unsigned char> bytes;
-  cv::imencode(file.extension().string(), image, bytes, parameters);
-  write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
 void write_images(const Recipe& recipe,
@@ -143,18 +117,27 @@ void write_images(const Recipe& recipe,
   const Scene scene = make_scene(recipe, threads, step);
   step();
   const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
+  std::vector<int> parameters;
+  if (recipe.image.format == "jpg")
+    parameters = {cv::IMWRITE_JPEG_QUALITY, recipe.image.quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
   std::string list = kImageListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
     const double seconds = trajectory_seconds(recipe, timestamp);
-    const cv::Mat light = render_frame(recipe, scene, rays, timestamp, threads);
+    const RowPoses row_poses = [&](int row) {
+      return exposure_poses(recipe, row_seconds(recipe, timestamp, row));
+    };
+    const cv::Mat light = recipe.image.rolling_shutter > 0
+                              ? render(scene, rays, row_poses, threads)
+                              : render(scene, rays, row_poses(0), threads);
     const double gain =
         1 + recipe.image.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
+    const cv::Mat image = expose(light, recipe.image, gain, noise_seed, threads);
     const std::string name = fmt::format("{}.{}", timestamp, recipe.image.format);
-    write_frame(folder / "data" / name,
-                expose(light, recipe.image, gain, noise_seed, threads),
-                recipe.image.quality);
+    std::vector<unsigned char> bytes;
+    cv::imencode("." + recipe.image.format, image, bytes, parameters);
+    write_file(folder / "data" / name, std::string(bytes.begin(), bytes.end()));
     list += fmt::format("{},{}\n", timestamp, name);
     if (progress) progress(frame + 1, recipe.frame_count);
   }
@@ -166,19 +149,17 @@ void write_recording(const Recipe& recipe,
                      const SynthesisProgress& progress,
                      int threads) {
   const fs::path mav = folder / "mav0";
-  for (const char* name : {"cam0/data", "imu0", "state_groundtruth_estimate0"}) {
+  for (const char* name : {"cam0/data", "imu0", "state_groundtruth_estimate0"})
     make_folder(mav / name);
-  }
   write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recipe));
   write_file(mav / "imu0" / "sensor.yaml", imu_yaml(recipe.gyroscope));
   write_file(mav / "imu0" / "data.csv", imu_csv(recipe));
   write_file(mav / "state_groundtruth_estimate0" / "data.csv", truth_csv(recipe));
-  if (has_desk(recipe)) {
+  if (has_desk(recipe))
     write_file(folder / "plane.yaml",
                fmt::format("# The {}, in the world of the ground truth.\n"
                            "normal: [0, 0, 1]\ndistance: 0\n",
                            recipe.desk.walls.empty() ? "desk" : "floor"));
-  }
   if (recipe.desk.board) {
     const BoardRecipe& board = *recipe.desk.board;
     write_file(folder / "board.yaml", board_yaml({board.columns, board.rows, board.square}));
@@ -186,129 +167,105 @@ void write_recording(const Recipe& recipe,
   write_images(recipe, mav / "cam0", progress, threads);
 }
 
-[[noreturn]] void refuse(const fs::path& folder, const std::error_code& why) {
-  throw InputError(fmt::format(
-      "{}: cannot be made ({}), expected a folder to write into", folder.string(), why.message()));
-}
-
-/// An open and locked descriptor; -1 where the folder went away meanwhile.
-int lock(const fs::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0 && errno == ENOENT) return -1;
-  if (descriptor < 0) refuse(folder, {errno, std::generic_category()});
-  while (flock(descriptor, LOCK_EX) != 0) {
-    if (errno == EINTR) continue;
-    const std::error_code why(errno, std::generic_category());
-    close(descriptor);
-    refuse(folder, why);
-  }
-  return descriptor;
-}
-
-/// Who held the lock before may have taken the folder away, and another one may be in its place.
-bool is_still_there(int descriptor, const fs::path& folder) {
-  struct stat held {};
-  struct stat named {};
-  return fstat(descriptor, &held) == 0 && stat(folder.c_str(), &named) == 0 &&
-         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
-}
-
-/// Holds a folder against other threads and processes that lock it, too; the system lets go of what
-/// a killed process held. Makes the folder, and takes it away at the end where it is still empty.
+/// Locks a folder against other threads and processes; the system unlocks it for a killed process.
+/// Makes the folder, and removes it at the end if it is still empty.
 class FolderLock {
  public:
-  /// Waits. Throws InputError where the folder cannot be made or locked.
-  explicit FolderLock(std::filesystem::path folder);
-  ~FolderLock();
+  /// Waits for the lock. Throws InputError if the folder cannot be made or locked.
+  explicit FolderLock(fs::path folder) : folder_(std::move(folder)) {
+    do {
+      if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+      std::error_code error;
+      fs::create_directories(folder_, error);
+      if (error) refuse(error);
+      descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      if (descriptor_ < 0 && errno != ENOENT) refuse({errno, std::generic_category()});
+      while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
+        if (errno == EINTR) continue;
+        const std::error_code why(errno, std::generic_category());
+        close(descriptor_);
+        refuse(why);
+      }
+    } while (!is_in_place());
+  }
+  ~FolderLock() {
+    std::error_code not_empty;
+    fs::remove(folder_, not_empty);
+    close(descriptor_);
+  }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  std::filesystem::path folder_;
+  [[noreturn]] void refuse(const std::error_code& why) const {
+    throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
+                                 folder_.string(),
+                                 why.message()));
+  }
+  /// False if the last owner removed the folder, even if there is another one in its place.
+  bool is_in_place() const {
+    struct stat held {
+    }, named{};
+    return descriptor_ >= 0 && fstat(descriptor_, &held) == 0 &&
+           stat(folder_.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+           held.st_ino == named.st_ino;
+  }
+
+  fs::path folder_;
   int descriptor_ = -1;
 };
 
-FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)) {
-  while (true) {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error) refuse(folder_, error);
-    descriptor_ = lock(folder_);
-    if (descriptor_ >= 0 && is_still_there(descriptor_, folder_)) return;
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-}
-
-FolderLock::~FolderLock() {
-  std::error_code not_empty;
-  fs::remove(folder_, not_empty);
-  close(descriptor_);
-}
-
-constexpr int kFormat = 1;  ///< counts up when the same recipe makes other bytes
+constexpr int kFormat = 1;  // increases when the same recipe makes other bytes
 
 struct Missing {
   fs::path folder;
   Recipe recipe;
 };
 
-/// Each once, however often it is asked for.
-std::vector<Missing> missing_recordings(std::span<const fs::path> recipes,
-                                        const std::vector<fs::path>& folders) {
-  std::vector<Missing> missing;
-  for (std::size_t i = 0; i < folders.size(); ++i) {
-    if (fs::exists(folders[i])) continue;
-    if (std::ranges::find(missing, folders[i], &Missing::folder) != missing.end()) continue;
-    missing.push_back({folders[i], read_recipe(recipes[i])});
+/// Makes recordings in several threads, with one progress. The first error stops all of them.
+class Maker {
+ public:
+  Maker(const std::vector<Missing>& missing, const SynthesisProgress& progress)
+      : progress_(progress) {
+    for (const Missing& one : missing) frames_ += one.recipe.frame_count;
   }
-  return missing;
-}
-
-/// What the threads that make recordings share; guarded by the mutex.
-struct Common {
-  const SynthesisProgress& progress;
-  int frames = 0;
-  int done = 0;
-  std::exception_ptr error = nullptr;  ///< the first one; it stops everybody
-  std::mutex mutex{};
-};
-
-void report(Common& common, int more_frames) {
-  const std::lock_guard lock(common.mutex);
-  if (common.error) throw std::runtime_error("another recording failed");
-  common.done += more_frames;
-  try {
-    if (common.progress) common.progress(common.done, common.frames);
-  } catch (...) {
-    common.error = std::current_exception();  // before any other gets on with its own
-    throw;
-  }
-}
-
-void make(const Missing& missing, Common& common, int threads) {
-  int done = 0;
-  const auto progress = [&](int now, int) { report(common, now - std::exchange(done, now)); };
-  const FolderLock lock(missing.folder.parent_path());
-  report(common, 0);
-  if (fs::exists(missing.folder)) return progress(missing.recipe.frame_count, 0);
-  synthesize(missing.recipe, missing.folder, progress, threads);
-}
-
-void make_all(const std::vector<Missing>& missing, int threads, const SynthesisProgress& progress) {
-  const int count = static_cast<int>(missing.size());
-  const int at_a_time = std::max(1, std::min(count, threads));
-  Common common{progress};
-  for (const Missing& one : missing) common.frames += one.recipe.frame_count;
-  in_parallel(count, at_a_time, [&](int i) {
+  /// Keeps errors for `finish`.
+  void make(const Missing& missing, int threads) {
     try {
-      make(missing[static_cast<std::size_t>(i)], common, threads / at_a_time);
+      int done = 0;
+      const auto progress = [&](int now, int) { report(now - std::exchange(done, now)); };
+      const FolderLock lock(missing.folder.parent_path());
+      report(0);
+      if (fs::exists(missing.folder)) return progress(missing.recipe.frame_count, 0);
+      synthesize(missing.recipe, missing.folder, progress, threads);
     } catch (...) {
-      const std::lock_guard lock(common.mutex);
-      if (!common.error) common.error = std::current_exception();
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
     }
-  });
-  if (common.error) std::rethrow_exception(common.error);
-}
+  }
+  void finish() {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void report(int more_frames) {
+    const std::lock_guard lock(mutex_);
+    if (error_) throw std::runtime_error("another recording failed");
+    done_ += more_frames;
+    try {
+      if (progress_) progress_(done_, frames_);
+    } catch (...) {
+      error_ = std::current_exception();  // before another thread continues
+      throw;
+    }
+  }
+
+  const SynthesisProgress& progress_;
+  int frames_ = 0;
+  int done_ = 0;
+  std::exception_ptr error_ = nullptr;
+  std::mutex mutex_;
+};
 
 }  // namespace
 
@@ -353,9 +310,17 @@ std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
                                              int threads,
                                              const SynthesisProgress& progress) {
   std::vector<fs::path> folders;
-  folders.reserve(recipes.size());
+  std::vector<Missing> missing;  // each once
   for (const fs::path& recipe : recipes) folders.push_back(synthesized_folder(recipe, cache));
-  make_all(missing_recordings(recipes, folders), threads, progress);
+  for (std::size_t i = 0; i < folders.size(); ++i)
+    if (!fs::exists(folders[i]) &&
+        std::ranges::find(missing, folders[i], &Missing::folder) == missing.end())
+      missing.push_back({folders[i], read_recipe(recipes[i])});
+  const int count = static_cast<int>(missing.size());
+  const int at_a_time = std::max(1, std::min(count, threads));
+  Maker maker(missing, progress);
+  in_parallel(count, at_a_time, [&](int i) { maker.make(missing[i], threads / at_a_time); });
+  maker.finish();
   return folders;
 }
 

@@ -14,38 +14,37 @@
 
 namespace gpo {
 
-/// What the IMU reads. The gyroscope has bias and white noise; the accelerometer is perfect.
+/// A measurement of the IMU. The gyroscope has bias and white noise; the accelerometer is perfect.
 struct ImuSample {
   std::int64_t timestamp_ns;
   Eigen::Vector3d rate_b;            ///< [rad/s]
   Eigen::Vector3d specific_force_b;  ///< [m/s^2]
 };
 
-/// Samples from 0.1 s before the first to 0.1 s after the last frame, between the frames' times.
+/// Samples from 0.1 s before the first to 0.1 s after the last frame, never at a frame's time.
 std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 
-/// Called after each frame and, with none done, after each part of the scene that is painted before
-/// the first; stops everything where it throws.
+/// Called after each frame, and with 0 after each part of the scene. If it throws, synthesis ends.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
 /// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
-/// `board.yaml`. World: the desk is z = 0, z up; where there is none, there is no `plane.yaml`.
-/// Same recipe, same bytes, whatever the threads. Throws InputError where `output` exists and is
-/// not empty, or cannot be written; a folder that is not finished is never left behind.
+/// `board.yaml`. World: the desk is z = 0, z up; without a desk there is no `plane.yaml`. The same
+/// recipe makes the same bytes with any number of threads. Throws InputError if `output` exists and
+/// is not empty, or cannot be written; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
                 const std::filesystem::path& output,
                 const SynthesisProgress& progress = {},
                 int threads = 2);
 
-/// Where the recording of a recipe is kept: cache/STEM-HASH/STEM, so that it is called after its
-/// recipe, and an edited recipe has another place. Throws InputError where there is no such file.
+/// Returns the folder of a recipe's recording, cache/STEM-HASH/STEM: named after the recipe,
+/// another one for an edited recipe. Throws InputError if the recipe does not exist.
 std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
                                          const std::filesystem::path& cache);
 
-/// The folders of the recipes' recordings, in their order; makes those that are not there yet, some
-/// at a time. Where another process makes one of them, waits for it. `progress` counts the frames
-/// of all that are being made; it is never called by two threads at a time, and stops everything
-/// where it throws. Throws InputError; what is not finished is never left behind.
+/// Makes missing recordings, several at a time, and returns the folders of all, in the order of the
+/// recipes. Waits for recordings that other processes make. `progress` counts the frames of all
+/// that are made; it is called by one thread at a time, and ends everything if it throws. Throws
+/// InputError; never leaves an incomplete folder.
 std::vector<std::filesystem::path> synthesized_recordings(
     std::span<const std::filesystem::path> recipes,
     const std::filesystem::path& cache,

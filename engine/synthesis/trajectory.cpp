@@ -66,7 +66,7 @@ CameraMotion camera_motion(const Trajectory& trajectory, double seconds) {
 
 BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds) {
   const CameraMotion camera = camera_motion(trajectory, seconds);
-  // The angular acceleration is the only thing by differences; only the accelerometer sees it.
+  // The angular acceleration, for the accelerometer only, is by differences.
   const double step = 1e-4;
   const Eigen::Vector3d rate_change_c = (camera_motion(trajectory, seconds + step).rate_c -
                                          camera_motion(trajectory, seconds - step).rate_c) /

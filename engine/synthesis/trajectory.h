@@ -18,7 +18,7 @@ struct Harmonic {
   double phase = 0;      ///< [rad]
 };
 
-/// A smooth path: start + velocity t + its harmonics; defined before 0 and after the end, too.
+/// A smooth path: start + velocity t + harmonics, for any time.
 template <int N>
 struct Path {
   using Vector = Eigen::Matrix<double, N, 1>;
@@ -27,29 +27,29 @@ struct Path {
   std::vector<Harmonic<N>> harmonics;
 };
 
-/// How the camera moves: where it is, the point that it looks at, and its roll about that line.
+/// Motion of the camera: its center, the point that it looks at, and its roll about that line.
 struct Trajectory {
-  Path<3> position;  ///< of the camera center [m]
+  Path<3> position;  ///< camera center [m]
   Path<3> look_at;   ///< [m]
-  Path<1> roll;  ///< about the optical axis, counter-clockwise picture for positive values [rad]
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< is up in a picture without roll
+  Path<1> roll;      ///< about the optical axis; positive turns the image counter-clockwise [rad]
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< up in an image without roll
 };
 
 /// Exact state of the camera; derivatives are analytic.
 struct CameraMotion {
   Pose pose;                       ///< camera to world [m]
-  Eigen::Vector3d velocity_w;      ///< of the camera center [m/s]
-  Eigen::Vector3d acceleration_w;  ///< of the camera center [m/s^2]
+  Eigen::Vector3d velocity_w;      ///< camera center [m/s]
+  Eigen::Vector3d acceleration_w;  ///< camera center [m/s^2]
   Eigen::Vector3d rate_c;          ///< angular rate in camera axes [rad/s]
 };
 CameraMotion camera_motion(const Trajectory& trajectory, double seconds);
 
-/// State of the IMU, whose axes are the body's. Gravity is 9.81 m/s^2 against the world's z.
+/// State of the IMU, in body axes. Gravity is 9.81 m/s^2 against the world's z.
 struct BodyMotion {
   Pose pose;                         ///< body to world [m]
   Eigen::Vector3d velocity_w;        ///< [m/s]
-  Eigen::Vector3d rate_b;            ///< what a perfect gyroscope reads [rad/s]
-  Eigen::Vector3d specific_force_b;  ///< what a perfect accelerometer reads [m/s^2]
+  Eigen::Vector3d rate_b;            ///< measurement of a perfect gyroscope [rad/s]
+  Eigen::Vector3d specific_force_b;  ///< measurement of a perfect accelerometer [m/s^2]
 };
 BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds);
 

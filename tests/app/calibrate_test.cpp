@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 
+#include "engine/calibration/lens_fit.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "tests/app/program.h"
@@ -167,9 +168,8 @@ TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
       fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
   const Outcome outcome = program(calibrate);
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(
-      outcome.out,
-      HasSubstr("calibration failed: a plane is seen in 0 pictures; at least 6 are needed"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("calibration failed: a plane is seen in 0 images; at least 6 are needed"));
   const Outcome refused = program(calibrate + " --board 9x6");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--board: not used with --from plane"));
@@ -207,8 +207,7 @@ TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
   const Outcome outcome = program(fmt::format(
       "calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out,
-              HasSubstr("calibration failed: the board was found, and sharp, in 0 of 3 pictures"));
+  EXPECT_THAT(outcome.out, HasSubstr("calibration failed: found a sharp board in 0 of 3 images"));
   EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
 }
 

@@ -4,10 +4,267 @@
 
 #include "engine/calibration/plane/calibration_problem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <ceres/rotation.h>
 
 namespace gpo {
+namespace {
+
+/// Projection of a plane's point, minus its observation [px] (engine/method.md, 19).
+class ReprojectionError {
+ public:
+  ReprojectionError(const PlaneView& view, Eigen::Index column, int width, int height)
+      : raw_px_(view.raw_px.col(column)),
+        read_px_(((raw_px_.y() + 0.5) / height - 0.5) * view.flow_px.col(column)),
+        width_(width),
+        height_(height) {}
+
+  template <typename T>
+  bool operator()(const T* lens, const T* pose, const T* point, T* error) const {
+    using std::exp;
+    T p[3];
+    ceres::AngleAxisRotatePoint(pose, point, p);
+    const T z = p[2] + pose[5];
+    if (!(z > T(1e-6))) return false;
+    const T x = (p[0] + pose[3]) / z;
+    const T y = (p[1] + pose[4]) / z;
+    const T r2 = x * x + y * y;
+    const T radial = T(1) + r2 * (lens[4] + r2 * lens[5]);
+    const T fx = width_ * exp(lens[0] - 0.5 * lens[1]);
+    const T fy = width_ * exp(lens[0] + 0.5 * lens[1]);
+    const T across = 2.0 * x * y;
+    const T x_d = radial * x + lens[6] * across + lens[7] * (r2 + 2.0 * x * x);
+    const T y_d = radial * y + lens[6] * (r2 + 2.0 * y * y) + lens[7] * across;
+    error[0] = fx * x_d + 0.5 * (width_ - 1) + width_ * lens[2] + lens[kReadout] * read_px_.x() -
+               raw_px_.x();
+    error[1] = fy * y_d + 0.5 * (height_ - 1) + width_ * lens[3] + lens[kReadout] * read_px_.y() -
+               raw_px_.y();
+    return true;
+  }
+
+ private:
+  Eigen::Vector2d raw_px_;
+  Eigen::Vector2d read_px_;  ///< motion until its row is read, for a readout of 1
+  double width_;
+  double height_;
+};
+
+/// (value - mean) * weight of each unknown of a block.
+template <int Size>
+struct PriorError {
+  Eigen::Matrix<double, Size, 1> mean;
+  Eigen::Matrix<double, Size, 1> weight;
+
+  template <typename T>
+  bool operator()(const T* value, T* error) const {
+    for (int k = 0; k < Size; ++k) error[k] = weight[k] * (value[k] - mean[k]);
+    return true;
+  }
+};
+
+/// Height of a point above its plane, in units of the noise.
+struct HeightError {
+  double weight;
+
+  template <typename T>
+  bool operator()(const T* point, T* error) const {
+    error[0] = weight * point[2];
+    return true;
+  }
+};
+
+/// Rotation between two poses relative to the gyroscope's, in units of the noise.
+struct RotationError {
+  GyroRotation rotation;
+  double weight;
+
+  template <typename T>
+  bool operator()(const T* pose_a, const T* pose_b, const T* bias, T* error) const {
+    using Matrix = Eigen::Matrix<T, 3, 3>;
+    Matrix R_a, R_b;  // plane to camera
+    ceres::AngleAxisToRotationMatrix(pose_a, R_a.data());
+    ceres::AngleAxisToRotationMatrix(pose_b, R_b.data());
+    const Eigen::Matrix<T, 3, 1> correction =
+        rotation.d_bias.cast<T>() * Eigen::Matrix<T, 3, 1>(bias[0], bias[1], bias[2]);
+    Matrix R_bias;
+    ceres::AngleAxisToRotationMatrix(correction.data(), R_bias.data());
+    const Matrix off =
+        (rotation.R_from_to.cast<T>() * R_bias).transpose() * (R_a * R_b.transpose());
+    ceres::RotationMatrixToAngleAxis(off.data(), error);
+    for (int k = 0; k < 3; ++k) error[k] *= T(weight);
+    return true;
+  }
+};
+
+/// Two points of the plane that many views show and that are far apart.
+std::pair<int, int> gauge_points(const ObservedPlane& plane, const Eigen::Matrix3Xd& points) {
+  std::vector<int> counts(plane.points, 0);
+  for (const PlaneView& view : plane.views)
+    for (const int j : view.points) ++counts[j];
+  const auto first = static_cast<int>(std::ranges::max_element(counts) - counts.begin());
+  int second = first == 0 ? 1 : 0;
+  double best = -1;
+  for (int j = 0; j < plane.points; ++j) {
+    const double worth = counts[j] * (points.col(j) - points.col(first)).norm();
+    if (j == first || worth <= best) continue;
+    best = worth;
+    second = j;
+  }
+  return {first, second};
+}
+
+}  // namespace
+
+CalibrationProblem::CalibrationProblem(const PlaneProblem& data, Adjustment& unknowns)
+    : data_(data), unknowns_(unknowns) {
+  problem_.AddParameterBlock(unknowns_.lens.data(), kLensUnknowns);
+  free_blocks_.push_back(unknowns_.lens.data());
+  if (data.options.holds_distortion)
+    problem_.SetManifold(unknowns_.lens.data(),
+                         new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7, kReadout}));
+  const LensVector weights = data.options.prior_px * data.prior.sigma.cwiseInverse();
+  problem_.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<PriorError<kLensUnknowns>, kLensUnknowns, kLensUnknowns>(
+          new PriorError<kLensUnknowns>{data.prior.mean, weights}),
+      nullptr,
+      unknowns_.lens.data());
+  sources_.push_back({.rows = kLensUnknowns, .sigma_px = data.options.prior_px});
+  add_views();
+  hold_gauge();
+  if (data.options.height_sigma > 0) add_heights();
+  if (!data.gyro.rotations.empty()) add_rotations();
+}
+
+void CalibrationProblem::add_views() {
+  auto* const loss = new ceres::HuberLoss(data_.options.knee_px);
+  for (std::size_t p = 0; p < data_.planes.size(); ++p) {
+    for (std::size_t i = 0; i < data_.planes[p].views.size(); ++i) {
+      const PlaneView& view = data_.planes[p].views[i];
+      double* const pose = unknowns_.planes[p].poses[i].data();
+      for (std::size_t k = 0; k < view.points.size(); ++k) {
+        problem_.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<ReprojectionError, 2, kLensUnknowns, 6, 3>(
+                new ReprojectionError(
+                    view, static_cast<Eigen::Index>(k), data_.width, data_.height)),
+            loss,
+            unknowns_.lens.data(),
+            pose,
+            unknowns_.planes[p].points.col(view.points[k]).data());
+        sources_.push_back({static_cast<int>(p), static_cast<int>(i), view.points[k]});
+      }
+      if (!view.points.empty()) free_blocks_.push_back(pose);
+    }
+  }
+}
+
+void CalibrationProblem::hold_gauge() {
+  const bool flat = !(data_.options.height_sigma > 0);
+  for (std::size_t p = 0; p < data_.planes.size(); ++p) {
+    Eigen::Matrix3Xd& points = unknowns_.planes[p].points;
+    const auto [first, second] = gauge_points(data_.planes[p], points);
+    for (int j = 0; j < data_.planes[p].points; ++j) {
+      double* const point = points.col(j).data();
+      if (!problem_.HasParameterBlock(point)) continue;
+      const bool is_held = j == first || j == second;
+      if (is_held && flat) {
+        problem_.SetParameterBlockConstant(point);
+        continue;
+      }
+      if (is_held) problem_.SetManifold(point, new ceres::SubsetManifold(3, {0, 1}));
+      if (flat) problem_.SetManifold(point, new ceres::SubsetManifold(3, {2}));
+      free_blocks_.push_back(point);
+    }
+  }
+}
+
+void CalibrationProblem::add_heights() {
+  const double weight = data_.options.noise_px / data_.options.height_sigma;
+  for (AdjustedPlane& plane : unknowns_.planes) {
+    for (Eigen::Index j = 0; j < plane.points.cols(); ++j) {
+      double* const point = plane.points.col(j).data();
+      if (!problem_.HasParameterBlock(point)) continue;
+      problem_.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<HeightError, 1, 3>(new HeightError{weight}),
+          nullptr,
+          point);
+      sources_.push_back({.rows = 1, .sigma_px = data_.options.noise_px});
+    }
+  }
+}
+
+void CalibrationProblem::add_rotations() {
+  double* const bias = unknowns_.bias_change_rad_s.data();
+  const double prior_px = data_.options.prior_px;
+  const Eigen::Vector3d weights = Eigen::Vector3d::Constant(prior_px / data_.gyro.bias_sigma_rad_s);
+  problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorError<3>, 3, 3>(
+                                new PriorError<3>{Eigen::Vector3d::Zero(), weights}),
+                            nullptr,
+                            bias);
+  sources_.push_back({.rows = 3, .sigma_px = prior_px});
+  free_blocks_.push_back(bias);
+  for (std::size_t p = 0; p < data_.planes.size(); ++p) {
+    std::map<int, double*> pose_of_frame;
+    for (std::size_t i = 0; i < data_.planes[p].views.size(); ++i)
+      if (!data_.planes[p].views[i].points.empty())
+        pose_of_frame[data_.planes[p].views[i].frame] = unknowns_.planes[p].poses[i].data();
+    for (const GyroRotation& rotation : data_.gyro.rotations) {
+      const auto a = pose_of_frame.find(rotation.from);
+      const auto b = pose_of_frame.find(rotation.to);
+      if (a == pose_of_frame.end() || b == pose_of_frame.end()) continue;
+      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<RotationError, 3, 6, 6, 3>(
+                                    new RotationError{rotation, prior_px / rotation.sigma_rad}),
+                                nullptr,
+                                a->second,
+                                b->second,
+                                bias);
+      sources_.push_back({.rows = 3, .sigma_px = prior_px});
+    }
+  }
+}
+
+void CalibrationProblem::solve() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.max_num_iterations = data_.options.most_iterations;
+  options.function_tolerance = 1e-8;
+  options.num_threads = 1;  // repeatable to the bit
+  options.logging_type = ceres::SILENT;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (AdjustedPlane& plane : unknowns_.planes)
+    for (Eigen::Index j = 0; j < plane.points.cols(); ++j)
+      if (problem_.HasParameterBlock(plane.points.col(j).data()))
+        ordering->AddElementToGroup(plane.points.col(j).data(), 0);
+  std::vector<double*> all;
+  problem_.GetParameterBlocks(&all);
+  for (double* const block : all)
+    if (ordering->GroupId(block) < 0) ordering->AddElementToGroup(block, 1);
+  options.linear_solver_ordering = ordering;
+  struct Stop : ceres::IterationCallback {
+    explicit Stop(const std::stop_token& token) : stop(token) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+      return stop.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    }
+    std::stop_token stop;
+  } stop(data_.options.stop);
+  options.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem_, &summary);
+  unknowns_.usable = summary.IsSolutionUsable();
+  unknowns_.cost = summary.final_cost;
+}
+
+void CalibrationProblem::evaluate(std::vector<double>& residuals, ceres::CRSMatrix& jacobian) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = free_blocks_;
+  options.num_threads = 1;
+  problem_.Evaluate(options, nullptr, &residuals, nullptr, &jacobian);
+}
 
 Camera camera_of(const LensVector& lens, int width, int height) {
   Camera camera;
@@ -23,50 +280,36 @@ Camera camera_of(const LensVector& lens, int width, int height) {
 }
 
 LensVector lens_of(const Camera& camera) {
-  const auto coefficient = [&](std::size_t k) {
-    const bool radial = camera.distortion == Distortion::radial_tangential;
-    return radial && k < camera.coefficients.size() ? camera.coefficients[k] : 0.0;
-  };
-  LensVector lens;
-  lens << 0.5 * std::log(camera.fx * camera.fy / camera.width / camera.width),
+  LensVector lens = LensVector::Zero();
+  lens.head<4>() << 0.5 * std::log(camera.fx * camera.fy / camera.width / camera.width),
       std::log(camera.fy / camera.fx), (camera.cx - 0.5 * (camera.width - 1)) / camera.width,
-      (camera.cy - 0.5 * (camera.height - 1)) / camera.width, coefficient(0), coefficient(1),
-      coefficient(2), coefficient(3), 0;
+      (camera.cy - 0.5 * (camera.height - 1)) / camera.width;
+  if (camera.distortion == Distortion::radial_tangential)
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, camera.coefficients.size()); ++k)
+      lens[static_cast<Eigen::Index>(4 + k)] = camera.coefficients[k];
   return lens;
 }
 
-Adjustment adjust(const std::vector<ObservedPlane>& planes,
-                  const GyroRotations& gyro,
-                  int width,
-                  int height,
-                  const Adjustment& start,
-                  const LensPrior& prior,
-                  const PlaneAdjustmentOptions& options) {
+Adjustment adjust(const PlaneProblem& problem, const Adjustment& start) {
   Adjustment result = start;
-  CalibrationProblem problem(planes, gyro, width, height, prior, options, result);
-  problem.solve();
+  CalibrationProblem(problem, result).solve();
   return result;
 }
 
-ViewErrors view_errors(const std::vector<ObservedPlane>& planes,
-                         int width,
-                         int height,
-                         const Adjustment& adjustment) {
-  ViewErrors errors(planes.size());
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
-      const PlaneView& view = planes[p].views[i];
-      Eigen::VectorXd lengths(view.raw_px.cols());
+ViewErrors reprojection_errors(const PlaneProblem& problem, const Adjustment& adjustment) {
+  ViewErrors errors(problem.planes.size());
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    const AdjustedPlane& plane = adjustment.planes[p];
+    for (std::size_t i = 0; i < problem.planes[p].views.size(); ++i) {
+      const PlaneView& view = problem.planes[p].views[i];
+      Eigen::VectorXd& lengths = errors[p].emplace_back(view.raw_px.cols());
       for (Eigen::Index k = 0; k < lengths.size(); ++k) {
-        const ObservationError error(view, k, width, height);
+        const ReprojectionError error(view, k, problem.width, problem.height);
+        const double* const point = plane.points.col(view.points[k]).data();
         Eigen::Vector2d e;
-        const bool in_front = error(adjustment.lens.data(),
-                                    adjustment.planes[p].poses[i].data(),
-                                    adjustment.planes[p].points.col(view.points[k]).data(),
-                                    e.data());
+        const bool in_front = error(adjustment.lens.data(), plane.poses[i].data(), point, e.data());
         lengths[k] = in_front ? e.norm() : std::numeric_limits<double>::infinity();
       }
-      errors[p].push_back(std::move(lengths));
     }
   }
   return errors;

@@ -2,52 +2,116 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/plane/plane_views.h"
-#include "engine/calibration/plane/plane_unknowns.h"
 #include "engine/geometry/camera.h"
 
+#include <array>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
+/// The points of a plane that one image shows.
+struct PlaneView {
+  int frame = 0;            ///< index in the recording
+  std::vector<int> points;  ///< indices of the plane's points, ascending
+  Eigen::Matrix2Xd raw_px;  ///< one column a point
+  /// Motion of each point from frame to frame [px], one column a point; 0 where it is unknown.
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Zero(2, raw_px.cols());
+};
+
+/// A plane with points at unknown places, and all images that show some of them.
+struct ObservedPlane {
+  int points = 0;
+  std::vector<PlaneView> views;  ///< in the order of time
+};
+
+/// Camera rotation between two frames by the gyroscope, R_ab in camera axes. A change db of the
+/// bias makes it R_ab exp(d_bias db), to first order.
+struct GyroRotation {
+  int from = 0;  ///< frame
+  int to = 0;    ///< frame
+  Eigen::Matrix3d R_from_to = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d d_bias = Eigen::Matrix3d::Zero();  ///< [s]
+  double sigma_rad = 1e-3;
+};
+struct GyroRotations {
+  std::vector<GyroRotation> rotations;  ///< empty without a gyroscope
+  double bias_sigma_rad_s = 0.1;        ///< prior of db, each axis
+};
+
+/// The unknowns of lens and sensor, each of the order of 1: log(f / width), log(fy / fx), principal
+/// point from the image center [widths], k1, k2, p1, p2, readout [frame intervals, negative from
+/// below]. f is the geometric mean of fx and fy.
+inline constexpr int kLensUnknowns = 9;
+inline constexpr int kReadout = 8;
+using LensVector = Eigen::Matrix<double, kLensUnknowns, 1>;
+inline constexpr std::array<const char*, kLensUnknowns> kLensNames = {
+    "f", "fy/fx", "cx", "cy", "k1", "k2", "p1", "p2", "readout"};
+
+/// Gaussian prior of a lens.
+struct LensPrior {
+  LensVector mean = {-0.1, 0, 0, 0, 0, 0, 0, 0, 0};
+  LensVector sigma = {1.0, 0.01, 0.04, 0.04, 0.3, 0.5, 0.003, 0.003, 0.5};
+};
+
+/// A plane's points (x, y, height), in units of the distance of its first view, and a pose (w, t)
+/// of each view: x_c = exp(w) X + t.
+struct AdjustedPlane {
+  Eigen::Matrix3Xd points;
+  std::vector<Eigen::Matrix<double, 6, 1>> poses;
+};
+struct Adjustment {
+  LensVector lens = LensVector::Zero();
+  std::vector<AdjustedPlane> planes;
+  Eigen::Vector3d bias_change_rad_s = Eigen::Vector3d::Zero();  ///< gyroscope axes
+  double cost = 0;  ///< half the sum of the loss over all residuals [px^2]
+  bool usable = false;
+};
+
+struct PlaneAdjustmentOptions {
+  double knee_px = 1;       ///< knee of Huber's loss on the length of a residual
+  double prior_px = 1;      ///< residual that weighs as much as one sigma of a prior
+  double noise_px = 1;      ///< the same for the prior of the heights
+  double height_sigma = 0;  ///< prior of heights above a plane [distances]; 0 for flat planes
+  int most_iterations = 40;
+  bool holds_distortion = false;  ///< keeps distortion coefficients and readout
+  std::stop_token stop = {};
+};
+
+/// All data of a least squares over lens, points and poses.
+struct PlaneProblem {
+  std::vector<ObservedPlane> planes;
+  const GyroRotations& gyro;
+  int width;   ///< [px]
+  int height;  ///< [px]
+  LensPrior prior;
+  PlaneAdjustmentOptions options;
+};
+
 Camera camera_of(const LensVector& lens, int width, int height);
 LensVector lens_of(const Camera& camera);
 
-/// Least squares over the lens, all points and all poses (engine/method.md, 19). Of each plane two
-/// points are held, which is the gauge.
-Adjustment adjust(const std::vector<ObservedPlane>& planes,
-                  const GyroRotations& gyro,
-                  int width,
-                  int height,
-                  const Adjustment& start,
-                  const LensPrior& prior,
-                  const PlaneAdjustmentOptions& options);
+/// Minimizes over lens, points and poses (engine/method.md, 19). Two points of each plane fix the
+/// gauge.
+Adjustment adjust(const PlaneProblem& problem, const Adjustment& start);
 
-/// Lengths of the errors [px], one an observation: plane, sight, point. Infinite behind the camera.
+/// Lengths of the reprojection errors [px] by plane, view and point; infinite behind the camera.
 using ViewErrors = std::vector<std::vector<Eigen::VectorXd>>;
-ViewErrors view_errors(const std::vector<ObservedPlane>& planes,
-                         int width,
-                         int height,
-                         const Adjustment& adjustment);
+ViewErrors reprojection_errors(const PlaneProblem& problem, const Adjustment& adjustment);
 
-/// How sure the lens is.
+/// Standard deviations of a lens.
 struct LensCertainty {
   LensVector sigma;      ///< robust
-  LensVector own_sigma;  ///< as if all observations were independent
+  LensVector own_sigma;  ///< with independent observations
 };
 
-/// Of an adjusted lens (engine/method.md, 20): what is wrong with a point, or with a stretch of
-/// time (a tenth of the sights), counts as one thing that is wrong. `noise_px` is that of one
+/// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a point, and
+/// those of a stretch of time (a tenth of the views), count as one. `noise_px` is the noise of one
 /// coordinate.
-LensCertainty lens_certainty(const std::vector<ObservedPlane>& planes,
-                             const GyroRotations& gyro,
-                             int width,
-                             int height,
+LensCertainty lens_certainty(const PlaneProblem& problem,
                              const Adjustment& adjustment,
-                             const LensPrior& prior,
-                             double noise_px,
-                             const PlaneAdjustmentOptions& options);
+                             double noise_px);
 
 }  // namespace gpo

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -21,41 +20,29 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Planes = std::vector<ObservedPlane>;
 using Progress = std::function<void(int done, int of)>;
 
-constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // of f [widths]
-constexpr double kSameStart = 0.05;  // by which the guess differs from one, or is one more [-]
-constexpr int kNormals = 2;          // that are tried with each
-constexpr int kLeastImages = 6;    // in all
-constexpr int kRounds = 4;           // of dropping what is far off
-constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // of the progress
-constexpr double kFar = 4.5;  // noises, beyond which an observation is dropped
-constexpr double kKnee = 2;   // of Huber's loss, in noises
+constexpr std::array kStarts{0.45, 0.6, 0.8, 1.1, 1.5, 2.1};  // focal lengths [widths]
+constexpr double kSameStart = 0.05;                           // difference of log f
+constexpr int kNormals = 2;                                   // for each focal length
+constexpr int kMostNormals = 8;                               // that may face away
+constexpr int kLeastPlaneViews = 6;
+constexpr int kRounds = 4;  // each drops outliers
+constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // progress steps
+constexpr double kFar = 4.5;  // error of an outlier, in noises
+constexpr double kKnee = 2;   // knee of Huber's loss, in noises
 constexpr double kStartKnee_px = 2;
-// Of a plane's points [distances]: no paper and no floor is flatter; what is rougher is none.
+// Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
-constexpr double kTellsHeights = 0.1;  // how far a camera moves that does [distances]
-constexpr double kMostDesign = 100;    // by how much clusters widen the variance, at most
+constexpr double kTellsHeights = 0.1;  // least camera motion that determines heights [distances]
+constexpr double kMostDesign = 100;    // by which clusters increase the variance, at most
+constexpr double kMostLogFocalSigma = 0.03;  // for log f; larger ones are a failure
+constexpr double kPriorOnly = 0.7;           // share of a prior's sigma, see PlaneLens::prior_only
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
 
-/// All that a calibration goes through.
-struct Work {
-  Planes planes;
-  const GyroRotations& gyro;
-  int width;
-  int height;
-  LensPrior prior;
-  PlaneAdjustmentOptions options;
-};
-
-Adjustment adjusted(const Work& work, const Adjustment& start) {
-  return adjust(work.planes, work.gyro, work.width, work.height, start, work.prior, work.options);
-}
-
-/// The guess' camera with another focal length, and what bends its pictures as much.
+/// The guess with another focal length and the same distortion at each pixel.
 Camera with_focal(const Camera& guess, double focal_px) {
   Camera camera = guess;
   const double scale = focal_px / std::sqrt(guess.fx * guess.fy);
@@ -68,28 +55,34 @@ Camera with_focal(const Camera& guess, double focal_px) {
   return camera;
 }
 
-/// By a camera, with the n-th best normal of each plane that suits it. Nothing where there is none.
-/// What cannot be placed is dropped from the planes.
-std::optional<Adjustment> started(Planes& planes, const Camera& camera, int normal) {
+/// Start with a camera and the n-th best normal of each plane; nullopt if a plane has none. Drops
+/// observations without a place.
+std::optional<Adjustment> started(PlaneProblem& problem, const Camera& camera, int n) {
   Adjustment start;
   start.lens = lens_of(camera);
   const double focal_px = std::sqrt(camera.fx * camera.fy);
-  for (ObservedPlane& plane : planes) {
-    const PlaneMosaic mosaic = plane_mosaic(plane, camera);
-    plane = placed_part(plane, mosaic);
+  std::vector<PlaneMosaic> mosaics;
+  for (const ObservedPlane& plane : problem.planes) {
+    mosaics.push_back(plane_mosaic(plane, camera));
     std::optional<AdjustedPlane> found;
     int suited = 0;
-    for (const NormalGuess& guess : normal_guesses(mosaic, focal_px, 8)) {
-      auto suiting = start_of(mosaic, focal_px, guess.normal);
+    for (const Vector3d& normal : likely_normals(mosaics.back(), focal_px, kMostNormals)) {
+      auto suiting = start_of(mosaics.back(), focal_px, normal);
       if (!suiting) continue;
       found = std::move(suiting);
-      if (suited++ == normal) break;
+      if (suited++ == n) break;
     }
     if (!found) return std::nullopt;
     start.planes.push_back(*std::move(found));
   }
-  const auto errors = view_errors(planes, camera.width, camera.height, start);
-  planes = visible_part(std::move(planes), errors);
+  problem.planes = filtered(problem.planes, [&](std::size_t p, std::size_t i, int k) {
+    return mosaics[p].H_i_m[i].allFinite() &&
+           mosaics[p].points.col(problem.planes[p].views[i].points[k]).allFinite();
+  });
+  const ViewErrors errors = reprojection_errors(problem, start);
+  problem.planes = filtered(problem.planes, [&](std::size_t p, std::size_t i, int k) {
+    return std::isfinite(errors[p][i][k]);  // infinite behind the camera
+  });
   return start;
 }
 
@@ -97,75 +90,70 @@ std::optional<Adjustment> started(Planes& planes, const Camera& camera, int norm
 std::vector<double> starts_px(const Camera& guess) {
   const double guess_px = std::sqrt(guess.fx * guess.fy);
   std::vector<double> starts;
-  bool has_guess = false;
-  for (const double start : kStarts) {
-    starts.push_back(start * guess.width);
-    has_guess = has_guess || std::abs(std::log(starts.back() / guess_px)) < kSameStart;
-  }
-  if (!has_guess) starts.push_back(guess_px);
+  for (const double start : kStarts) starts.push_back(start * guess.width);
+  if (std::ranges::none_of(starts, [&](double start_px) {
+        return std::abs(std::log(start_px / guess_px)) < kSameStart;
+      }))
+    starts.push_back(guess_px);
   return starts;
 }
 
-/// The cheapest of all starts, by a few sights and points.
-std::optional<Adjustment> best_by_few(const Work& all,
+/// The adjustment of least cost from all starts, by a few views and points.
+std::optional<Adjustment> best_by_few(const PlaneProblem& all,
                                       const Camera& guess,
                                       const Progress& progress) {
   std::optional<Adjustment> best;
   int done = 0;
   for (const double focal_px : starts_px(guess)) {
     const Camera camera = with_focal(guess, focal_px);
-    for (int normal = 0; normal < kNormals; ++normal) {
+    for (int n = 0; n < kNormals; ++n) {
       if (progress) progress(done++, kSteps);
       if (all.options.stop.stop_requested()) return std::nullopt;
-      Work work{thinned(all.planes), all.gyro, all.width, all.height, all.prior, all.options};
-      const auto start = started(work.planes, camera, normal);
+      PlaneProblem few = all;
+      few.planes = thinned(all.planes);
+      const auto start = started(few, camera, n);
       if (!start) continue;
-      work.options.knee_px = kStartKnee_px;
-      work.options.most_iterations = 12;
-      work.options.holds_distortion = true;
-      Adjustment now = adjusted(work, *start);
-      work.options.most_iterations = 30;
-      work.options.holds_distortion = false;
-      now = adjusted(work, now);
-      // What could not be placed costs nothing.
-      now.cost /= std::max(1, observation_count(work.planes));
+      few.options.knee_px = kStartKnee_px;
+      few.options.most_iterations = 12;
+      few.options.holds_distortion = true;
+      Adjustment now = adjust(few, *start);
+      few.options.most_iterations = 30;
+      few.options.holds_distortion = false;
+      now = adjust(few, now);
+      // Starts place different numbers of observations.
+      now.cost /= std::max(1, observation_count(few.planes));
       if (now.usable && (!best || now.cost < best->cost)) best = std::move(now);
     }
   }
   return best;
 }
 
-/// With all sights and points, from a lens.
-std::optional<Adjustment> begun(Work& work, const LensVector& lens) {
-  const Camera camera = camera_of(lens, work.width, work.height);
+/// Adjusts all views and points, starting from a lens.
+std::optional<Adjustment> begun(PlaneProblem& problem, const LensVector& lens) {
+  const Camera camera = camera_of(lens, problem.width, problem.height);
   std::optional<Adjustment> best;
-  Planes kept;
-  for (int normal = 0; normal < kNormals; ++normal) {
-    Work quick = work;
-    const auto start = started(quick.planes, camera, normal);
+  std::vector<ObservedPlane> kept;
+  for (int n = 0; n < kNormals; ++n) {
+    PlaneProblem quick = problem;
+    const auto start = started(quick, camera, n);
     if (!start) continue;
     quick.options.knee_px = kStartKnee_px;
     quick.options.most_iterations = 8;
-    Adjustment now = adjusted(quick, *start);
+    Adjustment now = adjust(quick, *start);
     if (!now.usable || (best && now.cost >= best->cost)) continue;
     best = std::move(now);
     kept = quick.planes;
   }
-  if (best) work.planes = std::move(kept);
+  if (best) problem.planes = std::move(kept);
   return best;
 }
 
-ViewErrors errors_of(const Work& work, const Adjustment& adjustment) {
-  return view_errors(work.planes, work.width, work.height, adjustment);
-}
-
-/// The largest angle between the plane's normals in the camera's axes, and distance between
-/// centers, in distances from the plane.
-void measure_motion(const Work& work, const Adjustment& now, PlaneLens& result) {
-  for (std::size_t p = 0; p < work.planes.size(); ++p) {
+/// Measures `tilt_deg` and `moved`.
+void measure_motion(const PlaneProblem& problem, const Adjustment& now, PlaneLens& result) {
+  for (std::size_t p = 0; p < problem.planes.size(); ++p) {
     std::vector<Vector3d> normals, centers;
-    for (std::size_t i = 0; i < work.planes[p].views.size(); ++i) {
-      if (work.planes[p].views[i].points.empty()) continue;
+    for (std::size_t i = 0; i < problem.planes[p].views.size(); ++i) {
+      if (problem.planes[p].views[i].points.empty()) continue;
       const auto& pose = now.planes[p].poses[i];
       const Matrix3d R = so3_exp(pose.head<3>());
       normals.emplace_back(R.col(2));
@@ -181,57 +169,52 @@ void measure_motion(const Work& work, const Adjustment& now, PlaneLens& result) 
   }
 }
 
-/// Rounds of dropping what is far off, with a loss that suits the noise.
-Adjustment settled(Work& work,
+/// Drops outliers in rounds, with a loss that suits the noise.
+Adjustment settled(PlaneProblem& problem,
                    Adjustment now,
                    std::vector<int>& left_out,
                    const Progress& progress) {
   PlaneLens flat;
-  measure_motion(work, now, flat);
-  const bool tells_heights = flat.moved >= kTellsHeights;
+  measure_motion(problem, now, flat);
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress(kSteps - 2 * kRounds + 2 * round, kSteps);
-    if (work.options.stop.stop_requested()) break;
-    const ViewErrors errors = errors_of(work, now);
+    if (problem.options.stop.stop_requested()) break;
+    const ViewErrors errors = reprojection_errors(problem, now);
     const double noise_px = noise_of(errors);
-    work.options.knee_px = kKnee * noise_px;
-    work.options.prior_px = work.options.noise_px = noise_px;
-    if (tells_heights)
-      work.options.height_sigma =
-          round == 0 ? kRoughest : std::clamp(height_of(work.planes, now), kFlattest, kRoughest);
-    work.planes = without_far(work.planes, errors, kFar * noise_px, left_out);
-    now = adjusted(work, now);
+    problem.options.knee_px = kKnee * noise_px;
+    problem.options.prior_px = problem.options.noise_px = noise_px;
+    if (flat.moved >= kTellsHeights)
+      problem.options.height_sigma =
+          round == 0 ? kRoughest : std::clamp(height_of(problem.planes, now), kFlattest, kRoughest);
+    problem.planes = without_far(problem.planes, errors, kFar * noise_px, left_out);
+    now = adjust(problem, now);
   }
   return now;
 }
 
-LensCertainty certainty_of(const Work& work, const Adjustment& now, double noise_px) {
-  return lens_certainty(
-      work.planes, work.gyro, work.width, work.height, now, work.prior, noise_px, work.options);
-}
-
-/// Observations say less than their number: a prior weighs accordingly more.
-LensCertainty weigh_prior(Work& work, Adjustment& now) {
-  const double noise_px = noise_of(errors_of(work, now));
-  const LensCertainty first = certainty_of(work, now, noise_px);
+/// Adjusts again with priors that weigh more, as clusters of errors make observations weigh less.
+LensCertainty weigh_prior(PlaneProblem& problem, Adjustment& now) {
+  const double noise_px = noise_of(reprojection_errors(problem, now));
+  const LensCertainty first = lens_certainty(problem, now, noise_px);
   const double design =
       std::clamp(std::pow(first.sigma[0] / first.own_sigma[0], 2), 1.0, kMostDesign);
-  work.options.prior_px = noise_px * std::sqrt(design);
-  now = adjusted(work, now);
-  return certainty_of(work, now, noise_px);
+  problem.options.prior_px = noise_px * std::sqrt(design);
+  now = adjust(problem, now);
+  return lens_certainty(problem, now, noise_px);
 }
 
 std::string why_unknown(const PlaneLens& result) {
-  const std::string so = fmt::format("the focal length stays uncertain by {:.0f} %: ",
-                                     100 * std::min(9.99, result.sigma[0]));
+  const std::string so =
+      fmt::format("focal length uncertain by {:.0f} %: ", 100 * std::min(9.99, result.sigma[0]));
   if (result.moved < kLeastMoved)
     return so + fmt::format(
-                    "the camera moved by {:.2f} of its distance from the plane only (no parallax)",
+                    "the camera moved by only {:.2f} of its distance from the plane (no "
+                    "parallax)",
                     result.moved);
   if (result.tilt_deg < kLeastTilt_deg)
     return so + fmt::format(
-                    "the camera keeps its tilt to the plane (it turns by {:.0f} deg about axes in "
-                    "the plane), so that nothing tells the focal length from the distance",
+                    "the camera keeps its tilt to the plane ({:.0f} deg about axes in the "
+                    "plane), so focal length and distance cannot be separated",
                     result.tilt_deg);
   return so + "the plane is not seen from enough directions";
 }
@@ -241,30 +224,24 @@ PlaneLens failed(PlaneLens result, std::string reason) {
   return result;
 }
 
-void take_lens(const Work& work,
+void take_lens(const PlaneProblem& problem,
                const Adjustment& now,
-               const LensCertainty& certainty,
-               const PlaneLensOptions& options,
+               const LensVector& sigma,
                PlaneLens& result) {
   result.lens = now.lens;
-  result.sigma = certainty.sigma;
-  for (int k = 0; k < kLensUnknowns; ++k) {
-    result.prior_only[k] = certainty.sigma[k] > options.prior_only * options.prior.sigma[k];
-  }
-  Camera& camera = result.camera = camera_of(now.lens, work.width, work.height);
-  const double focal_sigma = std::hypot(certainty.sigma[0], 0.5 * certainty.sigma[1]);
+  result.sigma = sigma;
+  for (int k = 0; k < kLensUnknowns; ++k)
+    result.prior_only[k] = sigma[k] > kPriorOnly * problem.prior.sigma[k];
+  Camera& camera = result.camera = camera_of(now.lens, problem.width, problem.height);
+  const double focal_sigma = std::hypot(sigma[0], 0.5 * sigma[1]);
   camera.sigmas = {camera.fx * focal_sigma,
                    camera.fy * focal_sigma,
-                   work.width * certainty.sigma[2],
-                   work.width * certainty.sigma[3],
-                   certainty.sigma[4],
-                   certainty.sigma[5],
-                   certainty.sigma[6],
-                   certainty.sigma[7]};
-  const std::vector<double> errors = finite(errors_of(work, now));
-  result.rms_px = root_mean_square(errors);
-  result.points = point_count(work.planes);
-  result.views = view_count(work.planes);
+                   problem.width * sigma[2],
+                   problem.width * sigma[3]};
+  camera.sigmas.insert(camera.sigmas.end(), sigma.begin() + 4, sigma.begin() + 8);
+  result.rms_px = root_mean_square(finite(reprojection_errors(problem, now)));
+  result.points = point_count(problem.planes);
+  result.views = view_count(problem.planes);
 }
 
 }  // namespace
@@ -272,32 +249,31 @@ void take_lens(const Work& work,
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
-                           const PlaneLensOptions& options,
                            const Progress& progress,
                            const std::stop_token& stop) {
   PlaneLens result;
-  Work work{
-      cleaned(std::move(planes)), gyro, guess.width, guess.height, options.prior, {.stop = stop}};
-  result.views = view_count(work.planes);
-  if (result.views < kLeastImages)
+  PlaneProblem problem{
+      cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
+  result.views = view_count(problem.planes);
+  if (result.views < kLeastPlaneViews)
     return failed(result,
-                  fmt::format("a plane is seen in {} pictures; at least {} are needed",
+                  fmt::format("a plane is seen in {} images; at least {} are needed",
                               result.views,
-                              kLeastImages));
-  const auto few = best_by_few(work, guess, progress);
+                              kLeastPlaneViews));
+  const auto few = best_by_few(problem, guess, progress);
   result.stopped = stop.stop_requested();
   if (result.stopped) return failed(result, "stopped");
-  auto now = few ? begun(work, few->lens) : std::nullopt;
-  if (!now) return failed(result, "no focal length explains how the points moved");
-  now = settled(work, *std::move(now), result.left_out, progress);
+  auto now = few ? begun(problem, few->lens) : std::nullopt;
+  if (!now) return failed(result, "no focal length explains the motion of the points");
+  now = settled(problem, *std::move(now), result.left_out, progress);
   result.stopped = stop.stop_requested();
   if (result.stopped) return failed(result, "stopped");
-  if (!now->usable || view_count(work.planes) < kLeastImages)
-    return failed(result, "the tracks do not lie on planes");
-  const LensCertainty certainty = weigh_prior(work, *now);
-  take_lens(work, *now, certainty, options, result);
-  measure_motion(work, *now, result);
-  if (!(result.sigma[0] <= options.most_focal_sigma)) return failed(result, why_unknown(result));
+  if (!now->usable || view_count(problem.planes) < kLeastPlaneViews)
+    return failed(result, "the tracks are not on planes");
+  const LensVector sigma = weigh_prior(problem, *now).sigma;
+  take_lens(problem, *now, sigma, result);
+  measure_motion(problem, *now, result);
+  if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(result, why_unknown(result));
   result.ok = true;
   return result;
 }

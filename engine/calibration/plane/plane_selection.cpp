@@ -6,21 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <set>
+#include <utility>
 
 namespace gpo {
 namespace {
 
-constexpr int kLeastViews = 3;             // of a point
-constexpr int kLeastPoints = 8;             // of a sight
-constexpr int kFewViews = 16;              // of a plane, where starts are compared
+constexpr int kLeastViewsOfPoint = 3;
+constexpr int kLeastPoints = 8;             // in a view
+constexpr int kFewViews = 16;               // per plane, to compare starts
 constexpr int kFewPoints = 70;              // the same
-constexpr double kDisagrees = 3;            // medians of all sights, beyond which one is left out
-constexpr double kMedianOfNormal = 0.6745;  // of the absolute value of a standard normal one
+constexpr double kMostViewMedian = 3;       // relative to the median of all views
+constexpr double kMedianOfNormal = 0.6745;  // median absolute value of a standard normal variable
 
-/// The sight's observations that `is_kept(column)` says.
-template <typename Predicate>
-PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
+/// Returns the observations of a view in the columns for which `is_kept`.
+PlaneView part_of(const PlaneView& view, const auto& is_kept) {
   std::vector<int> columns, points;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k) {
     if (!is_kept(k)) continue;
@@ -33,9 +34,7 @@ PlaneView part_of(const PlaneView& view, const Predicate& is_kept) {
           view.flow_px(Eigen::all, columns)};
 }
 
-PlaneView emptied(const PlaneView& view) { return {view.frame, {}, Eigen::Matrix2Xd(2, 0)}; }
-
-/// How many sights show each point.
+/// Number of views of each point.
 std::vector<int> counts_of(const ObservedPlane& plane) {
   std::vector<int> counts(plane.points, 0);
   for (const PlaneView& view : plane.views)
@@ -49,8 +48,8 @@ void clean(ObservedPlane& plane) {
     const std::vector<int> counts = counts_of(plane);
     for (PlaneView& view : plane.views) {
       const std::size_t before = view.points.size();
-      view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViews; });
-      if (std::ssize(view.points) < kLeastPoints) view = emptied(view);
+      view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViewsOfPoint; });
+      if (std::ssize(view.points) < kLeastPoints) view = {view.frame, {}, Eigen::Matrix2Xd(2, 0)};
       changed |= view.points.size() != before;
     }
   }
@@ -68,24 +67,12 @@ std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes) {
   return planes;
 }
 
-ObservedPlane placed_part(const ObservedPlane& plane, const PlaneMosaic& mosaic) {
-  ObservedPlane placed = plane;
-  for (std::size_t i = 0; i < plane.views.size(); ++i) {
-    const PlaneView& view = plane.views[i];
-    placed.views[i] = part_of(view, [&](int k) {
-      return mosaic.H_i_m[i].allFinite() && mosaic.points.col(view.points[k]).allFinite();
-    });
-  }
-  clean(placed);
-  return placed;
-}
-
-std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
-                                       const ViewErrors& errors) {
+std::vector<ObservedPlane> filtered(
+    std::vector<ObservedPlane> planes,
+    const std::function<bool(std::size_t, std::size_t, int)>& is_kept) {
   for (std::size_t p = 0; p < planes.size(); ++p) {
     for (std::size_t i = 0; i < planes[p].views.size(); ++i)
-      planes[p].views[i] =
-          part_of(planes[p].views[i], [&](int k) { return std::isfinite(errors[p][i][k]); });
+      planes[p].views[i] = part_of(planes[p].views[i], [&](int k) { return is_kept(p, i, k); });
     clean(planes[p]);
   }
   return planes;
@@ -93,6 +80,7 @@ std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes,
 
 std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
   std::vector<ObservedPlane> few = planes;
+  std::vector<std::vector<bool>> chosen;  // points of each plane
   for (ObservedPlane& plane : few) {
     std::erase_if(plane.views, [](const PlaneView& view) { return view.points.empty(); });
     const auto count = std::ssize(plane.views);
@@ -104,48 +92,45 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
     const std::vector<int> counts = counts_of(plane);
     std::vector<int> often;
     for (int j = 0; j < plane.points; ++j)
-      if (counts[j] >= kLeastViews) often.push_back(j);
+      if (counts[j] >= kLeastViewsOfPoint) often.push_back(j);
     const std::size_t step = std::max<std::size_t>(1, often.size() / kFewPoints);
-    std::vector<bool> chosen(plane.points, false);
-    for (std::size_t k = 0; k < often.size(); k += step) chosen[often[k]] = true;
-    for (PlaneView& view : plane.views)
-      view = part_of(view, [&](int k) { return chosen[view.points[k]]; });
+    chosen.emplace_back(plane.points, false);
+    for (std::size_t k = 0; k < often.size(); k += step) chosen.back()[often[k]] = true;
   }
-  return cleaned(std::move(few));
+  return cleaned(filtered(few, [&](std::size_t p, std::size_t i, int k) {
+    return chosen[p][few[p].views[i].points[k]];
+  }));
 }
 
 std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
-                                      const ViewErrors& errors,
-                                      double most_px,
-                                      std::vector<int>& left_out) {
+                                       const ViewErrors& errors,
+                                       double most_px,
+                                       std::vector<int>& left_out) {
   std::vector<double> medians;
   for (const auto& views : errors)
     for (const Eigen::VectorXd& view : views)
       if (view.size() > 0) medians.push_back(median_of(view));
   if (medians.empty()) return planes;
-  const double most_median_px = kDisagrees * median(medians);
-  std::vector<ObservedPlane> kept = planes;
+  const double most_median_px = kMostViewMedian * median(medians);
+  std::set<std::pair<std::size_t, std::size_t>> far;
   for (std::size_t p = 0; p < planes.size(); ++p) {
     for (std::size_t i = 0; i < planes[p].views.size(); ++i) {
-      PlaneView& view = kept[p].views[i];
-      if (median_of(errors[p][i]) > most_median_px) {
-        left_out.push_back(view.frame);
-        view = emptied(view);
-      } else {
-        view = part_of(planes[p].views[i], [&](int k) { return errors[p][i][k] <= most_px; });
-      }
+      if (median_of(errors[p][i]) <= most_median_px) continue;
+      left_out.push_back(planes[p].views[i].frame);
+      far.emplace(p, i);
     }
-    clean(kept[p]);
   }
-  return kept;
+  return filtered(planes, [&](std::size_t p, std::size_t i, int k) {
+    return !far.contains({p, i}) && errors[p][i][k] <= most_px;
+  });
 }
 
 std::vector<double> finite(const ViewErrors& errors) {
   std::vector<double> all;
   for (const auto& views : errors)
     for (const Eigen::VectorXd& view : views)
-      for (const double e : view)
-        if (std::isfinite(e)) all.push_back(e);
+      std::ranges::copy_if(
+          view, std::back_inserter(all), [](double e) { return std::isfinite(e); });
   return all;
 }
 
@@ -165,9 +150,9 @@ double height_of(const std::vector<ObservedPlane>& planes, const Adjustment& adj
 }
 
 int observation_count(const std::vector<ObservedPlane>& planes) {
-  std::size_t count = 0;
+  std::ptrdiff_t count = 0;
   for (const ObservedPlane& plane : planes)
-    for (const PlaneView& view : plane.views) count += view.points.size();
+    for (const PlaneView& view : plane.views) count += std::ssize(view.points);
   return static_cast<int>(count);
 }
 

@@ -3,44 +3,44 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_views.h"
-#include "engine/calibration/plane/plane_start.h"
 
+#include <functional>
 #include <vector>
 
 namespace gpo {
 
-// What is dropped goes from the sights; points and sights keep their numbers, so that an adjustment
-// stays one of what is left. A sight may be left without a point.
+// These functions drop observations. Points and views keep their indices, so that an adjustment
+// remains valid. A view may be left without a point.
 
-/// Without points that fewer than 3 sights show, and all of sights that show fewer than 8.
+/// Returns the planes without points in fewer than 3 views, views of fewer than 8 points, and
+/// planes without observations.
 std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes);
 
-/// Only what a mosaic places.
-ObservedPlane placed_part(const ObservedPlane& plane, const PlaneMosaic& mosaic);
+/// Returns the observations for which `is_kept(plane, view, column)`, without points in fewer than
+/// 3 views and without views of fewer than 8 points.
+std::vector<ObservedPlane> filtered(
+    std::vector<ObservedPlane> planes,
+    const std::function<bool(std::size_t plane, std::size_t view, int column)>& is_kept);
 
-/// Without observations of what is behind the camera, whose errors are infinite.
-std::vector<ObservedPlane> visible_part(std::vector<ObservedPlane> planes, const ViewErrors& errors);
-
-/// A few sights, spread evenly, and of the points some everywhere: enough to compare starts.
+/// Returns a few views, spread evenly, and some of their points: enough to compare starts.
 std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes);
 
-/// Without observations that are farther off than `most_px`, and without sights whose median is
-/// more than three times the median of all sights' (frames are added to `left_out`).
+/// Returns the planes without errors above `most_px`, and without views with more than three times
+/// the median error of all views. Appends the frames of the latter to `left_out`.
 std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
-                                      const ViewErrors& errors,
-                                      double most_px,
-                                      std::vector<int>& left_out);
+                                       const ViewErrors& errors,
+                                       double most_px,
+                                       std::vector<int>& left_out);
 
 std::vector<double> finite(const ViewErrors& errors);
-/// Noise of a coordinate [px], by the median of the errors' lengths.
+/// Noise of a coordinate [px], by the median error.
 double noise_of(const ViewErrors& errors);
 
-/// How far points are off their planes, by the median of those that are seen [distances].
+/// Distance of points from their planes, by the median of the observed ones [distances].
 double height_of(const std::vector<ObservedPlane>& planes, const Adjustment& adjustment);
 
 int observation_count(const std::vector<ObservedPlane>& planes);
-int view_count(const std::vector<ObservedPlane>& planes);  ///< that show any point
-int point_count(const std::vector<ObservedPlane>& planes);  ///< that are seen
+int view_count(const std::vector<ObservedPlane>& planes);   ///< with at least one point
+int point_count(const std::vector<ObservedPlane>& planes);  ///< in at least one view
 
 }  // namespace gpo

@@ -23,16 +23,16 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kLeastCommon = 8;    // points that place a sight
-constexpr double kBadHalf = 0.01;  // badness that counts half of the most, of one sight
-constexpr int kRings = 14;         // of normals that are tried, from the axis to 84 degrees
+constexpr double kUnplaced = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLeastCommon = 8;    // placed points of a view
+constexpr double kBadHalf = 0.01;  // badness of a view that counts half of the maximum
+constexpr int kRings = 14;         // rings of normals, from the axis to 84 degrees
 constexpr double kRing_rad = 6 * std::numbers::pi / 180;
-constexpr double kLeastSlope = 0.02;  // of a ray to the plane; below it the point is a wrong one
-constexpr double kMostBehind = 0.03;  // of the points
-constexpr double kApart_rad = 0.25;   // two guesses of a normal are at least
+constexpr double kLeastSlope = 0.02;  // sine of the angle between ray and plane
+constexpr double kMostBehind = 0.03;  // share of the points
+constexpr double kApart_rad = 0.25;   // angle between two guesses of a normal, at least
 
-Matrix2Xd undistorted_from_middle(const PlaneView& view, const Camera& camera) {
+Matrix2Xd undistorted_from_center(const PlaneView& view, const Camera& camera) {
   Matrix2Xd points(2, view.raw_px.cols());
   const Vector2d middle(camera.cx, camera.cy);
   for (Eigen::Index k = 0; k < points.cols(); ++k)
@@ -40,7 +40,7 @@ Matrix2Xd undistorted_from_middle(const PlaneView& view, const Camera& camera) {
   return points;
 }
 
-/// Those of a sight's observations whose points are placed.
+/// Columns of a view whose points are placed.
 std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matrix2Xd& points) {
   std::vector<int> columns;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k)
@@ -48,7 +48,7 @@ std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matr
   return columns;
 }
 
-/// From the points to a sight, by those that agree with most of the others.
+/// Homography from the points to a view, without outliers.
 std::optional<Matrix3d> homography_to(const PlaneView& view,
                                       const Matrix2Xd& seen,
                                       const Matrix2Xd& points) {
@@ -76,15 +76,14 @@ std::optional<Matrix3d> homography_to(const PlaneView& view,
   return H;
 }
 
-/// Points of a sight that have no place yet get theirs; not those that the mosaic's picture would
-/// see behind itself or far outside.
+/// Places the other points of a view, unless they are behind the mosaic's image or far outside.
 void place_points(const PlaneView& view,
                   const Matrix2Xd& seen,
                   const Matrix3d& H,
                   double farthest_px,
                   Matrix2Xd& points) {
   const Matrix3d back = H.inverse();
-  // Signs: in front as most of those that are placed already.
+  // The sign that most placed points have is in front.
   double sign = 0;
   for (const int k : placed(view, seen, points))
     sign += back.row(2).dot(seen.col(k).homogeneous()) > 0 ? 1 : -1;
@@ -92,13 +91,12 @@ void place_points(const PlaneView& view,
     auto point = points.col(view.points[k]);
     if (point.allFinite() || !seen.col(static_cast<Eigen::Index>(k)).allFinite()) continue;
     const Vector3d there = back * seen.col(static_cast<Eigen::Index>(k)).homogeneous();
-    if (there.z() * sign <= 0) continue;
-    const Vector2d place = there.hnormalized();
-    if (place.norm() <= farthest_px) point = place;
+    if (there.z() * sign > 0 && there.hnormalized().norm() <= farthest_px)
+      point = there.hnormalized();
   }
 }
 
-/// How far the first two columns of a homography from a plane are from orthogonal and equally long.
+/// 0 if the first two columns of a homography from a plane are orthogonal and equally long.
 double badness(const Vector3d& a, const Vector3d& b) {
   const double dot = a.dot(b);
   const double aa = a.squaredNorm();
@@ -106,8 +104,7 @@ double badness(const Vector3d& a, const Vector3d& b) {
   return (4 * dot * dot + (aa - bb) * (aa - bb)) / ((aa + bb) * (aa + bb));
 }
 
-/// Columns: two directions in the plane, and the way to it; a right-handed frame, z away from the
-/// camera that the normal points to.
+/// Right-handed axes: two in the plane, and z towards it. The normal points to the camera.
 Matrix3d plane_frame(const Vector3d& normal) {
   Matrix3d R;
   const Vector3d z = -normal;
@@ -122,7 +119,7 @@ Matrix3d scaled_by(const Matrix3d& H, double focal_px) {
   return K.cwiseInverse().asDiagonal() * H * K.asDiagonal();
 }
 
-/// The pose from the homography of a plane's coordinates to normalized ones.
+/// Pose from the homography of a plane's coordinates to normalized ones.
 Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
   if (H.row(2).dot(seen_point.homogeneous()) < 0) H = -H;
   const double scale = 0.5 * (H.col(0).norm() + H.col(1).norm());
@@ -138,13 +135,12 @@ Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
 
 PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera) {
   const auto count = std::ssize(plane.views);
-  PlaneMosaic mosaic{Matrix2Xd::Constant(2, plane.points, kNaN),
-                     std::vector<Matrix3d>(count, Matrix3d::Constant(kNaN)),
-                     0};
+  PlaneMosaic mosaic{Matrix2Xd::Constant(2, plane.points, kUnplaced),
+                     std::vector<Matrix3d>(count, Matrix3d::Constant(kUnplaced))};
   std::vector<Matrix2Xd> seen;
   std::vector<int> left;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    seen.push_back(undistorted_from_middle(plane.views[i], camera));
+    seen.push_back(undistorted_from_center(plane.views[i], camera));
     left.push_back(static_cast<int>(i));
   }
   if (left.empty()) return mosaic;
@@ -152,7 +148,6 @@ PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera) {
   int next = *std::ranges::max_element(left, {}, size);
   mosaic.points(Eigen::all, plane.views[next].points) = seen[next];
   mosaic.H_i_m[next].setIdentity();
-  mosaic.root = next;
   const double farthest_px = 6.0 * camera.width;
   const auto common = [&](int i) { return placed(plane.views[i], seen[i], mosaic.points).size(); };
   std::erase(left, next);
@@ -167,36 +162,37 @@ PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera) {
   return mosaic;
 }
 
-std::vector<NormalGuess> normal_guesses(const PlaneMosaic& mosaic, double focal_px, int most) {
+std::vector<Vector3d> likely_normals(const PlaneMosaic& mosaic, double focal_px, int most) {
   std::vector<Matrix3d> homographies;
   for (const Matrix3d& H : mosaic.H_i_m)
     if (H.allFinite()) homographies.push_back(scaled_by(H, focal_px));
-  std::vector<NormalGuess> all;
+  std::vector<std::pair<double, Vector3d>> all;
   for (int ring = 0; ring <= kRings; ++ring) {
     const double slant = ring * kRing_rad;
     const int around =
         std::max(1, static_cast<int>(2 * std::numbers::pi * std::sin(slant) / kRing_rad));
     for (int k = 0; k < around; ++k) {
-      const double rotation = 2 * std::numbers::pi * k / around;
-      const Vector3d normal(
-          std::sin(slant) * std::cos(rotation), std::sin(slant) * std::sin(rotation), -std::cos(slant));
+      const double azimuth = 2 * std::numbers::pi * k / around;
+      const Vector3d normal(std::sin(slant) * std::cos(azimuth),
+                            std::sin(slant) * std::sin(azimuth),
+                            -std::cos(slant));
       const Matrix3d frame = plane_frame(normal);
-      NormalGuess guess{normal, 0};
+      double sum = 0;
       for (const Matrix3d& H : homographies) {
         const double bad = badness(H * frame.col(0), H * frame.col(1));
-        guess.badness += bad / (bad + kBadHalf) / static_cast<double>(homographies.size());
+        sum += bad / (bad + kBadHalf) / static_cast<double>(homographies.size());
       }
-      all.push_back(guess);
+      all.emplace_back(sum, normal);
     }
   }
-  std::ranges::sort(all, {}, &NormalGuess::badness);
-  std::vector<NormalGuess> best;
-  for (const NormalGuess& guess : all) {
+  std::ranges::sort(all, {}, &std::pair<double, Vector3d>::first);
+  std::vector<Vector3d> best;
+  for (const auto& [sum, normal] : all) {
     if (std::ssize(best) == most) break;
-    const bool apart = std::ranges::all_of(best, [&](const NormalGuess& other) {
-      return radians(angle_deg(guess.normal, other.normal)) >= kApart_rad;
-    });
-    if (apart) best.push_back(guess);
+    if (std::ranges::all_of(best, [&normal = normal](const Vector3d& other) {
+          return radians(angle_deg(normal, other)) >= kApart_rad;
+        }))
+      best.push_back(normal);
   }
   return best;
 }
@@ -206,7 +202,7 @@ std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
                                       const Vector3d& normal) {
   const Matrix3d frame = plane_frame(normal);
   AdjustedPlane plane{Eigen::Matrix3Xd::Zero(3, mosaic.points.cols()), {}};
-  Vector2d one = Vector2d::Constant(kNaN);
+  Vector2d one = Vector2d::Constant(kUnplaced);
   int behind = 0;
   for (Eigen::Index j = 0; j < mosaic.points.cols(); ++j) {
     if (!mosaic.points.col(j).allFinite()) continue;
@@ -214,17 +210,14 @@ std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
         mosaic.points.col(j).homogeneous().cwiseProduct(Vector3d(1 / focal_px, 1 / focal_px, 1));
     const double slope = -normal.dot(ray);
     behind += slope < kLeastSlope ? 1 : 0;
-    const double depth = std::max(slope, kLeastSlope);
-    const Vector3d place = frame.transpose() * ray / depth;
-    plane.points.col(j).head<2>() = place.head<2>();
-    if (!one.allFinite() || place.head<2>().norm() < one.norm()) one = place.head<2>();
+    const Vector2d place = (frame.transpose() * ray / std::max(slope, kLeastSlope)).head<2>();
+    plane.points.col(j).head<2>() = place;
+    if (!one.allFinite() || place.norm() < one.norm()) one = place;
   }
   if (behind > kMostBehind * static_cast<double>(mosaic.points.cols())) return std::nullopt;
-  for (const Matrix3d& H : mosaic.H_i_m) {
-    // A point of the plane is u x + v y + z in the mosaic's camera.
+  for (const Matrix3d& H : mosaic.H_i_m)
     plane.poses.push_back(H.allFinite() ? pose_of(scaled_by(H, focal_px) * frame, one)
                                         : Eigen::Matrix<double, 6, 1>::Zero());
-  }
   return plane;
 }
 

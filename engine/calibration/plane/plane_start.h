@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_adjustment.h"
-#include "engine/calibration/plane/plane_views.h"
 
 #include <optional>
 #include <vector>
@@ -12,28 +11,22 @@
 
 namespace gpo {
 
-/// A plane's points as one picture would show all of them, and the homographies from there to every
-/// sight; undistorted pixels from the picture's middle.
+/// A plane's points in one image, and the homographies from there to all views. Undistorted pixels
+/// relative to the image center.
 struct PlaneMosaic {
-  Eigen::Matrix2Xd points;             ///< NaN: not placed
-  std::vector<Eigen::Matrix3d> H_i_m;  ///< one a sight; NaN: not placed
-  int root = 0;                        ///< the sight in whose picture they are
+  Eigen::Matrix2Xd points;             ///< NaN for points without a place
+  std::vector<Eigen::Matrix3d> H_i_m;  ///< one a view; NaN for views without a place
 };
 
-/// From sight to sight, those that share most points first. `camera` undistorts.
+/// Chains views, those with most points in common first. `camera` undistorts.
 PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera);
 
-/// Normals that the plane may have in the mosaic's view, if the focal length is so much, the best
-/// first, with how badly they do (0: perfectly; Triggs 1998): a homography from the plane, in
-/// Euclidean coordinates, has two first columns that are orthogonal and of equal length.
-struct NormalGuess {
-  Eigen::Vector3d normal;
-  double badness = 0;
-};
-std::vector<NormalGuess> normal_guesses(const PlaneMosaic& mosaic, double focal_px, int most);
+/// Likely normals of the plane in the mosaic's view for a focal length, at most `most`, best first:
+/// the first two columns of homographies from the plane, in Euclidean coordinates, are orthogonal
+/// and of equal length (Triggs 1998).
+std::vector<Eigen::Vector3d> likely_normals(const PlaneMosaic& mosaic, double focal_px, int most);
 
-/// Points and poses by the mosaic, of a plane with that normal. Nothing where it faces the wrong
-/// way.
+/// Points and poses of a plane with that normal by the mosaic; nullopt if it faces away.
 std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
                                       double focal_px,
                                       const Eigen::Vector3d& normal);

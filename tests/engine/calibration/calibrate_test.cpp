@@ -3,6 +3,7 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
+#include "engine/calibration/lens_fit.h"
 #include "engine/recording/board/board_pose.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "tests/engine/recording/board/kalibr_print.h"
@@ -32,7 +33,7 @@ Camera wide() {
   return {640, 480, 280, 281, 322, 236, Distortion::equidistant, {0.02, -0.01, 0.004, -0.001}};
 }
 
-/// Looks at a place on the board from somewhere, with a slant of at most `slant_deg`.
+/// A random camera that looks at the board, slanted by at most `slant_deg`.
 Pose pose_from(std::mt19937& random, double distance, double slant_deg) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const double slant = radians(slant_deg);
@@ -42,20 +43,28 @@ Pose pose_from(std::mt19937& random, double distance, double slant_deg) {
   return {R, looked_at - distance * (1 + 0.3 * uniform(random)) * R.col(2)};
 }
 
-/// Views as a search would have found them, with noise on the corners, of a board whose middle
-/// rises above its ends.
-BoardSearch simulated(
-    const Camera& camera, int count, int seed, double distance, double slant, double rise_m = 0) {
-  std::mt19937 random(seed);
+struct SimulatedSearch {
+  Camera camera = phone();
+  int count = 30;  ///< number of views
+  int seed = 1;
+  double distance = 0.4;
+  double slant_deg = 35;
+  double rise_m = 0;  ///< height of the middle of the board above its ends
+};
+
+/// Views as a search finds them, with noise on the corners.
+BoardSearch simulated(const SimulatedSearch& options) {
+  const Camera& camera = options.camera;
+  std::mt19937 random(options.seed);
   std::normal_distribution<double> noise(0, 0.15);
   BoardSearch search;
   search.size = {camera.width, camera.height};
-  while (static_cast<int>(search.views.size()) < count) {
+  while (static_cast<int>(search.views.size()) < options.count) {
     CalibrationView view{search.examined++, {}, 1.5};
-    const Pose pose = pose_from(random, distance, slant);
+    const Pose pose = pose_from(random, options.distance, options.slant_deg);
     for (Eigen::Vector3d corner : board_points(kBoard)) {
       const double along = 2 * corner.x() / ((kBoard.columns - 1) * kBoard.square_m) - 1;
-      corner.z() = rise_m * (1 - along * along);
+      corner.z() = options.rise_m * (1 - along * along);
       view.corners.push_back(project(camera, to_camera(pose, corner)));
     }
     bool inside = true;
@@ -74,15 +83,14 @@ double largest_normalized_error(const CameraCalibration& found, const Camera& tr
   const auto values = parameters(found.camera);
   const auto expected = parameters(truth);
   double largest = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
+  for (std::size_t k = 0; k < values.size(); ++k)
     largest = std::max(largest, std::abs(values[k] - expected[k]) / found.sigmas[k]);
-  }
   return largest;
 }
 
-TEST(Calibrate, FindsTheCameraWithinThreeStandardDeviations) {
+TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
   for (const int seed : {1, 2, 3, 4}) {
-    const auto found = calibrate_camera(simulated(phone(), 40, seed, 0.4, 35), kBoard);
+    const auto found = calibrate_camera(simulated({.count = 40, .seed = seed}), kBoard);
     ASSERT_TRUE(found.ok) << found.reason;
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
     EXPECT_LT(found.sigmas[0], 6) << seed;
@@ -95,35 +103,37 @@ TEST(Calibrate, FindsTheCameraWithinThreeStandardDeviations) {
   }
 }
 
-/// Paper that rises by 1.5 mm over 20 cm, as that of chessboard-floor does.
-TEST(Calibrate, TakesABentBoardAsItIs) {
-  const double rise_m = 0.0015;
+TEST(Calibrate, EstimatesTheShapeOfABentBoard) {
+  const double rise_m = 0.0015;  // as that of chessboard-floor
   for (const int seed : {1, 2, 3, 4}) {
-    const auto found = calibrate_camera(simulated(phone(), 40, seed, 0.4, 35, rise_m), kBoard);
+    const auto found =
+        calibrate_camera(simulated({.count = 40, .seed = seed, .rise_m = rise_m}), kBoard);
     ASSERT_TRUE(found.ok) << found.reason;
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
     EXPECT_NEAR(found.camera.fx, phone().fx, 0.01 * phone().fx) << seed;
     EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
-    // A parabola lies two thirds of its rise above one side of its plane.
+    // A parabola is up to two thirds of its rise above its plane.
     EXPECT_NEAR(found.bend_m, 2 * rise_m / 3, 0.2e-3) << seed;
     EXPECT_THAT(to_text(found), HasSubstr("not flat: corners are up to"));
   }
 }
 
-TEST(Calibrate, FindsAWideLens) {
-  const CalibrationOptions options{.distortion = Distortion::equidistant};
+TEST(Calibrate, EstimatesAWideLens) {
   for (const int seed : {1, 2}) {
-    const auto found = calibrate_camera(simulated(wide(), 40, seed, 0.2, 35), kBoard, options);
+    const auto found =
+        calibrate_camera(simulated({.camera = wide(), .count = 40, .seed = seed, .distance = 0.2}),
+                         kBoard,
+                         {.distortion = Distortion::equidistant});
     ASSERT_TRUE(found.ok) << found.reason;
     EXPECT_EQ(found.camera.distortion, Distortion::equidistant);
-    // Of eight parameters whose standard deviations are from ten blocks, one may be beyond 3.
+    // Standard deviations by ten blocks are rough: one of eight parameters may be beyond 3.
     EXPECT_LT(largest_normalized_error(found, wide()), 4) << seed;
     EXPECT_LT(found.sigmas[0], 3) << seed;
   }
 }
 
-TEST(Calibrate, GivesAsManyCoefficientsAsAskedFor) {
-  const BoardSearch search = simulated(phone(), 20, 1, 0.4, 35);
+TEST(Calibrate, EstimatesTheRequestedNumberOfCoefficients) {
+  const BoardSearch search = simulated({.count = 20});
   for (const int count : {5, 8}) {
     const auto found = calibrate_camera(search, kBoard, {.coefficients = count});
     EXPECT_EQ(found.camera.coefficients.size(), static_cast<std::size_t>(count));
@@ -132,33 +142,32 @@ TEST(Calibrate, GivesAsManyCoefficientsAsAskedFor) {
 }
 
 TEST(Calibrate, LeavesOutViewsThatFitFarWorse) {
-  BoardSearch search = simulated(phone(), 30, 5, 0.4, 35);
-  for (std::size_t i = 0; i < search.views[7].corners.size(); i += 2) {
+  BoardSearch search = simulated({.seed = 5});
+  for (std::size_t i = 0; i < search.views[7].corners.size(); i += 2)
     search.views[7].corners[i].x() += 4;
-  }
   const auto found = calibrate_camera(search, kBoard);
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_THAT(found.frames, testing::Not(testing::Contains(search.views[7].frame)));
   EXPECT_LT(largest_normalized_error(found, phone()), 3);
 }
 
-TEST(Calibrate, TakesViewsWithHiddenCorners) {
-  BoardSearch search = simulated(phone(), 30, 6, 0.4, 35);
-  for (auto& view : search.views) {
+TEST(Calibrate, AcceptsViewsWithHiddenCorners) {
+  BoardSearch search = simulated({.seed = 6});
+  for (auto& view : search.views)
     for (int i = 0; i < 20; ++i) view.corners[i].x() = std::numeric_limits<double>::quiet_NaN();
-  }
   const auto found = calibrate_camera(search, kBoard);
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_LT(largest_normalized_error(found, phone()), 3);
 }
 
-TEST(Calibrate, LeavesWhatTheViewsDoNotDetermineAtZero) {
-  // A narrow lens has angles whose ninth powers no view tells from nothing.
+TEST(Calibrate, FixesUndeterminedCoefficientsAtZero) {
+  // No view of a narrow lens determines the ninth power of the angle.
   Camera narrow = phone();
   narrow.fx = narrow.fy = 1100;
   narrow.coefficients = {0, 0, 0, 0};
-  const CalibrationOptions options{.distortion = Distortion::equidistant};
-  const auto found = calibrate_camera(simulated(narrow, 40, 1, 0.7, 35), kBoard, options);
+  const auto found = calibrate_camera(simulated({.camera = narrow, .count = 40, .distance = 0.7}),
+                                      kBoard,
+                                      {.distortion = Distortion::equidistant});
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_EQ(found.camera.coefficients[3], 0);
   EXPECT_EQ(found.sigmas[7], 0);
@@ -166,19 +175,19 @@ TEST(Calibrate, LeavesWhatTheViewsDoNotDetermineAtZero) {
   EXPECT_LT(std::abs(found.camera.fx - 1100), 3 * found.sigmas[0]);
 }
 
-TEST(Calibrate, SaysWhyItFails) {
-  const auto few = calibrate_camera(simulated(phone(), 5, 1, 0.4, 35), kBoard);
+TEST(Calibrate, ExplainsFailures) {
+  const auto few = calibrate_camera(simulated({.count = 5}), kBoard);
   EXPECT_FALSE(few.ok);
-  EXPECT_THAT(few.reason, HasSubstr("the board was found, and sharp, in 5 of "));
+  EXPECT_THAT(few.reason, HasSubstr("found a sharp board in 5 of "));
   EXPECT_FALSE(calibrate_camera({}, kBoard).ok);
   // From straight above a longer lens at a larger distance sees the same.
-  const auto frontal = calibrate_camera(simulated(phone(), 30, 1, 0.4, 1), kBoard);
+  const auto frontal = calibrate_camera(simulated({.slant_deg = 1}), kBoard);
   EXPECT_FALSE(frontal.ok);
   EXPECT_NE(frontal.reason, "");
 }
 
-TEST(Calibrate, WarnsWhereTheBoardStayedInTheMiddle) {
-  BoardSearch search = simulated(phone(), 150, 2, 0.9, 35);
+TEST(Calibrate, WarnsIfTheBoardStaysInTheMiddle) {
+  BoardSearch search = simulated({.count = 150, .seed = 2, .distance = 0.9});
   std::erase_if(search.views, [](const CalibrationView& view) {
     return std::ranges::any_of(view.corners, [](const Eigen::Vector2d& corner) {
       return corner.x() < 140 || corner.x() > 500 || corner.y() < 100 || corner.y() > 380;
@@ -187,31 +196,24 @@ TEST(Calibrate, WarnsWhereTheBoardStayedInTheMiddle) {
   const auto found = calibrate_camera(search, kBoard);
   ASSERT_TRUE(found.ok) << found.reason;
   ASSERT_FALSE(found.warnings.empty());
-  EXPECT_THAT(found.warnings.front(), HasSubstr("% of the picture only"));
+  EXPECT_THAT(found.warnings.front(), HasSubstr("% of the image, the lens is unknown"));
 }
 
-TEST(ChooseViews, TakesDifferentOnesInOrderOfTimeWithoutTheBlurred) {
-  BoardSearch search = simulated(phone(), 12, 3, 0.4, 35);
-  // Twenty more of the first, one of them sharper, and a blurred one that differs from all.
+TEST(ChooseViews, ReturnsDifferentSharpViewsInOrderOfTime) {
+  BoardSearch search = simulated({.count = 12, .seed = 3});
+  // Twenty copies of the first, one of them sharper, and a blurred one that differs from all.
   for (int i = 0; i < 20; ++i) search.views.insert(search.views.begin(), search.views.front());
   for (int i = 0; i < 32; ++i) search.views[i].frame = i <= 20 ? 0 : i;
   search.views[4].edge_px = 1.4;
   search.views[4].frame = 1;
   search.views.back().edge_px = 5;
-  const auto chosen = choose_views(search, kBoard, 11);
   std::vector<int> frames;
-  for (const auto& view : chosen) frames.push_back(view.frame);
-  EXPECT_TRUE(std::ranges::is_sorted(frames));
+  for (const auto& view : choose_views(search, kBoard, 11)) frames.push_back(view.frame);
   EXPECT_THAT(frames, ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
 }
 
-TEST(CalibrationViews, KnowHowWideEdgesAre) {
-  Camera camera = phone();
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 300;
-  camera.cx = 160;
-  camera.cy = 120;
+TEST(CalibrationViews, MeasureTheWidthOfEdges) {
+  const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, phone().coefficients};
   const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
   const FrameCache images(3, [&](int index) {
     cv::Mat image;
@@ -220,10 +222,10 @@ TEST(CalibrationViews, KnowHowWideEdgesAre) {
     cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
     return image;
   });
-  std::vector<int> told;
-  const BoardSearch search =
-      find_calibration_views(images, kBoard, 10, [&](int done, int) { told.push_back(done); });
-  EXPECT_THAT(told, ElementsAre(1, 2, 3));
+  std::vector<int> progress;
+  const BoardSearch search = find_calibration_views(
+      images, kBoard, 10, [&](int done, int) { progress.push_back(done); });
+  EXPECT_THAT(progress, ElementsAre(1, 2, 3));
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);
   EXPECT_LT(search.views[0].edge_px, 2);
@@ -231,21 +233,21 @@ TEST(CalibrationViews, KnowHowWideEdgesAre) {
   EXPECT_GT(search.views[2].edge_px, 3);
 }
 
-TEST(CalibrationViews, MustBeOfOneSize) {
+TEST(CalibrationViews, RefuseImagesOfDifferentSizes) {
   const FrameCache images(
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
   EXPECT_EQ(test::error_of([&] { find_calibration_views(images, kBoard, 10); }),
-            "picture 1: found 65x48 pixels, expected 64x48 as in the first");
+            "image 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 
-/// Of an AprilGrid, by OpenCV's warp of a large print: no lens distortion.
+/// Image of an AprilGrid by warping a large print, without lens distortion.
 cv::Mat grid_image(const cv::Mat& print, double texels, const Camera& camera, const Pose& pose) {
   constexpr int kFine = 3;
   const Eigen::Matrix3d R = pose.R_wc.transpose();
   Eigen::Matrix3d plane;  // board [m] -> camera
   plane << R.col(0), R.col(1), -R * pose.p_wc;
   Eigen::Matrix3d to_board, to_fine;
-  const double margin = 0.5 * print.cols / texels - 0.1225;  // the board's middle is the print's
+  const double margin = 0.5 * print.cols / texels - 0.1225;  // board and print have one center
   const double above = 0.5 * print.rows / texels - 0.09;
   to_board << 1 / texels, 0, 0.5 / texels - margin, 0, 1 / texels, 0.5 / texels - above, 0, 0, 1;
   to_fine << kFine, 0, 1, 0, kFine, 1, 0, 0, 1;
@@ -265,21 +267,19 @@ cv::Mat grid_image(const cv::Mat& print, double texels, const Camera& camera, co
   return image;
 }
 
-TEST(Calibrate, TakesImagesOfAnAprilGrid) {
+TEST(Calibrate, AcceptsImagesOfAnAprilGrid) {
   const Board grid{8, 6, 0.05, {}, BoardTags{0.3, 2, {}}};
-  constexpr double kTexels = 2400;  // a meter
+  constexpr double kTexels = 2400;  // per meter
   cv::Mat print(static_cast<int>(0.24 * kTexels), static_cast<int>(0.31 * kTexels), CV_8U);
   const Eigen::Vector3d last = board_points(grid).back();
   ASSERT_NEAR(last.x() / 2, 0.1225, 1e-12);
   ASSERT_NEAR(last.y() / 2, 0.09, 1e-12);
-  for (int v = 0; v < print.rows; ++v) {
-    for (int u = 0; u < print.cols; ++u) {
+  for (int v = 0; v < print.rows; ++v)
+    for (int u = 0; u < print.cols; ++u)
       print.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(
           test::tag_gray(grid,
                          (u + 0.5) / kTexels - 0.5 * print.cols / kTexels + last.x() / 2,
                          (v + 0.5) / kTexels - 0.5 * print.rows / kTexels + last.y() / 2));
-    }
-  }
   const Camera camera{640, 480, 600, 604, 317, 243, Distortion::none, {}};
   std::mt19937 random(5);
   std::vector<cv::Mat> images;
@@ -297,21 +297,21 @@ TEST(Calibrate, TakesImagesOfAnAprilGrid) {
   EXPECT_NEAR(found.camera.cy, 243, 2);
 }
 
-TEST(CalibrationReport, IsReadAsACalibration) {
+TEST(CalibrationReport, CanBeReadAsACalibration) {
   CameraCalibration calibration;
   calibration.ok = true;
   calibration.camera = phone();
   calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
   calibration.frames = {1, 2, 3};
-  calibration.warnings = {"something: to mind"};
+  calibration.warnings = {"a warning: with a colon"};
   const test::TestFolder folder;
   const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
   Camera camera = phone();
   camera.sigmas = calibration.sigmas;
   EXPECT_EQ(read_calibration(file).camera, camera);
-  EXPECT_THAT(to_yaml(calibration, "a video.mp4"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
+  EXPECT_THAT(folder.read("camera.yaml"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
   EXPECT_THAT(to_text(calibration), HasSubstr("fx              600.00 +- 1.50 px\n"));
-  EXPECT_THAT(to_text(calibration), HasSubstr("warning     something: to mind\n"));
+  EXPECT_THAT(to_text(calibration), HasSubstr("warning     a warning: with a colon\n"));
 }
 
 }  // namespace

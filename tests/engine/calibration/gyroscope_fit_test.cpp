@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/gyroscope_fit.h"
 
-#include "engine/calibration/gyroscope_report.h"
+#include "engine/calibration/calibration_report.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/rotation_error.h"
 
 #include <cmath>
 #include <filesystem>
@@ -46,8 +47,8 @@ constexpr std::int64_t kBegin_ns = 1'000'000'000'000;
 
 std::int64_t ns(double seconds) { return kBegin_ns + std::llround(1e9 * seconds); }
 
-/// Windows of ten frames at 30 Hz, each frame's rotation with `noise_rad` on each axis; a gyroscope
-/// of 200 Hz with 0.002 rad/s.
+/// Windows of ten frames at 30 Hz with `noise_rad` on each axis, and a gyroscope of 200 Hz with
+/// 0.002 rad/s.
 Recorded record(const Truth& truth, double seconds, double noise_rad, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> gauss;
@@ -82,7 +83,7 @@ Matrix3d any_rotation(std::uint64_t seed) {
   return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
 }
 
-TEST(GyroscopeFit, FindsRotationClockAndBias) {
+TEST(GyroscopeFit, EstimatesRotationClockAndBias) {
   double squares = 0;
   int numbers = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -92,24 +93,22 @@ TEST(GyroscopeFit, FindsRotationClockAndBias) {
     const Recorded recorded = record(truth, 5, 0.002, seed);
     const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
     ASSERT_TRUE(fit.ok) << fit.reason;
-    EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, truth.R_gyro_camera), 1) << seed;
+    EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, truth.R_gyro_camera), 1) << seed;
     EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.002) << seed;
     EXPECT_LT((fit.bias_rad_s - truth.bias).norm(), 0.01) << seed;
-    const Vector3d turned =
-        degrees(1) * so3_log(fit.R_gyro_camera.transpose() * truth.R_gyro_camera);
-    squares += (turned.array() / fit.rotation_sigma_deg.array()).square().sum();
+    const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * truth.R_gyro_camera);
+    squares += (off.array() / fit.rotation_sigma_deg.array()).square().sum();
     squares +=
         ((fit.bias_rad_s - truth.bias).array() / fit.bias_sigma_rad_s.array()).square().sum();
     squares += std::pow((fit.time_offset_s - truth.offset_s) / fit.time_offset_sigma_s, 2);
     numbers += 7;
   }
-  // Standard deviations that are true: the mean of their squares is one, of few clusters a bit
-  // less.
+  // The mean of squared normalized errors is one, for few clusters a bit less.
   EXPECT_GT(squares / numbers, 0.5);
   EXPECT_LT(squares / numbers, 1.5);
 }
 
-TEST(GyroscopeFit, SurvivesWindowsThatAreWrong) {
+TEST(GyroscopeFit, LeavesOutWindowsThatDisagree) {
   const Truth truth{any_rotation(3), 0.04, {0.01, -0.02, 0.005}};
   Recorded recorded = record(truth, 6, 0.001, 3);
   for (std::size_t w = 0; w < recorded.windows.size(); w += 5)
@@ -118,11 +117,11 @@ TEST(GyroscopeFit, SurvivesWindowsThatAreWrong) {
   const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
   ASSERT_TRUE(fit.ok) << fit.reason;
   EXPECT_EQ(fit.outliers, 4);
-  EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, truth.R_gyro_camera), 0.3);
+  EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, truth.R_gyro_camera), 0.3);
   EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.001);
 }
 
-TEST(GyroscopeFit, FindsADriftOfTheClocksInALongRecording) {
+TEST(GyroscopeFit, EstimatesTheClockDriftOfALongRecording) {
   const Truth truth{any_rotation(4), 0.1, {0.01, 0, 0}, 2e-4};
   const Recorded recorded = record(truth, 120, 0.001, 4);
   const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
@@ -131,7 +130,7 @@ TEST(GyroscopeFit, FindsADriftOfTheClocksInALongRecording) {
   EXPECT_NEAR(*fit.drift, truth.drift, std::max(2e-5, 4 * fit.drift_sigma));
 }
 
-TEST(GyroscopeFit, TellsMirroredAxes) {
+TEST(GyroscopeFit, WarnsAboutMirroredAxes) {
   Recorded recorded = record({}, 5, 0.001, 5);
   for (Vector3d& rate : recorded.gyroscope.rates_rad_s) rate.x() = -rate.x();
   const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
@@ -139,7 +138,7 @@ TEST(GyroscopeFit, TellsMirroredAxes) {
   EXPECT_THAT(fit.warnings[0], HasSubstr("mirrored"));
 }
 
-TEST(GyroscopeFit, RefusesWhatCannotTell) {
+TEST(GyroscopeFit, RefusesStillFewOrUncoveredImages) {
   Recorded still = record({}, 5, 0.001, 6);
   for (Vector3d& rate : still.gyroscope.rates_rad_s) rate *= 0;
   for (ImageRotations& window : still.windows)
@@ -148,7 +147,7 @@ TEST(GyroscopeFit, RefusesWhatCannotTell) {
 
   const Recorded recorded = record({}, 5, 0.001, 7);
   EXPECT_THAT(fit_gyroscope({recorded.windows[0]}, recorded.gyroscope).reason,
-              HasSubstr("the pictures tell 9 rotations, at least 12 are needed"));
+              HasSubstr("the images determine 9 rotations, at least 12 are needed"));
   Gyroscope elsewhere = recorded.gyroscope;
   for (auto& time : elsewhere.timestamps_ns) time += 1'000'000'000'000;
   EXPECT_THAT(fit_gyroscope(recorded.windows, elsewhere).reason, HasSubstr("does not cover"));
@@ -156,15 +155,15 @@ TEST(GyroscopeFit, RefusesWhatCannotTell) {
 
 class RealGyroscope : public testing::Test {
  protected:
-  /// Skips the test where the recording is not on this machine.
+  /// Skips the test if this machine has no such recording.
   void open(const std::string& name) {
     const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
     recording_ = open_recording(folder);
     windows_ = rotations_over_recording(recording_);
   }
-  /// The recording's gyroscope as if it sat otherwise, and its clock ran late.
-  Gyroscope turned(const Matrix3d& R, double late_s) const {
+  /// The recording's gyroscope with rotated axes and a late clock.
+  Gyroscope rotated(const Matrix3d& R, double late_s) const {
     Gyroscope gyroscope = *recording_->gyroscope;
     for (Vector3d& rate : gyroscope.rates_rad_s) rate = R * rate;
     for (auto& time : gyroscope.timestamps_ns) time += std::llround(1e9 * late_s);
@@ -175,7 +174,7 @@ class RealGyroscope : public testing::Test {
   std::vector<ImageRotations> windows_;
 };
 
-/// All 24 proper ways to name three axes.
+/// All 24 rotations between axes.
 std::vector<Matrix3d> axis_permutations() {
   std::vector<Matrix3d> all;
   for (const Matrix3d& first : {Matrix3d::Identity().eval(),
@@ -184,32 +183,32 @@ std::vector<Matrix3d> axis_permutations() {
                                 so3_exp(Vector3d(0, -M_PI / 2, 0)),
                                 so3_exp(Vector3d(M_PI / 2, 0, 0)),
                                 so3_exp(Vector3d(-M_PI / 2, 0, 0))})
-    for (int rotations = 0; rotations < 4; ++rotations)
-      all.emplace_back(first * so3_exp(Vector3d(0, 0, rotations * M_PI / 2)));
+    for (int quarters = 0; quarters < 4; ++quarters)
+      all.emplace_back(first * so3_exp(Vector3d(0, 0, quarters * M_PI / 2)));
   return all;
 }
 
-TEST_F(RealGyroscope, OfAPhoneIsFoundHoweverItsAxesAreNamed) {
+TEST_F(RealGyroscope, PhoneIsAlignedForAnyNamingOfTheAxes) {
   open("phone-street");
   if (IsSkipped()) return;
   for (const Matrix3d& R : axis_permutations()) {
-    const GyroscopeFit fit = fit_gyroscope(windows_, turned(R, 0));
+    const GyroscopeFit fit = fit_gyroscope(windows_, rotated(R, 0));
     ASSERT_TRUE(fit.ok) << fit.reason;
-    EXPECT_LT(rotation_between_deg(fit.R_gyro_camera, R * recording_->gyroscope->R_gyro_camera), 5);
-    EXPECT_GT(fit.time_offset_s, 0.006);  // +8 to 10 ms, by another's hand
+    EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, R * recording_->gyroscope->R_gyro_camera), 5);
+    EXPECT_GT(fit.time_offset_s, 0.006);  // +8 to 10 ms by another program
     EXPECT_LT(fit.time_offset_s, 0.012);
     EXPECT_GT(fit.correlation, 0.9);
   }
 }
 
-TEST_F(RealGyroscope, OfEurocIsWhereItsCalibrationSays) {
+TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
   open("euroc-room");
   if (IsSkipped()) return;
-  const Vector3d bias(-0.0022, 0.0208, 0.0765);  // of this flight, by its publishers
+  const Vector3d bias(-0.0022, 0.0208, 0.0765);  // published with this flight
   for (const double late_s : {0.0, 0.035}) {
     for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
       const Matrix3d R = so3_exp(rotation);
-      const GyroscopeFit fit = fit_gyroscope(windows_, turned(R, late_s));
+      const GyroscopeFit fit = fit_gyroscope(windows_, rotated(R, late_s));
       ASSERT_TRUE(fit.ok) << fit.reason;
       const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * R *
                                                 recording_->gyroscope->R_gyro_camera);
@@ -219,16 +218,14 @@ TEST_F(RealGyroscope, OfEurocIsWhereItsCalibrationSays) {
       EXPECT_LT((fit.bias_rad_s - R * bias).norm(), 0.01);
     }
   }
-  EXPECT_EQ(
-      why_it_does_not_fit(
-          fit_gyroscope(windows_, turned(Matrix3d::Identity(), 0)), *recording_->gyroscope, 0.05),
-      "");
-  EXPECT_THAT(
-      why_it_does_not_fit(fit_gyroscope(windows_, turned(so3_exp(Vector3d(0, 0, 1)), 0.035)),
-                          *recording_->gyroscope,
-                          0.05),
-      testing::ContainsRegex("does not fit the pictures: its axes are 5[5-9] deg off, its "
-                             "clock is .3[0-9] ms off"));
+  const auto reason = [&](const Matrix3d& R, double late_s) {
+    return why_it_does_not_fit(
+        fit_gyroscope(windows_, rotated(R, late_s)), *recording_->gyroscope, 0.05);
+  };
+  EXPECT_EQ(reason(Matrix3d::Identity(), 0), "");
+  EXPECT_THAT(reason(so3_exp(Vector3d(0, 0, 1)), 0.035),
+              testing::ContainsRegex("does not fit the images: its axes are 5[5-9] deg off, its "
+                                     "clock is .3[0-9] ms off"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/self_calibration.h"
 
+#include "engine/calibration/calibration_report.h"
 #include "engine/geometry/camera_guess.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/calibration_file.h"
@@ -26,7 +27,7 @@ using Eigen::Vector3d;
 const Camera kFilmingCamera{
     320, 240, 290, 291, 164, 117, Distortion::radial_tangential, {0.05, -0.1, 0, 0}};
 
-/// A hand-held camera around 1 m above z = 0, which leans by up to `lean_deg` in all directions.
+/// A hand-held camera about 1 m above z = 0 that leans by up to `lean_deg` in all directions.
 Pose pose_at(double t, double lean_deg) {
   const double lean = radians(lean_deg);
   const Eigen::Matrix3d R = so3_exp(
@@ -35,7 +36,7 @@ Pose pose_at(double t, double lean_deg) {
   return {R, looked_at - (1 + 0.1 * std::sin(2.5 * t)) * R.col(2)};
 }
 
-/// Pictures of a texture on z = 0, in closed form.
+/// Images of a texture on z = 0, in closed form.
 FrameCache images_of(int count, double lean_deg) {
   const auto rays = std::make_shared<std::vector<Vector3d>>();
   for (int v = 0; v < kFilmingCamera.height; ++v)
@@ -49,7 +50,7 @@ FrameCache images_of(int count, double lean_deg) {
           const Vector3d ray =
               pose.R_wc *
               (*rays)[static_cast<int>(px.y()) * kFilmingCamera.width + static_cast<int>(px.x())];
-          // A texel is a pixel where the camera looks straight at the plane.
+          // A texel is a pixel if the camera looks straight at the plane.
           return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
         };
         cv::Mat bgr;
@@ -60,25 +61,24 @@ FrameCache images_of(int count, double lean_deg) {
       }};
 }
 
-TEST(SelfCalibration, FindsTheCameraOfImagesOfAPlane) {
+TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   const FrameCache images = images_of(60, 25);
-  std::vector<std::string> told;
+  std::vector<std::string> steps;
   const auto found =
       calibrate_from_plane(images,
                            camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
-                           nullptr,
-                           {},
                            {},
                            [&](const char* what, int, int) {
-                             if (told.empty() || told.back() != what) told.emplace_back(what);
+                             if (steps.empty() || steps.back() != what) steps.emplace_back(what);
                            });
   ASSERT_TRUE(found.lens.ok) << found.lens.reason;
   EXPECT_NEAR(found.lens.camera.fx, kFilmingCamera.fx, 0.01 * kFilmingCamera.fx) << to_text(found);
   EXPECT_LT(std::abs(found.lens.camera.fx - kFilmingCamera.fx), 3 * found.lens.camera.sigmas[0])
       << to_text(found);
-  EXPECT_THAT(told,
-              testing::ElementsAre("following a plane", "finding its points again", "the lens"));
-  // What it writes is a calibration with standard deviations, marked as what it is.
+  EXPECT_THAT(
+      steps,
+      testing::ElementsAre(
+          "following a plane", "finding its points in other images", "estimating the lens"));
   const test::TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));
   EXPECT_TRUE(read.self_calibrated);
@@ -87,7 +87,7 @@ TEST(SelfCalibration, FindsTheCameraOfImagesOfAPlane) {
   EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
 }
 
-TEST(SelfCalibration, RefusesWhereTheCameraKeepsItsTilt) {
+TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
   const FrameCache images = images_of(40, 1);
   const auto found =
       calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of gravity and scale beside the least that any estimator can have.
+// Compares errors of gravity and scale with the Cramér-Rao bound.
 #include "engine/geometry/statistics.h"
 #include "engine/inertial/alignment_problem.h"
-#include "engine/inertial/imu_intervals.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "simulated_motion.h"
 
@@ -21,27 +20,16 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 struct Bound {
-  Eigen::Matrix2d gravity;  ///< of its two tangents [rad^2]
+  Eigen::Matrix2d gravity;  ///< covariance of its two tangents [rad^2]
   double log_scale = 0;     ///< standard deviation
 };
 
-/// With what is known of bias and lever before, as the window itself has them (van Trees).
+/// Bound with the priors of bias and lever (van Trees).
 Bound bound_of(ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed) {
   const auto exact = simulated_alignment(pace, sensor, seconds, seed, 0);
-  const ImuNoise noise{sensor.gyroscope_density, sensor.accelerometer_density};
-  const auto between =
-      imu_intervals(exact.gyroscope, exact.poses.times_ns, 0, *exact.poses.bias_rad_s, noise)
-          .between;
-  AlignmentProblem problem;
-  problem.path = inertial_path(between, exact.gyroscope.R_gyro_camera.transpose());
-  problem.centers = exact.centers_and_bias.head(exact.poses.center_rows());
-  problem.covariance = exact.poses.covariance;
-  problem.inertial_noise = position_covariance(problem.path);
-  AlignmentState truth;
-  truth.velocity = exact.velocities.front();
-  truth.gravity = exact.gravity;
-  truth.log_scale = std::log(exact.scale);
-  truth.lever = exact.T_body_camera.p_wc;
+  const AlignmentProblem problem = simulated_problem(
+      exact, *exact.poses.bias_rad_s, {sensor.gyroscope_density, sensor.accelerometer_density});
+  const AlignmentState truth = true_state(exact);
   const auto of_residuals = residual_noise(problem, truth);
   const MatrixXd J = of_residuals->covariance.matrixL().solve(
       jacobian(problem, truth, exact.scale * problem.centers));
@@ -52,8 +40,7 @@ Bound bound_of(ReportTimer pace, const SimulatedSensor& sensor, double seconds, 
   return {covariance.block<2, 2>(3, 3), std::sqrt(covariance(kScaleUnknown, kScaleUnknown))};
 }
 
-/// Of errors in units of the bound, beside the medians that a Rayleigh distribution and a normal
-/// one have.
+// Medians of errors in units of the bound, relative to those of Rayleigh and normal distributions.
 double gravity_ratio(const std::vector<double>& errors) {
   return median(errors) / kMedianOfRayleigh;
 }
@@ -78,7 +65,7 @@ TEST(InertialAlignment, MediansAreNearTheCramerRaoBound) {
           of_gravity.push_back(std::sqrt(error.dot(bound.gravity.inverse() * error)));
           of_scale.push_back(std::abs(std::log(result.scale / made.scale)) / bound.log_scale);
         }
-        // Of so few, medians scatter by a fifth.
+        // Medians of 40 errors scatter by a fifth.
         EXPECT_LT(gravity_ratio(of_gravity), 1.6) << seconds;
         EXPECT_LT(scale_ratio(of_scale), 1.6) << seconds;
         all_of_gravity.insert(all_of_gravity.end(), of_gravity.begin(), of_gravity.end());

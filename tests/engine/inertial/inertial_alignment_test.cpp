@@ -22,7 +22,7 @@ InertialAlignment aligned(const SimulatedAlignment& made) {
   return align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);
 }
 
-/// Of gravity's direction by its covariance; 2 in the mean where that is honest.
+/// Squared error of gravity's direction by its covariance; 2 on average if that is correct.
 double squared_error(const InertialAlignment& result, const Vector3d& gravity) {
   const Vector3d found = result.gravity_m_s2.normalized();
   Vector3d error = found - gravity.normalized();
@@ -51,8 +51,8 @@ struct Statistics {
   int windows = 0, claims = 0;
 };
 
-// 40 windows of each kind; the mean of all is what is judged, of each kind within what so few tell.
-TEST(InertialAlignment, ErrorsAreAsLargeAsItSays) {
+// Tight bounds for the mean of all, wide ones for the 40 windows of each kind.
+TEST(InertialAlignment, CovariancesAreCorrect) {
   constexpr int kSeeds = 40;
   Statistics all;
   int seed = 500;
@@ -96,15 +96,16 @@ Eigen::VectorXd stacked(const UncertainPoses& poses) {
   return all;
 }
 
-// By eq. 25 of engine/method.md: they come nearer to the truth, as near as their covariance says.
-TEST(InertialAlignment, PullsPosesAndBiasToTheTruth) {
+// engine/method.md, eq. 25.
+TEST(InertialAlignment, PullReducesErrorsOfPosesAndBias) {
   constexpr int kSeeds = 60;
   for (const double seconds : {1, 2}) {
     double squares = 0, bias_before = 0, bias_after = 0, before = 0, after = 0;
     for (int k = 0; k < kSeeds; ++k) {
       const auto made = simulated_alignment(ReportTimer::brisk, kPhone, seconds, 7000 + k);
-      const auto [inertial, pull] =
-          align_and_pull(made.poses, made.gyroscope, made.T_body_camera, made.options);
+      PosePull pull;
+      const InertialAlignment inertial =
+          align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options, &pull);
       ASSERT_TRUE(inertial.ok) << inertial.reason;
       const Eigen::MatrixXd& C = made.poses.covariance;
       const Eigen::VectorXd error = stacked(made.poses) - made.centers_and_bias;
@@ -125,7 +126,7 @@ TEST(InertialAlignment, PullsPosesAndBiasToTheTruth) {
   }
 }
 
-TEST(InertialAlignment, AtRestTellsGravityAndNoScale) {
+TEST(InertialAlignment, AtRestDeterminesGravityButNoScale) {
   Statistics of;
   for (const double seconds : {1, 2}) {
     for (int k = 0; k < 30; ++k, ++of.windows) {
@@ -141,23 +142,23 @@ TEST(InertialAlignment, AtRestTellsGravityAndNoScale) {
   EXPECT_NEAR(of.gravity / of.windows, 2, 0.9);
 }
 
-TEST(InertialAlignment, AnUntoldLeverIsOneMoreUnknown) {
+TEST(InertialAlignment, EstimatesAnUncalibratedLever) {
   double squares = 0;
   constexpr int kSeeds = 20;
   for (int k = 0; k < kSeeds; ++k) {
     const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 2, 4000 + k);
-    const InertialAlignment told = aligned(made);
-    const InertialAlignment untold =
+    const InertialAlignment calibrated = aligned(made);
+    const InertialAlignment free =
         align_inertial(made.poses, made.gyroscope, std::nullopt, made.options);
-    ASSERT_TRUE(untold.ok) << untold.reason;
-    EXPECT_GT(untold.log_scale_sigma, told.log_scale_sigma);
-    const double z = std::log(untold.scale / made.scale) / untold.log_scale_sigma;
+    ASSERT_TRUE(free.ok) << free.reason;
+    EXPECT_GT(free.log_scale_sigma, calibrated.log_scale_sigma);
+    const double z = std::log(free.scale / made.scale) / free.log_scale_sigma;
     squares += z * z / kSeeds;
   }
   EXPECT_LT(squares, 2.5);
 }
 
-/// Why there is none, once something is done to the accelerations.
+/// Reason for refusing changed accelerations.
 template <class Change>
 std::string refusal(Change change) {
   auto made = simulated_alignment(ReportTimer::brisk, kPhone, 1, 31);
@@ -167,7 +168,7 @@ std::string refusal(Change change) {
   return result.reason;
 }
 
-TEST(InertialAlignment, SaysWhatIsWrongWithTheAccelerations) {
+TEST(InertialAlignment, ExplainsWrongAccelerations) {
   EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return a / 9.80665; }),
               HasSubstr("are its values in g?"));
   EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return 0.001 * a; }),
@@ -179,12 +180,50 @@ TEST(InertialAlignment, SaysWhatIsWrongWithTheAccelerations) {
   EXPECT_THAT(refusal([](const Vector3d&) -> Vector3d {
                 return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
               }),
-              HasSubstr("no numbers"));
+              HasSubstr("not finite"));
   auto made = simulated_alignment(ReportTimer::brisk, kPhone, 1, 31);
   made.gyroscope.accelerations_m_s2.clear();
   EXPECT_EQ(aligned(made).reason, "the recording has no accelerometer");
   made.poses.cameras.resize(3);
-  EXPECT_EQ(aligned(made).reason, "3 frames, gravity and meters take 5 at least");
+  EXPECT_EQ(aligned(made).reason, "gravity and metric scale need at least 5 frames; there are 3");
+}
+
+TEST(FirstPoses, HaveTheCornerOfTheCovariance) {
+  const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 2, 1);
+  const Eigen::MatrixXd& all = made.poses.covariance;
+  EXPECT_EQ(first_poses(made.poses, static_cast<int>(made.poses.cameras.size())).covariance, all);
+  const UncertainPoses five = first_poses(made.poses, 5);
+  ASSERT_EQ(five.cameras.size(), 5U);
+  EXPECT_EQ(five.times_ns.back(), made.poses.times_ns[4]);
+  EXPECT_EQ(five.covariance.topLeftCorner(12, 12), all.topLeftCorner(12, 12));
+  const auto bias = all.rows() - made.poses.center_rows();
+  EXPECT_EQ(five.covariance.rows(), 12 + bias);
+  EXPECT_EQ(five.covariance.bottomRightCorner(bias, bias), all.bottomRightCorner(bias, bias));
+}
+
+TEST(ScaleSince, IsTheFirstLengthThatDeterminesTheScale) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const auto made = simulated_alignment(ReportTimer::brisk, kPhone, 4, seed);
+    const auto determined = [&](int count) {
+      const auto result = align_inertial(
+          first_poses(made.poses, count), made.gyroscope, made.T_body_camera, made.options);
+      return result.ok && result.scale_known;
+    };
+    const int all = static_cast<int>(made.poses.cameras.size());
+    ASSERT_TRUE(determined(all));
+    const auto count =
+        poses_that_determine_scale(made.poses, made.gyroscope, made.T_body_camera, made.options);
+    ASSERT_TRUE(count.has_value());
+    EXPECT_LT(*count, all) << "four brisk seconds are more than enough";
+    EXPECT_TRUE(determined(*count));
+    EXPECT_FALSE(determined(*count - 1));
+  }
+}
+
+TEST(ScaleSince, IsNulloptIfTheWholeWindowDoesNotDetermineIt) {
+  const auto made = simulated_alignment(ReportTimer::still, kPhone, 2, 3);
+  EXPECT_FALSE(
+      poses_that_determine_scale(made.poses, made.gyroscope, made.T_body_camera, made.options));
 }
 
 }  // namespace

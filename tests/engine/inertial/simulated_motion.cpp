@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulated_motion.h"
 
-#include "engine/inertial/imu_intervals.h"
-#include "engine/inertial/inertial_path.h"
+#include "engine/inertial/preintegration.h"
 
 #include <cmath>
 #include <random>
@@ -21,8 +20,9 @@ constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSampleRate_hz = 200;
 constexpr double kFrameRate_hz = 20;
 
-Vector3d sines(const Vector3d& a, const Vector3d& w, const Vector3d& phase, double t, double turn) {
-  return a.array() * (w.array() * t + phase.array() + turn).sin();
+Vector3d sines(
+    const Vector3d& a, const Vector3d& w, const Vector3d& phase, double t, double shift) {
+  return a.array() * (w.array() * t + phase.array() + shift).sin();
 }
 
 struct Dice {
@@ -50,9 +50,9 @@ Matrix3d SimulatedMotion::rotation(double t) const {
   return R_first * so3_exp(sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0));
 }
 Vector3d SimulatedMotion::rate(double t) const {
-  const Vector3d turned = sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0);
-  return so3_right_jacobian(turned) * swing_speed_rad_s.cwiseProduct(sines(
-                                          swing_rad, swing_speed_rad_s, swing_phase, t, M_PI / 2));
+  const Vector3d swing = sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0);
+  return so3_right_jacobian(swing) * swing_speed_rad_s.cwiseProduct(sines(
+                                         swing_rad, swing_speed_rad_s, swing_phase, t, M_PI / 2));
 }
 
 SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed) {
@@ -72,7 +72,7 @@ SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed) {
 
 namespace {
 
-/// What gyroscope and accelerometer measure, from a little before to a little after.
+/// Adds measurements from two samples before to two after.
 void add_samples(const SimulatedMotion& motion,
                  const SimulatedSensor& sensor,
                  double seconds,
@@ -122,7 +122,7 @@ SimulatedAlignment simulated_alignment(
   const Pose T_first_world = inverse(camera(0));
   made.scale = std::uniform_real_distribution<double>(0.8, 3)(dice.engine);
   made.gravity = T_first_world.R_wc * Vector3d(0, 0, -kGravity_m_s2);
-  // What is wrong with the centers: noise of each frame, and what grows with time and travel.
+  // Errors of the centers: noise of each frame, and a part that grows with time and motion.
   const double own_sigma = 4e-4;
   const double shared_sigma = 3e-3;
   const Vector3d shared = noise * shared_sigma * dice.gaussian();
@@ -146,17 +146,43 @@ SimulatedAlignment simulated_alignment(
     }
     made.poses.cameras.push_back(pose);
   }
-  // The rotations are the gyroscope's with the bias that was found.
+  // The rotations are the gyroscope's with the estimated bias.
   const Matrix3d& R_gc = made.gyroscope.R_gyro_camera;
-  const auto turned =
+  const auto between =
       imu_intervals(made.gyroscope, made.poses.times_ns, 0, *made.poses.bias_rad_s, {}).between;
-  const std::vector<InertialFrame> path = inertial_path(turned, R_gc.transpose());
+  const std::vector<InertialFrame> path = inertial_path(between, R_gc.transpose());
   for (int i = 0; i < frames; ++i) made.poses.cameras[i].R_wc = path[i].R * R_gc;
   made.poses.covariance = shared_sigma * shared_sigma * by_shared * by_shared.transpose();
   made.poses.covariance.diagonal().head(rows).array() += own_sigma * own_sigma;
   made.poses.covariance.bottomRightCorner<3, 3>() =
       sensor.gyroscope_bias_sigma * sensor.gyroscope_bias_sigma * Matrix3d::Identity();
   return made;
+}
+
+AlignmentProblem simulated_problem(const SimulatedAlignment& made,
+                                   const Vector3d& gyro_bias,
+                                   const ImuNoise& noise) {
+  const auto between =
+      imu_intervals(made.gyroscope, made.poses.times_ns, 0, gyro_bias, noise).between;
+  AlignmentProblem problem;
+  problem.path = inertial_path(between, made.gyroscope.R_gyro_camera.transpose());
+  problem.centers.resize(made.poses.center_rows());
+  for (std::size_t k = 1; k < made.poses.cameras.size(); ++k)
+    problem.centers.segment<3>(3 * (static_cast<Eigen::Index>(k) - 1)) = made.poses.cameras[k].p_wc;
+  problem.covariance = made.poses.covariance;
+  problem.inertial_noise = position_covariance(problem.path);
+  problem.lever_m = made.T_body_camera.p_wc;
+  problem.lever_sigma_m = 0.005;
+  problem.bias_sigma_m_s2 = 0.1;
+  return problem;
+}
+
+AlignmentState true_state(const SimulatedAlignment& made) {
+  return {.velocity = made.velocities.front(),
+          .gravity = made.gravity,
+          .log_scale = std::log(made.scale),
+          .bias = made.accelerometer_bias,
+          .lever = made.T_body_camera.p_wc};
 }
 
 }  // namespace gpo

@@ -1,9 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// A sensor and a camera on an analytic path, and what they measure.
+// A sensor and a camera on an analytic path, and their measurements.
 #pragma once
 
 #include "engine/geometry/pose.h"
+#include "engine/inertial/alignment_problem.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/window/gyroscope.h"
 
@@ -14,11 +15,11 @@
 
 namespace gpo {
 
-/// Of the sensor in a world whose z axis points up: sums of sines, some drawn at random.
+/// Motion of the sensor in a world with z up: random sines.
 struct SimulatedMotion {
-  Eigen::Vector3d amplitude_m, speed_rad_s, phase;            ///< of the position, each axis
-  Eigen::Vector3d swing_rad, swing_speed_rad_s, swing_phase;  ///< of the rotation vector
-  Eigen::Matrix3d R_first;                                    ///< rotation at the swing's zero
+  Eigen::Vector3d amplitude_m, speed_rad_s, phase;            ///< position, each axis
+  Eigen::Vector3d swing_rad, swing_speed_rad_s, swing_phase;  ///< rotation vector
+  Eigen::Matrix3d R_first;                                    ///< rotation where the swing is zero
 
   Eigen::Vector3d position(double t) const;
   Eigen::Vector3d velocity(double t) const;
@@ -27,7 +28,7 @@ struct SimulatedMotion {
   Eigen::Vector3d rate(double t) const;      ///< in the sensor's axes [rad/s]
 };
 
-/// How far the sensor swings, its median at most.
+/// Size of the motion.
 enum class ReportTimer { still, gentle, brisk };
 struct SimulatedSensor {
   double gyroscope_density = 0, accelerometer_density = 0;
@@ -39,7 +40,7 @@ inline constexpr SimulatedSensor kEuroc{.gyroscope_density = 1.7e-4,
                                         .accelerometer_bias_sigma = 0.1,
                                         .gyroscope_bias_sigma = 0.001};
 
-/// What an alignment gets, and the truth.
+/// Input of an alignment, and the truth.
 struct SimulatedAlignment {
   UncertainPoses poses;
   Gyroscope gyroscope;
@@ -47,15 +48,21 @@ struct SimulatedAlignment {
   InertialOptions options;
   Eigen::Vector3d gravity;  ///< in the first camera's axes [m/s^2]
   double scale = 0;
-  std::vector<Eigen::Vector3d> velocities;  ///< of the sensor, first camera's axes [m/s]
+  std::vector<Eigen::Vector3d> velocities;  ///< sensor velocities, first camera's axes [m/s]
   Eigen::Vector3d accelerometer_bias;
-  Eigen::VectorXd centers_and_bias;  ///< what `poses` and their covariance are about
+  Eigen::VectorXd centers_and_bias;  ///< truth of the rows of the covariance
 };
 
 SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed);
-/// 20 pictures and 200 samples a second. `noise` 0: exact measurements and poses, whose covariances
-/// are as of 1.
+/// 20 images and 200 samples a second. `noise` 0: exact measurements and poses with the covariances
+/// of 1.
 SimulatedAlignment simulated_alignment(
     ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
+
+/// The problem of the alignment with another bias of the gyroscope, and its true state.
+AlignmentProblem simulated_problem(const SimulatedAlignment& made,
+                                   const Eigen::Vector3d& gyro_bias,
+                                   const ImuNoise& noise = {});
+AlignmentState true_state(const SimulatedAlignment& made);
 
 }  // namespace gpo

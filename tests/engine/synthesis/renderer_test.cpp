@@ -39,7 +39,7 @@ class RendererLens : public testing::TestWithParam<Distortion> {};
 
 TEST_P(RendererLens, CornersAreWhereTheCameraProjectsThem) {
   const Recipe recipe = board_recipe(GetParam());
-  const Scene scene = make_scene(recipe.desk, 2);
+  const Scene scene = make_scene(recipe, 2);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   for (const double t : {0.0, 0.06}) {
     const Pose pose = camera_motion(recipe.trajectory, t).pose;
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses,
 
 TEST(Renderer, MotionBlurIsCenteredAtTheTimeStamp) {
   const Recipe recipe = board_recipe(Distortion::radial_tangential);
-  const Scene scene = make_scene(recipe.desk, 2);
+  const Scene scene = make_scene(recipe, 2);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   std::vector<Pose> poses;
   poses.reserve(16);
@@ -79,9 +79,9 @@ TEST(Renderer, BoxHidesWhatIsBehindItAndStandsWhereTheRecipeSays) {
   recipe.desk.board.reset();
   const Pose pose = camera_motion(recipe.trajectory, 0).pose;
   const RayMap rays = make_ray_map(recipe.camera, 1, 2);
-  const cv::Mat without = render(make_scene(recipe.desk, 2), rays, {pose}, 2);
+  const cv::Mat without = render(make_scene(recipe, 2), rays, {pose}, 2);
   recipe.desk.boxes = {{"cube", {0.0, 0.05}, {0.06, 0.05, 0.08}, 0.4, 0}};
-  const Scene scene = make_scene(recipe.desk, 2);
+  const Scene scene = make_scene(recipe, 2);
   const cv::Mat with = render(scene, rays, {pose}, 2);
   const auto at = [&](const cv::Mat& image, const Eigen::Vector3d& point) {
     const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));

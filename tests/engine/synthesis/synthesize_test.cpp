@@ -324,7 +324,7 @@ TEST_F(Desk, CommittedRecordingIsWhatTheRecipeMakes) {
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(truth.rows[59][static_cast<std::size_t>(k)], last.p_wc[k], 1e-9);
   }
-  const Scene scene = make_scene(recipe.desk, 2);
+  const Scene scene = make_scene(recipe, 2);
   const RayMap rays = make_ray_map(recipe.camera, 2, 2);
   const cv::Mat made = expose(render(scene, rays, {camera(0)}, 2), recipe.image, 1, 1, 2);
   const cv::Mat committed = cv::imread(

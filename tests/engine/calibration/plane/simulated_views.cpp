@@ -9,9 +9,9 @@
 namespace gpo {
 namespace {
 
-constexpr int kFramesPerView = 4;
+constexpr int kFramesAView = 4;
 
-/// A smooth way of a hand: harmonics of seeded amplitudes and phases, within -1 to 1.
+/// Smooth motion of a hand: harmonics of random amplitudes and phases, from -1 to 1.
 class Wander {
  public:
   explicit Wander(std::mt19937_64& random) {
@@ -38,7 +38,7 @@ class Wander {
   double frequency_[3];
 };
 
-/// A floor's waves, about as long as a picture is wide.
+/// Adds waves about as long as an image is wide.
 void raise(Eigen::Matrix3Xd& points, double most_m, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
   for (int wave = 0; wave < 4; ++wave) {
@@ -51,7 +51,7 @@ void raise(Eigen::Matrix3Xd& points, double most_m, std::mt19937_64& random) {
   }
 }
 
-/// A hand-held camera's way past the plane; time from 0 to 1.
+/// Motion of a hand-held camera over the plane; time from 0 to 1.
 class Way {
  public:
   Way(const SimulatedViews& options, std::mt19937_64& random)
@@ -63,7 +63,7 @@ class Way {
         y_(random),
         z_(random) {}
 
-  /// Looks along +z from z < 0; the shared tilt leans the camera, its own slants come on top.
+  /// Looks along +z from z < 0, with the shared tilt and slants of its own.
   Pose pose_at(double t) const {
     const double slant = radians(options_.slant_deg);
     const Eigen::Matrix3d R_wc =
@@ -75,7 +75,7 @@ class Way {
   Eigen::Vector2d pixel_at(double t, const Eigen::Vector3d& point) const {
     return project(options_.camera, to_camera(pose_at(t), point));
   }
-  /// The camera reads a row later, where the point has gone on to another row.
+  /// Position at the time of its row, which depends on the position.
   Eigen::Vector2d read_at(double t, const Eigen::Vector3d& point) const {
     Eigen::Vector2d px = pixel_at(t, point);
     for (int pass = 0; options_.readout != 0 && pass < 3; ++pass) {
@@ -89,7 +89,7 @@ class Way {
   }
 
  private:
-  double frame_step() const { return 1.0 / (kFramesPerView * options_.images); }
+  double frame_step() const { return 1.0 / (kFramesAView * options_.images); }
 
   const SimulatedViews& options_;
   Wander slant_x_, slant_y_, roll_, x_, y_, z_;
@@ -116,8 +116,8 @@ SimulatedScene simulate_views(const SimulatedViews& options, std::uint64_t seed)
   for (int i = 0; i < options.images; ++i) {
     const double t = static_cast<double>(i) / options.images;
     const Pose pose = way.pose_at(t);
-    PlaneView view{kFramesPerView * i, {}, {}};
-    std::vector<Eigen::Vector2d> seen, flows;
+    PlaneView view{kFramesAView * i, {}, {}};
+    std::vector<Eigen::Vector2d> observed, flows;
     for (int j = 0; j < options.points; ++j) {
       if (to_camera(pose, points.col(j)).z() < 0.05) continue;
       Eigen::Vector2d px = way.read_at(t, points.col(j));
@@ -127,13 +127,13 @@ SimulatedScene simulate_views(const SimulatedViews& options, std::uint64_t seed)
         px += 20 * Eigen::Vector2d(uniform(random), uniform(random));
       if (px.minCoeff() < 0 || px.x() > camera.width - 1 || px.y() > camera.height - 1) continue;
       view.points.push_back(j);
-      seen.push_back(px);
+      observed.push_back(px);
       flows.push_back(way.flow_at(t, points.col(j)));
     }
-    view.raw_px.resize(2, std::ssize(seen));
-    view.flow_px.resize(2, std::ssize(seen));
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      view.raw_px.col(k) = seen[k];
+    view.raw_px.resize(2, std::ssize(observed));
+    view.flow_px.resize(2, std::ssize(observed));
+    for (std::size_t k = 0; k < observed.size(); ++k) {
+      view.raw_px.col(k) = observed[k];
       view.flow_px.col(k) = flows[k];
     }
     scene.plane.views.push_back(std::move(view));

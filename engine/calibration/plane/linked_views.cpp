@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane_views/linked_views.h"
-
 #include "engine/base/parallel.h"
+#include "engine/calibration/plane/plane_chain.h"
 #include "engine/frontend/homography_ransac.h"
 #include "engine/frontend/tracking/local_shape.h"
 #include "engine/frontend/tracking/patch.h"
@@ -24,11 +23,16 @@ using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kLeastFound = 12;  // that refine a homography
+constexpr double kNotFound = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLeastFound = 12;  // to refine a homography
 constexpr int kPasses = 2;
+constexpr int kMostReferences = 8;   // with points to find
+constexpr double kLeastArea = 0.15;  // area of a warped patch relative to its own [-]
+constexpr double kMostArea = 6;      // the same
+constexpr double kLinkGate_px = 4;   // from the homography of the others; wide: the lens is a guess
+const AnchorOptions kAnchor = {};
 
-/// At most so many of all, spread evenly, the first and the last among them.
+/// At most `most` items, spread evenly, the first and the last among them.
 template <typename T>
 std::vector<T> spread(const std::vector<T>& all, int most) {
   const auto count = std::ssize(all);
@@ -44,56 +48,54 @@ struct Sample {
   cv::Mat soft;
 };
 
-/// A reference's points, ready to be looked for.
+/// A reference's points as templates.
 struct Patches {
+  int frame;
+  Matrix3d H_r_first;
   std::vector<PatchTemplate> patches;
   std::vector<Nodes> nodes_px;
   Matrix2Xd undistorted_px;
-  Matrix2Xd corners_px;  ///< from the looks' middles
+  Matrix2Xd corners_px;  ///< relative to the patch centers
 };
 
 Patches patches_of(const PlaneReference& reference,
+               const Matrix3d& H_r_first,
                const cv::Mat& soft,
-               const Camera& camera,
-               int half) {
-  Patches all;
+               const Camera& camera) {
+  const int half = kAnchor.half_patch_px;
+  Patches all{reference.frame, H_r_first, {}, {}, {}, {}};
   all.undistorted_px = all.corners_px = reference.raw_px;
   for (Eigen::Index j = 0; j < reference.raw_px.cols(); ++j) {
-    const Vector2d middle = reference.raw_px.col(j).array().round();
+    const Vector2d center = reference.raw_px.col(j).array().round();
     all.patches.push_back(make_patch_template(make_patch(
-        soft, cv::Point(static_cast<int>(middle.x()), static_cast<int>(middle.y())), half)));
-    all.nodes_px.push_back(look_nodes(camera, middle, half));
+        soft, cv::Point(static_cast<int>(center.x()), static_cast<int>(center.y())), half)));
+    all.nodes_px.push_back(look_nodes(camera, center, half));
     all.undistorted_px.col(j) = undistort(camera, reference.raw_px.col(j));
-    all.corners_px.col(j) -= middle;
+    all.corners_px.col(j) -= center;
   }
   return all;
 }
 
-/// Where the looks are in a picture, raw pixels; NaN: not found.
+/// Positions of the templates in an image, raw pixels; NaN where the search fails.
 Matrix2Xd found_by(const Patches& patches,
                    const Matrix3d& H,
                    const cv::Mat& soft,
-                   const Camera& camera,
-                   const LinkOptions& options) {
-  Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNaN);
+                   const Camera& camera) {
+  Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound);
   for (Eigen::Index j = 0; j < found.cols(); ++j) {
-    const auto warp = warp_by(camera, H, patches.nodes_px[j], options.anchor.half_patch_px);
+    const auto warp = warp_by(camera, H, patches.nodes_px[j], kAnchor.half_patch_px);
     if (!warp) continue;
     const double area = warp->linear.determinant();
-    if (area < options.least_area || area > options.most_area) continue;
+    if (area < kLeastArea || area > kMostArea) continue;
     if (!is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
-    const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, options.anchor.search);
+    const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, kAnchor.search);
     if (!hit.end) found.col(j) = hit.warp(patches.corners_px.col(j));
   }
   return found;
 }
 
-/// The homography by what was found; what disagrees with it is NaN afterwards. Nothing where too
-/// little agrees.
-std::optional<Matrix3d> refined(const Patches& patches,
-                                Matrix2Xd& found,
-                                const Camera& camera,
-                                double gate_px) {
+/// Homography by the positions, whose outliers become NaN; nullopt if too few agree.
+std::optional<Matrix3d> refined(const Patches& patches, Matrix2Xd& found, const Camera& camera) {
   std::vector<int> columns;
   Matrix2Xd undistorted_px(2, found.cols());
   for (int j = 0; j < found.cols(); ++j) {
@@ -104,47 +106,41 @@ std::optional<Matrix3d> refined(const Patches& patches,
   if (std::ssize(columns) < kLeastFound) return std::nullopt;
   const auto robust = homography_ransac(patches.undistorted_px(Eigen::all, columns),
                                         undistorted_px(Eigen::all, columns),
-                                        {.threshold_px = gate_px});
+                                        {.threshold_px = kLinkGate_px});
   if (!robust || std::ranges::count(robust->inlier, true) < kLeastFound) return std::nullopt;
   const Matrix2Xd all = found;
-  found.setConstant(kNaN);
+  found.setConstant(kNotFound);
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (robust->inlier[k]) found.col(columns[k]) = all.col(columns[k]);
   return robust->H;
 }
 
-/// A reference's points in all samples, from its own on forth and back.
-std::vector<Matrix2Xd> in_all_samples(const PlaneReference& reference,
-                                      const Matrix3d& H_r_first,
+/// A reference's points in all samples, forwards and backwards from its own frame.
+std::vector<Matrix2Xd> in_all_samples(const Patches& patches,
                                       const std::vector<Sample>& samples,
-                                      const Patches& patches,
                                       const Camera& camera,
-                                      const LinkOptions& options,
                                       const std::stop_token& stop) {
-  std::vector<Matrix2Xd> all(samples.size(), Matrix2Xd::Constant(2, reference.raw_px.cols(), kNaN));
-  const auto count = std::ssize(samples);
-  const auto first =
-      std::ranges::find_if(samples, [&](const Sample& s) { return s.frame >= reference.frame; }) -
-      samples.begin();
+  std::vector<Matrix2Xd> all(samples.size(),
+                             Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound));
+  const auto first = std::ranges::lower_bound(samples, patches.frame, {}, &Sample::frame);
   const auto walk = [&](std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t step) {
-    // What the homography to the sample before was found to be, and the chain's.
-    Matrix3d known = Matrix3d::Identity();
-    Matrix3d chained = H_r_first;
+    Matrix3d correction = Matrix3d::Identity();  // for the last sample's homography
+    Matrix3d chained = patches.H_r_first;
     for (std::ptrdiff_t i = begin; i != end && !stop.stop_requested(); i += step) {
-      Matrix3d H = samples[i].H_i_first * chained.inverse() * known;
+      Matrix3d H = samples[i].H_i_first * chained.inverse() * correction;
       for (int pass = 0; pass < kPasses; ++pass) {
-        Matrix2Xd found = found_by(patches, H, samples[i].soft, camera, options);
-        const auto better = refined(patches, found, camera, options.gate_px);
+        Matrix2Xd found = found_by(patches, H, samples[i].soft, camera);
+        const auto better = refined(patches, found, camera);
         if (!better) break;
         H = *better;
         all[i] = std::move(found);
       }
-      known = H / H.norm();
+      correction = H / H.norm();
       chained = samples[i].H_i_first;
     }
   };
-  walk(first, count, 1);
-  walk(first - 1, -1, -1);
+  walk(first - samples.begin(), std::ssize(samples), 1);
+  walk(first - samples.begin() - 1, -1, -1);
   return all;
 }
 
@@ -166,8 +162,8 @@ void append(const std::vector<Matrix2Xd>& found,
   plane.points += static_cast<int>(found.front().cols());
 }
 
-/// How far a sight's points go from frame to frame, by the chain's homographies to the frames
-/// before and after it.
+/// Motion of a view's points from frame to frame, by the homographies to the chain's frames before
+/// and after it.
 Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& camera) {
   Matrix2Xd flow_px = Matrix2Xd::Zero(2, view.raw_px.cols());
   const auto here = chain.H_i_first.find(view.frame);
@@ -189,33 +185,25 @@ Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& 
 ObservedPlane linked_views(const ChainImages& images,
                            const PlaneChain& chain,
                            const Camera& camera,
-                           const LinkOptions& options) {
+                           int most_views) {
   std::vector<std::pair<int, Matrix3d>> frames(chain.H_i_first.begin(), chain.H_i_first.end());
   std::vector<Sample> samples;
   ObservedPlane plane;
-  for (const auto& [frame, H] : spread(frames, options.most_images)) {
+  for (const auto& [frame, H] : spread(frames, most_views)) {
     if (images.stop.stop_requested()) return plane;
     samples.push_back({frame, H, smoothed(images.gray(frame))});
     plane.views.push_back({frame, {}, Matrix2Xd(2, 0)});
   }
-  const std::vector<PlaneReference> references = spread(chain.references, options.most_references);
   std::vector<Patches> patches;
-  patches.reserve(references.size());
-  for (const PlaneReference& reference : references)
-    patches.push_back(patches_of(
-        reference, smoothed(images.gray(reference.frame)), camera, options.anchor.half_patch_px));
-  std::vector<std::vector<Matrix2Xd>> found(references.size());
-  in_parallel(static_cast<int>(references.size()),
+  for (const PlaneReference& reference : spread(chain.references, kMostReferences))
+    patches.push_back(patches_of(reference,
+                             chain.H_i_first.at(reference.frame),
+                             smoothed(images.gray(reference.frame)),
+                             camera));
+  std::vector<std::vector<Matrix2Xd>> found(patches.size());
+  in_parallel(static_cast<int>(patches.size()),
               static_cast<int>(std::thread::hardware_concurrency()),
-              [&](int r) {
-                found[r] = in_all_samples(references[r],
-                                          chain.H_i_first.at(references[r].frame),
-                                          samples,
-                                          patches[r],
-                                          camera,
-                                          options,
-                                          images.stop);
-              });
+              [&](int r) { found[r] = in_all_samples(patches[r], samples, camera, images.stop); });
   for (const auto& of_reference : found) append(of_reference, samples, plane);
   for (PlaneView& view : plane.views) view.flow_px = flow_of(view, chain, camera);
   return plane;
