@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/make_window.h"
 
-#include "engine/frontend/consistent_inliers.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/window_planes.h"
 #include "engine/geometry/homography.h"
 #include "engine/window/frame_errors.h"

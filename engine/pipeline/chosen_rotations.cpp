@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/pipeline/chosen_rotations.h"
 
-#include "engine/frontend/gyro_calibration.h"
-#include "engine/frontend/homography_rotations.h"
-#include "engine/frontend/pair_rotations.h"
+#include "engine/frontend/rotations.h"
 #include "engine/methods/common/window_checks.h"
 
 namespace gpo {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/camera.h"
 #include "engine/initialize.h"
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/recording/layouts/open_recording.h"

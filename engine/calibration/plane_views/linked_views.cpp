@@ -3,7 +3,7 @@
 #include "engine/calibration/plane_views/linked_views.h"
 
 #include "engine/base/parallel.h"
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/local_shape.h"
 #include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/patch_alignment.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/track_life.h"
 
-#include "engine/frontend/consistent_inliers.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/residuals.h"

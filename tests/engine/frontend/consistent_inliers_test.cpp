@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/consistent_inliers.h"
-
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/make_window.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/gpo.h"
