@@ -48,9 +48,9 @@ Window window_of(const Tracks& tracks,
   return make_window(tracks,
                      camera,
                      timestamps_ns,
-                     ransac_options(options),
-                     inliers_used(options),
-                     options.plane - 1);
+                     {.ransac = ransac_options(options),
+                      .inliers = inliers_used(options),
+                      .leader = options.plane - 1});
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {

@@ -36,7 +36,10 @@ std::optional<Window> window_at(const ChainImages& images,
   if (!tracks || tracks->track_count() == 0) return std::nullopt;
   const std::vector<std::int64_t> times(start + frames, 0);
   Window window =
-      make_window(*tracks, camera, times, {.threshold_px = options.gate_px}, Inliers::planes);
+      make_window(*tracks,
+                  camera,
+                  times,
+                  {.ransac = {.threshold_px = options.gate_px}, .inliers = Inliers::planes});
   if (tracks_out != nullptr) *tracks_out = *tracks;
   return window;
 }
@@ -84,7 +87,10 @@ int most_on_a_plane(const ChainImages& images,
   for (const Tracks& tracks : windows) {
     const std::vector<std::int64_t> times(tracks.start + tracks.frame_count(), 0);
     const Window window =
-        make_window(tracks, camera, times, {.threshold_px = options.gate_px}, Inliers::planes);
+        make_window(tracks,
+                    camera,
+                    times,
+                    {.ransac = {.threshold_px = options.gate_px}, .inliers = Inliers::planes});
     if (!window.planes.empty()) sum += static_cast<int>(window.planes[0].tracks.size());
     if (images.stop.stop_requested()) break;
   }

@@ -169,7 +169,7 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
     for (int i = 1; i < 6; ++i) EXPECT_LE(window.inlier[i][j], tracks->seen(i, j));
   }
   EXPECT_GT(window.inlier_count(0), window.track_count() / 2);
-  const Window all = make_window(*tracks, camera, times, {.enabled = false});
+  const Window all = make_window(*tracks, camera, times, {.ransac = {.enabled = false}});
   for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
 }
 
