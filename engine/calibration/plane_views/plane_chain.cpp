@@ -32,7 +32,7 @@ std::optional<Window> window_at(const ChainImages& images,
                                 const ChainOptions& options,
                                 Tracks* tracks_out) {
   const auto gray = [&](int k) { return images.gray(k * images.step); };
-  const auto tracks = track_window(gray, camera, start, frames, options.tracker, images.stop, {});
+  const auto tracks = track_window(gray, camera, {start, frames}, options.tracker, {images.stop});
   if (!tracks || tracks->track_count() == 0) return std::nullopt;
   const std::vector<std::int64_t> times(start + frames, 0);
   Window window =

@@ -41,11 +41,9 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
   ImagesAhead images(*recording.images, start, start + frames);
   auto tracks = track_window([&](int frame) { return images.gray(frame); },
                              recording.camera,
-                             start,
-                             frames,
+                             {start, frames},
                              options,
-                             stop,
-                             told);
+                             {stop, told});
   if (!tracks) return std::nullopt;
   tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
   return tracked;
