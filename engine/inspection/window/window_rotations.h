@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/pipeline/chosen_rotations.h"
+#include "engine/pipeline/pipeline.h"
 #include "engine/recording/recording.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
