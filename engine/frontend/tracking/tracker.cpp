@@ -241,20 +241,20 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
 
 std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
-                                   const TrackedFrames& frames,
+                                   const FrameSpan& span,
                                    const TrackerOptions& options,
                                    const TrackingRun& run) {
   Tracks tracks;
   const auto follower = options.tracking == Tracking::anchored
                             ? anchored_follower(camera, options.anchor)
                             : frame_to_frame_follower(options);
-  for (int i = 0; i < frames.count; ++i) {
+  for (int i = 0; i < span.frames; ++i) {
     if (run.stop.stop_requested()) return std::nullopt;
-    const cv::Mat gray = gray_at(frames.start + i);
-    if (i == 0) tracks = corners_of_reference(gray, frames.start, options.detector);
+    const cv::Mat gray = gray_at(span.start + i);
+    if (i == 0) tracks = corners_of_reference(gray, span.start, options.detector);
     Followed followed = follower(gray, tracks.raw_px.back());
     if (i > 0) append(std::move(followed), tracks);
-    if (run.progress) run.progress(i + 1, frames.count);
+    if (run.progress) run.progress(i + 1, span.frames);
   }
   return tracks;
 }

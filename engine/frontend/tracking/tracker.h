@@ -52,18 +52,13 @@ struct TrackingRun {
   FrameProgress progress = {};
 };
 
-struct TrackedFrames {
-  int start = 0;  ///< reference frame, counts in the recording
-  int count = 0;
-};
-
 /// Detects corners in the reference frame and tracks them from frame to frame: by pyramidal KLT,
 /// forward and back, or, in anchored tracking, by their templates in the reference frame. A track
 /// ends in the first frame in which it fails a check or leaves the image. Returns nullopt if
 /// stopped. Throws InputError for an image that cannot be decoded.
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
-                                   const TrackedFrames& frames,
+                                   const FrameSpan& span,
                                    const TrackerOptions& options = {},
                                    const TrackingRun& run = {});
 

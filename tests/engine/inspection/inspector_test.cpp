@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
 #include "engine/methods/methods.h"
@@ -376,7 +376,7 @@ TEST(Inspector, SaysWhatARecordingLacks) {
               HasSubstr("rotations: truth: desk has no ground truth"));
   bare.images.reset();
   EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
-              HasSubstr("no pictures and no tracks"));
+              HasSubstr("no images and no tracks"));
 }
 
 TEST(Inspector, NamesATrackToLeaveOutThatIsNotThere) {

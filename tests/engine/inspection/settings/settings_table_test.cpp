@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/inspection/settings/setting_values.h"
-#include "engine/inspection/window/window_rotations.h"
+#include "engine/inspection/window/window_inputs.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
 
