@@ -247,7 +247,7 @@ TEST(Run, SaysWhatIsNotUsed) {
               file.string());
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,
-            "--loss is not used. Only gpo_joint lets one choose this\n"
+            "--loss is not used. Applies only to gpo_joint\n"
             "--trajectory-format is not used. No trajectory is written\n");
   const json j = json::parse(read_file(file));
   EXPECT_EQ(j["unused_settings"],

@@ -75,7 +75,7 @@ CameraPath estimated_path(const Inspection& inspection,
 
 CameraPath true_path(const Inspection& inspection) {
   if (!inspection.truth) {
-    throw InputError(inspection.recording->name + ": no ground truth, so no trajectory of it");
+    throw InputError(inspection.recording->name + ": no ground truth to write a trajectory of");
   }
   CameraPath trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
   const auto& cameras = inspection.truth->cameras;
