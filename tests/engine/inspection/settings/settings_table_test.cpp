@@ -137,7 +137,7 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   EXPECT_EQ(why(settings, "solver"), "Applies only to gpo and gpo_joint");
   EXPECT_EQ(why(settings, "gravity"), "");
   settings.options.gravity = Gravity::joint;
-  EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint takes gravity"));
+  EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint estimates gravity"));
   EXPECT_EQ(as_used(settings).options.gravity, Gravity::after);
   Recording recording;
   EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");
