@@ -10,7 +10,7 @@
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
-#include "engine/inspection/studies/tracks_table.h"
+#include "engine/inspection/studies/track_life.h"
 
 #include <algorithm>
 #include <array>

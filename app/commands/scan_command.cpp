@@ -23,7 +23,7 @@ std::vector<ScannedStart> scan(const std::shared_ptr<const Recording>& recording
   ProgressBar bar("scanning");
   const int of = static_cast<int>(starts.size());
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  scan_starts(recording, settings, starts, cores, {}, [&](ScannedStart start) {
+  scan_starts(recording, settings, {starts, cores}, [&](ScannedStart start) {
     scanned.push_back(std::move(start));
     bar.show(static_cast<int>(scanned.size()), of);
   });

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/homography_rotations.h"
-
 #include "engine/frontend/rotation_averaging.h"
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/nearest_rotation.h"
@@ -29,22 +28,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kLeastPairTracks = 12;
-constexpr int kLongestPair = 20;  // frames apart; pairs with the reference frame are all taken
-constexpr double kNormalCapDeg =
-    10;  // a candidate farther from the common normal is the false twin
-constexpr double kClearlyWorse = 2.25;  // cost of a second plane: else the two cannot be told apart
-constexpr double kPlausible = 9;        // cost of another plane that may still be the right one
-constexpr double kClearlyApart = 2;     // rotations of another reading, in those of the right one
-constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition counts fully
+constexpr int kLongestPair = 20;      // frames apart; pairs with the reference frame are all taken
+constexpr double kNormalCapDeg = 10;  // a candidate farther from the common normal is the twin
+constexpr double kClearlyWorse = 2.25;  // cost ratio below which two planes are ambiguous
+constexpr double kPlausible = 9;        // cost ratio of a plane that may still be the right one
+constexpr double kClearlyApart = 2;     // ratio of rotation errors that resolves an ambiguity
+constexpr double kFullParallax = 0.15;  // |tau| from which on a decomposition has full weight
 
 struct Pair {
   int i;
   int j;
   Matrix3d H_ji;                          // Euclidean: rays of i to rays of j, any scale
-  std::vector<HomographyMotion> motions;  // from i to j; empty where the camera hardly moved
+  std::vector<HomographyMotion> motions;  // from i to j; empty if the camera hardly moved
 };
 
-/// Candidates from the tracks that both frames see as inliers.
+/// Decomposes the homography of the common inliers; nullopt if they are too few.
 std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   std::vector<int> common;
   for (int k = 0; k < window.track_count(); ++k) {
@@ -60,10 +58,9 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   return Pair{i, j, window.K.inverse() * H * window.K, decompose_homography(H, window.K, from)};
 }
 
-/// The rotation R_ji when the plane's normal (in frame i) is known: H' = lambda R (I - tau n^T)
-/// leaves the directions on the plane to R alone. Exact without noise; an error of the normal
-/// enters in proportion to |tau|, so that it suits pairs of little parallax, where a decomposition
-/// is ill-posed.
+/// Returns R_ji for a known plane normal (in frame i): H' = lambda R (I - tau n^T) maps directions
+/// on the plane by R alone. Exact without noise. An error of the normal enters in proportion to
+/// |tau|, which suits pairs of little parallax, where a decomposition is ill-posed.
 Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
   Matrix3d from;
   from << normal_tangents(normal), normal;
@@ -83,8 +80,8 @@ const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
       motions, {}, [&](const auto& m) { return m.normal.dot(normal); });
 }
 
-/// R_ji of a pair: of the decomposition whose normal (frame i) is the expected one where it is
-/// sharp, else from the expected normal itself.
+/// Returns R_ji of the decomposition nearest to the expected normal (frame i) if its parallax is
+/// large enough, else from the normal itself.
 Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   if (!pair.motions.empty()) {
     const HomographyMotion& motion = nearest(pair.motions, normal);
@@ -95,15 +92,14 @@ Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   return rotation_given_normal(pair.H_ji, normal);
 }
 
-/// A plane's normal in the reference frame, and how far the decompositions' nearest candidates are
-/// from it: a mean square angle, weighted by parallax [deg^2].
+/// A plane normal on which decompositions of many frames agree.
 struct Consensus {
-  Vector3d normal;
-  double cost;
+  Vector3d normal;  ///< in the reference frame
+  double cost;      ///< mean squared angle of the nearest candidates, weighted by parallax [deg^2]
 };
 
-/// Mean shift from one candidate. The false twin of each decomposition moves with the translation,
-/// the true one does not, so that it gathers at lower cost.
+/// Mean shift from one candidate. The twin normal of each decomposition moves with the translation
+/// and the true one does not, so the true one gathers candidates at a lower cost.
 Consensus gather(std::span<const Pair> pairs, Vector3d normal) {
   double cost = 0;
   for (int round = 0; round < 10; ++round) {
@@ -125,7 +121,7 @@ Consensus gather(std::span<const Pair> pairs, Vector3d normal) {
   return {normal, cost};
 }
 
-/// All points at which candidates gather, the best first.
+/// Returns a consensus from each candidate, the best first.
 std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   std::vector<Consensus> found;
   for (const Pair& pair : pairs) {
@@ -135,22 +131,21 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   return found;
 }
 
-/// Why no one plane can be told from the homographies; nothing where it can.
+/// Returns why the plane is unknown or ambiguous; nullopt if it is neither.
 std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) {
   if (found.empty()) return "rotation averaging: the homographies allow no consistent rotations";
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
     if (apart_deg < kNormalCapDeg || other.cost > kClearlyWorse * found.front().cost) continue;
     return fmt::format(
-        "rotation averaging: two planes, {:.0f} degrees apart, explain the homographies alike; a "
-        "gyroscope "
-        "or more sideways motion would tell",
+        "Ambiguous: two plane orientations {:.0f} deg apart fit equally well. "
+        "A gyroscope or more sideways motion resolves it",
         apart_deg);
   }
   return std::nullopt;
 }
 
-/// Decomposed pairs of the reference frame with each other frame, or why there are none.
+/// Decomposed pairs of the reference frame with each other frame, or the reason why not.
 struct ReferencePairs {
   std::vector<Pair> pairs;
   std::string reason;
@@ -172,8 +167,7 @@ ReferencePairs decompose_reference_pairs(const Window& window) {
   return result;
 }
 
-/// How far the rotations that go with a normal are from given ones, the median over the pairs
-/// [deg].
+/// Returns the median difference between the rotations for a normal and given ones [deg].
 double disagreement_deg(std::span<const Pair> pairs,
                         const Vector3d& normal,
                         std::span<const Matrix3d> R_wc_given) {
@@ -185,7 +179,7 @@ double disagreement_deg(std::span<const Pair> pairs,
   return median(std::move(angles));
 }
 
-/// An error of the normal enters the rotations in proportion to the parallax.
+// An error of the normal enters the rotations in proportion to the parallax.
 double rotation_sigma_rad(std::span<const Pair> reference_pairs, const Consensus& plane) {
   double parallax = 0;
   for (const Pair& pair : reference_pairs) {
@@ -195,7 +189,6 @@ double rotation_sigma_rad(std::span<const Pair> reference_pairs, const Consensus
   return radians(std::sqrt(plane.cost)) * parallax;
 }
 
-/// Rotations of all frames, once the plane is chosen.
 Rotations rotations_given_plane(const Window& window,
                                 std::span<const Pair> reference_pairs,
                                 const Consensus& plane,
@@ -222,16 +215,16 @@ Rotations rotations_given_plane(const Window& window,
           rotation_sigma_rad(reference_pairs, plane)};
 }
 
-/// Of those at which candidates gather at a plausible cost, each once.
-std::vector<Consensus> decompositions_of(const std::vector<Consensus>& found) {
-  std::vector<Consensus> readings;
+/// Returns the distinct planes of plausible cost.
+std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
+  std::vector<Consensus> planes;
   for (const Consensus& one : found) {
-    const bool seen = std::ranges::any_of(readings, [&](const Consensus& other) {
+    const bool seen = std::ranges::any_of(planes, [&](const Consensus& other) {
       return angle_deg(one.normal, other.normal) < kNormalCapDeg;
     });
-    if (!seen && one.cost <= kPlausible * found.front().cost) readings.push_back(one);
+    if (!seen && one.cost <= kPlausible * found.front().cost) planes.push_back(one);
   }
-  return readings;
+  return planes;
 }
 
 std::vector<Matrix3d> rotations_by(std::span<const Pair> reference_pairs, const Vector3d& normal) {
@@ -240,20 +233,19 @@ std::vector<Matrix3d> rotations_by(std::span<const Pair> reference_pairs, const 
   return R_wc;
 }
 
-/// A reading of the leading plane, and what told it.
-struct Told {
+struct ResolvedPlane {
   Consensus plane;
-  std::string note;
+  std::string note;  ///< how the ambiguity was resolved
 };
 
-/// Two planes that turn with one camera: of the leading plane's readings the one whose rotations
-/// another plane's homographies allow, too. Nothing where there is one reading only, no other
-/// plane, or none that tells them apart clearly.
-std::optional<Told> told_by_another_plane(const Window& window,
-                                          std::span<const Pair> pairs,
-                                          const std::vector<Consensus>& found) {
-  const std::vector<Consensus> readings = decompositions_of(found);
-  if (readings.size() < 2) return std::nullopt;
+/// Selects the orientation of the leading plane whose rotations also fit another plane's
+/// homographies, as one camera sees both. Returns nullopt if there is only one orientation, no
+/// other plane, or no clear difference.
+std::optional<ResolvedPlane> resolve_by_another_plane(const Window& window,
+                                                      std::span<const Pair> pairs,
+                                                      const std::vector<Consensus>& found) {
+  const std::vector<Consensus> candidates = plausible_planes(found);
+  if (candidates.size() < 2) return std::nullopt;
   for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
     if (k == window.leader) continue;
     Window other = window;
@@ -261,25 +253,26 @@ std::optional<Told> told_by_another_plane(const Window& window,
     other.H_i1 = window.planes[k].H_i1;
     const auto [other_pairs, reason] = decompose_reference_pairs(other);
     if (!reason.empty()) continue;
-    std::vector<double> apart_deg(readings.size(), std::numeric_limits<double>::infinity());
-    for (const Consensus& theirs : decompositions_of(consensuses(other_pairs))) {
+    std::vector<double> apart_deg(candidates.size(), std::numeric_limits<double>::infinity());
+    for (const Consensus& theirs : plausible_planes(consensuses(other_pairs))) {
       const std::vector<Matrix3d> R_wc = rotations_by(other_pairs, theirs.normal);
-      for (std::size_t r = 0; r < readings.size(); ++r)
-        apart_deg[r] = std::min(apart_deg[r], disagreement_deg(pairs, readings[r].normal, R_wc));
+      for (std::size_t r = 0; r < candidates.size(); ++r)
+        apart_deg[r] = std::min(apart_deg[r], disagreement_deg(pairs, candidates[r].normal, R_wc));
     }
     const auto best = std::ranges::min_element(apart_deg);
     const double least_deg = *best;
-    const Consensus& reading = readings[best - apart_deg.begin()];
+    const Consensus& plane = candidates[best - apart_deg.begin()];
     *best = std::numeric_limits<double>::infinity();
     const double next_deg = std::ranges::min(apart_deg);
     if (!(next_deg > kClearlyApart * least_deg)) continue;
-    return Told{reading,
-                fmt::format("of the two readings of plane {}, plane {} tells the right one: its "
-                            "rotations agree to {:.2f} deg, the other's to {:.2f} deg",
-                            window.leader + 1,
-                            k + 1,
-                            least_deg,
-                            next_deg)};
+    return ResolvedPlane{
+        plane,
+        fmt::format("plane {} resolves the ambiguous orientation of plane {}: rotations agree to "
+                    "{:.2f} deg, those of the other orientation to {:.2f} deg",
+                    k + 1,
+                    window.leader + 1,
+                    least_deg,
+                    next_deg)};
   }
   return std::nullopt;
 }
@@ -290,9 +283,9 @@ Rotations averaged_rotations(const Window& window, const std::stop_token& stop) 
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
-  if (const auto told = told_by_another_plane(window, pairs, found)) {
-    Rotations rotations = rotations_given_plane(window, pairs, told->plane, stop);
-    rotations.note = told->note;
+  if (const auto resolved = resolve_by_another_plane(window, pairs, found)) {
+    Rotations rotations = rotations_given_plane(window, pairs, resolved->plane, stop);
+    rotations.note = resolved->note;
     return rotations;
   }
   if (auto doubt = reason_to_doubt(found)) return {{}, *doubt};
@@ -306,7 +299,7 @@ Rotations averaged_rotations(const Window& window,
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
   if (found.empty()) return {{}, *reason_to_doubt(found)};
-  // Twins at which few candidates gather are no planes at all.
+  // Twins on which only few candidates agree are no planes: ignore those of high cost.
   const Consensus* best = &found.front();
   double least_deg = disagreement_deg(pairs, best->normal, R_wc_given);
   for (const Consensus& other : found) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/make_window.h"
 
-#include "engine/frontend/consistent_inliers.h"
 #include "engine/frontend/window_planes.h"
 #include "engine/geometry/homography.h"
 #include "engine/window/frame_errors.h"
@@ -14,6 +13,13 @@
 
 namespace gpo {
 namespace {
+
+const Eigen::Matrix3d kUnknownHomography =
+    Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+/// A track that is matched wrongly in one frame pulls that frame's homography away from all others.
+/// This happens with descriptor matches, not with tracking. Below this share RANSAC replaces it.
+constexpr double kLeastAgreeing = 0.5;
 
 Eigen::Matrix2Xd undistort_all(const Camera& camera, const Eigen::Matrix2Xd& raw_px) {
   Eigen::Matrix2Xd points(2, raw_px.cols());
@@ -35,40 +41,33 @@ std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Camera& camera, cons
 
 void add_homography(Window& window, int frame, const RansacOptions& ransac) {
   std::vector<int> seen;
-  for (int j = 0; j < window.track_count(); ++j) {
+  for (int j = 0; j < window.track_count(); ++j)
     if (window.points_px[0].col(j).allFinite() && window.points_px[frame].col(j).allFinite())
       seen.push_back(j);
-  }
   const auto robust = homography_ransac(
       window.points_px[0](Eigen::all, seen), window.points_px[frame](Eigen::all, seen), ransac);
   window.inlier.emplace_back(window.track_count(), false);
-  window.H_i1.push_back(
-      robust ? robust->H : Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  window.H_i1.push_back(robust ? robust->H : kUnknownHomography);
   for (std::size_t k = 0; robust && k < seen.size(); ++k)
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Leaves the window as it is where too few tracks are consistent.
-void keep_consistent(Window& window, double threshold_px) {
-  auto kept = consistent_inliers(
+/// Leaves the window unchanged if too few tracks are consistent.
+void select_consistent(Window& window, double threshold_px) {
+  auto selected = consistent_inliers(
       window.points_px, {window.H_i1, window.inlier}, {.threshold_px = threshold_px});
-  if (!kept) return;
-  window.H_i1 = std::move(kept->H_i1);
-  window.inlier = std::move(kept->inlier);
+  if (!selected) return;
+  window.H_i1 = std::move(selected->H_i1);
+  window.inlier = std::move(selected->inlier);
   window.inliers = Inliers::consistent;
 }
-
-/// A track of the plane that is matched wrongly in a frame, which matches of descriptors are where
-/// followed tracks are not, pulls that frame's homography away from all others.
-constexpr double kLeastAgreeing = 0.5;
 
 WindowPlane plane_of(const Window& window,
                      const std::vector<int>& tracks,
                      const RansacOptions& ransac) {
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const int frames = window.frame_count();
   WindowPlane plane{tracks,
-                    std::vector<Eigen::Matrix3d>(frames, none),
+                    std::vector<Eigen::Matrix3d>(frames, kUnknownHomography),
                     std::vector(frames, std::vector<bool>(window.track_count(), false))};
   plane.H_i1[0] = Eigen::Matrix3d::Identity();
   for (const int j : tracks) plane.inlier[0][j] = true;
@@ -98,7 +97,7 @@ WindowPlane plane_of(const Window& window,
   return plane;
 }
 
-/// Of the picture's area, what the convex hull of some tracks covers in the reference frame.
+/// Returns the share of the reference image that the convex hull of the tracks covers.
 double image_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
   if (tracks.size() < 3 || camera.width == 0) return 0;
   std::vector<cv::Point2f> points, hull;
@@ -109,11 +108,12 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
   return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
 }
 
-/// The planes of the window; the leading one's tracks are the inliers.
-void find_planes(Window& window, const Camera& camera, const RansacOptions& ransac, int leader) {
+/// Extracts the planes of the window; the leading one's tracks become the inliers.
+void find_planes(Window& window, const Camera& camera, const InlierOptions& options) {
+  const RansacOptions& ransac = options.ransac;
   window.inliers = Inliers::planes;
-  const PlaneOptions options{.gate_px = ransac.threshold_px, .seed = ransac.seed};
-  const TrackPlanes found = window_planes(window.points_px, options);
+  const TrackPlanes found =
+      window_planes(window.points_px, {.gate_px = ransac.threshold_px, .seed = ransac.seed});
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
@@ -121,7 +121,7 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
     window.planes.back().stability = found.stability[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
-  window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
+  window.leader = std::clamp(options.leader, 0, static_cast<int>(window.planes.size()) - 1);
   window.H_i1 = window.planes[window.leader].H_i1;
   window.inlier = window.planes[window.leader].inlier;
   if (window.planes[0].tracks.empty()) window.planes.clear();
@@ -132,9 +132,8 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
-                   const RansacOptions& ransac,
-                   Inliers inliers,
-                   int leader) {
+                   const InlierOptions& options) {
+  const RansacOptions& ransac = options.ransac;
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
@@ -143,15 +142,15 @@ Window make_window(const Tracks& tracks,
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
   window.lens_moves_px = lens_moves(camera, window);
-  if (inliers == Inliers::planes && ransac.enabled) {
-    find_planes(window, camera, ransac, leader);
+  if (options.inliers == Inliers::planes && ransac.enabled) {
+    find_planes(window, camera, options);
   } else {
     window.H_i1.push_back(Eigen::Matrix3d::Identity());
     window.inlier.emplace_back(tracks.track_count(), false);
     for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
   }
-  if (inliers == Inliers::consistent && ransac.enabled)
-    keep_consistent(window, ransac.threshold_px);
+  if (options.inliers == Inliers::consistent && ransac.enabled)
+    select_consistent(window, ransac.threshold_px);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Eigen::Matrix3d::Identity());
   window.errors = frame_errors(window);

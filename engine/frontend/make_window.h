@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
@@ -12,15 +12,19 @@
 
 namespace gpo {
 
-/// Undistorts the tracks once and rejects outliers between the reference frame and each other
-/// frame, then also over the window where `inliers` says so and enough tracks are consistent; or
-/// tells the planes of the window, of which number `leader` (from 0) leads. Rotations are left at
-/// the identity. `recording_timestamps_ns` are those of all frames of the recording.
+struct InlierOptions {
+  RansacOptions ransac = {};
+  Inliers inliers = Inliers::per_frame;
+  int leader = 0;  ///< the leading plane, counted from 0 by support (`Inliers::planes`)
+};
+
+/// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
+/// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
+/// the window's planes. Rotations are left at the identity. `recording_timestamps_ns` has all
+/// frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
-                   const RansacOptions& ransac,
-                   Inliers inliers = Inliers::per_frame,
-                   int leader = 0);
+                   const InlierOptions& options);
 
 }  // namespace gpo

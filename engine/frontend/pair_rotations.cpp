@@ -1,13 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/pair_rotations.h"
-
 #include "engine/frontend/rotation_averaging.h"
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -24,22 +24,20 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// Tracks off the plane that keep to the epipolar geometry: fewer do not tell its direction. In
-/// nine windows of a room they were 34 % or more, in nine of a board on a floor up to 10 %, of
-/// relief and lens, with rotations up to 15 degrees off.
+/// Least share of tracks off the plane that fit the epipolar geometry: fewer do not constrain the
+/// direction. In nine windows of a room it was 34 % or more, in nine of a board on a floor up to 10
+/// % (relief and lens), with rotations up to 15 degrees off.
 constexpr double kLeastOffPlaneShare = 0.15;
 constexpr int kLeastOffPlane = 10;
-/// Of the tracks off the plane; where fewer keep to it, they are outliers.
-constexpr double kLeastConsistent = 0.5;
-/// Frames that see it, the best ones: parallax grows.
-constexpr double kSeenByFrames = 0.5;
+constexpr double kLeastConsistent = 0.5;  // of the tracks off the plane; fewer are outliers
+constexpr double kSeenByFrames = 0.5;     // share of frames, the best ones: parallax grows
 
-/// The window's tracks in an order that does not depend on theirs.
+/// The window's tracks, sorted by position so that their order in the window does not matter.
 struct WindowRays {
   std::vector<int> tracks;             // of the window
-  std::vector<int> group;              // one a track of `tracks`: its plane, or the last: none
+  std::vector<int> group;              // plane of each of `tracks`, or the last: none
   std::vector<Eigen::Matrix3Xd> rays;  // one a frame, NaN: not seen
-  // One a frame: by what tracks miss the plane; NaN: not known; infinite: there is no plane.
+  // Distances from the plane, one a frame; NaN: unknown; infinite: there is no plane.
   std::vector<Eigen::ArrayXd> miss_px;
 };
 
@@ -54,11 +52,6 @@ std::vector<int> groups_of(const Window& window) {
   return group;
 }
 
-/// Homographies of the plane with most tracks.
-const std::vector<Matrix3d>& homographies(const Window& window) {
-  return window.planes.empty() ? window.H_i1 : window.planes.front().H_i1;
-}
-
 WindowRays rays_of(const Window& window) {
   WindowRays result;
   const Eigen::Matrix2Xd& first = window.points_px.front();
@@ -68,7 +61,7 @@ WindowRays rays_of(const Window& window) {
   const std::vector<int> group = groups_of(window);
   for (const int k : result.tracks) result.group.push_back(group[k]);
   const Matrix3d K_inverse = window.K.inverse();
-  const std::vector<Matrix3d>& H_i1 = homographies(window);
+  const auto& H_i1 = window.planes.empty() ? window.H_i1 : window.planes.front().H_i1;
   const bool plane = std::any_of(
       std::next(H_i1.begin()), H_i1.end(), [](const Matrix3d& H) { return H.allFinite(); });
   for (int i = 0; i < window.frame_count(); ++i) {
@@ -84,13 +77,12 @@ WindowRays rays_of(const Window& window) {
   return result;
 }
 
-/// A pair of frames: which tracks both see, and how the frames are to each other.
 struct JoinedPair {
-  std::vector<int> common;  // index into WindowRays
+  std::vector<int> common;  // tracks that both frames see, indices into WindowRays
   RelativePose pose;
 };
 
-/// `usable`: one a track.
+/// Estimates the relative pose of frames i and j from the usable tracks; nullopt if it fails.
 std::optional<JoinedPair> joined(const WindowRays& window,
                                  int i,
                                  int j,
@@ -113,36 +105,34 @@ std::optional<JoinedPair> joined(const WindowRays& window,
   return pair;
 }
 
-/// The value that a share of them, the greatest ones, reach.
-double reached_by(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return quantile(values, 1 - share);
+/// Returns the value that `kSeenByFrames` of the values reach.
+double typical_share(std::vector<double> shares) {
+  std::ranges::sort(shares);
+  return quantile(shares, 1 - kSeenByFrames);
 }
 
-/// The share of the tracks that are off the plane in a frame.
+/// Returns the share of tracks that are off the plane.
 double off_plane_share(const WindowRays& rays, double threshold_px) {
   std::vector<double> shares;
   for (std::size_t j = 1; j < rays.rays.size(); ++j) {
-    int seen = 0;
-    int off = 0;
+    int seen = 0, off = 0;
     for (const double miss : rays.miss_px[j]) {
       seen += std::isnan(miss) ? 0 : 1;
       off += miss > threshold_px ? 1 : 0;
     }
     shares.push_back(static_cast<double>(off) / std::max(seen, 1));
   }
-  return reached_by(std::move(shares), kSeenByFrames);
+  return typical_share(std::move(shares));
 }
 
-/// The share of the tracks that are off the plane and yet keep to the epipolar geometry.
+/// Returns the share of tracks that are off the plane and fit the epipolar geometry.
 double structure_share(const WindowRays& rays,
                        const std::vector<JoinedPair>& reference_pairs,
                        double threshold_px) {
   std::vector<double> shares;
   for (std::size_t j = 1; j < rays.rays.size(); ++j) {
     const JoinedPair& pair = reference_pairs[j - 1];
-    int off = 0;
-    int consistent = 0;
+    int off = 0, consistent = 0;
     for (std::size_t k = 0; k < pair.common.size(); ++k) {
       if (!(rays.miss_px[j][pair.common[k]] > threshold_px)) continue;
       ++off;
@@ -151,35 +141,30 @@ double structure_share(const WindowRays& rays,
     const bool structure = consistent >= kLeastOffPlane && consistent > kLeastConsistent * off;
     shares.push_back(structure ? static_cast<double>(consistent) / pair.common.size() : 0);
   }
-  return reached_by(std::move(shares), kSeenByFrames);
+  return typical_share(std::move(shares));
 }
 
-Rotations flat(const char* name) {
+Rotations ambiguous_on_plane(const char* name) {
   return {{},
-          fmt::format("{} rotations: nearly all tracks lie on one plane, on which they are "
-                      "ambiguous; use averaging",
+          fmt::format("{} rotations: ambiguous, nearly all tracks lie on one plane; use averaging",
                       name)};
 }
 
-/// Tracks that agree with at least half of the pairs that see them.
+/// Returns which tracks agree with at least half of the pairs that see them.
 std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>& pairs) {
   std::vector<int> votes(rays.tracks.size(), 0);
   for (const JoinedPair& pair : pairs)
     for (std::size_t k = 0; k < pair.common.size(); ++k)
       votes[pair.common[k]] += pair.pose.inlier[k] ? 1 : -1;
-  std::vector<bool> usable;
-  usable.reserve(votes.size());
-  for (const int vote : votes) usable.push_back(vote >= 0);
+  std::vector<bool> usable(votes.size());
+  std::transform(votes.begin(), votes.end(), usable.begin(), [](int vote) { return vote >= 0; });
   return usable;
 }
 
-bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
-
-/// By what the pairs' rotations miss the averaged ones: the median [rad].
+/// Returns the median difference between the pairs' rotations and the averaged ones [rad].
 double disagreement_rad(const std::vector<RelativeRotation>& relative,
                         const std::vector<Matrix3d>& R_wc) {
   std::vector<double> angles;
-  angles.reserve(relative.size());
   for (const auto& [i, j, R_ij, weight] : relative)
     angles.push_back(so3_log(R_wc[i] * R_ij * R_wc[j].transpose()).norm());
   return median(std::move(angles));
@@ -192,8 +177,8 @@ Rotations pair_rotations(const Window& window,
                          const std::stop_token& stop) {
   const char* name = options.solver == RelativeSolver::five_point ? "five-point" : "direct";
   const WindowRays rays = rays_of(window);
-  if (off_plane_share(rays, options.threshold_px) < kLeastOffPlaneShare) return flat(name);
-
+  if (off_plane_share(rays, options.threshold_px) < kLeastOffPlaneShare)
+    return ambiguous_on_plane(name);
   RelativePoseOptions of_pair{.solver = options.solver,
                               .gate = options.threshold_px / window.K(0, 0),
                               .seed = options.seed};
@@ -221,14 +206,13 @@ Rotations pair_rotations(const Window& window,
     reference_pairs.push_back(std::move(*pair));
   }
   if (structure_share(rays, reference_pairs, options.threshold_px) < kLeastOffPlaneShare)
-    return flat(name);
-
+    return ambiguous_on_plane(name);
   const std::vector<bool> usable = trusted(rays, reference_pairs);
   for (int i = 1; i < window.frame_count(); ++i) {
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
     for (int j = i + 1; j < window.frame_count(); ++j) {
-      // Neighbors and far ones: m log m pairs tie frames together as well as all do.
-      if (!is_power_of_two(j - i)) continue;
+      // Near and far ones: m log m pairs connect the frames as well as all pairs do.
+      if (!std::has_single_bit(static_cast<unsigned>(j - i))) continue;
       of_pair.R_ij_guess = R_wc[i].transpose() * R_wc[j];
       if (const auto pair = joined(rays, i, j, usable, of_pair)) add(i, j, pair->pose);
     }

@@ -28,15 +28,14 @@ using Adapter = opengv::relative_pose::CentralRelativeWeightingAdapter;
 constexpr double kConfidence = 0.999;
 constexpr int kMostSamples = 300;
 constexpr int kRefinements = 3;
-/// From the guess, as the sine of half an angle; the eigensolver then finds its own way.
-constexpr double kGuessSpread = 0.1;
+constexpr double kGuessSpread = 0.1;  // of starts around the guess, sine of half an angle
 
 int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
 
-/// A few may all be of one plane. The eigensolver takes more time, and more tracks.
+/// Few samples may all come from one plane. The eigensolver takes more time, and more tracks each.
 int least_samples(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 16 : 6; }
 
-/// What OpenGV reads: its adapter keeps references.
+/// Input of OpenGV, whose adapter keeps references.
 struct Correspondences {
   opengv::bearingVectors_t i;
   opengv::bearingVectors_t j;
@@ -60,8 +59,8 @@ Matrix3d essential(const RotationAndDirection& motion) {
   return skew(motion.direction) * motion.R_ij;
 }
 
-/// OpenGV's own eigensolver draws no random numbers; its RANSAC problem does, from the global
-/// generator, which is why the loop here is ours.
+/// OpenGV's eigensolver draws no random numbers. Its RANSAC problem draws them from the global
+/// generator, so the loop here is our own.
 RotationAndDirection eigensolved(const Correspondences& tracks,
                                  const std::vector<int>& chosen,
                                  const Matrix3d& R_ij_start) {
@@ -71,7 +70,7 @@ RotationAndDirection eigensolved(const Correspondences& tracks,
   return {output.rotation, output.eigenvectors.col(2)};
 }
 
-/// Members of each group, by index into the pairs.
+/// Returns the members of each group of at least two, as indices into the pairs.
 std::vector<std::vector<int>> members(const std::vector<int>& group) {
   const int groups = group.empty() ? 0 : 1 + *std::ranges::max_element(group);
   std::vector<std::vector<int>> found(groups);
@@ -87,10 +86,10 @@ class Sampler {
     std::iota(all_.begin(), all_.end(), 0);
   }
 
-  /// Different tracks: any, or each from a group that is drawn first.
+  /// Draws different tracks: any, or each from a group that is drawn first.
   std::vector<int> draw(int size, bool by_group) {
     std::vector<int> sample;
-    // Two groups of two have four tracks.
+    // Limited tries by group: two groups of two have only four tracks.
     for (int tries = 0; static_cast<int>(sample.size()) < size; ++tries) {
       const auto& from = by_group && tries < 4 * size ? groups_[below(groups_.size())] : all_;
       const int track = from[below(from.size())];
@@ -116,7 +115,7 @@ class Sampler {
   std::mt19937_64 random_;
 };
 
-/// Essential matrices that a sample proposes.
+/// Returns the essential matrices that a sample proposes.
 std::vector<Matrix3d> proposals(const Correspondences& tracks,
                                 const RelativePoseOptions& options,
                                 bool from_guess,
@@ -131,8 +130,8 @@ std::vector<Matrix3d> proposals(const Correspondences& tracks,
   return {essential(eigensolved(tracks, sample, start))};
 }
 
-/// Of the two rotations of an essential matrix, half a turn about the direction apart, the one that
-/// keeps rays nearer to each other: the camera did not move by more than what it sees is away.
+/// Decomposes an essential matrix. Its two rotations differ by half a turn about the direction; the
+/// one that aligns the rays better is right unless the camera moved farther than the scene is away.
 RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
   const Eigen::JacobiSVD<Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d W;
@@ -152,7 +151,7 @@ RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
   return {agreement(one) > agreement(other) ? one : other, svd.matrixU().col(2)};
 }
 
-/// The best by its truncated squared distances (MSAC); nothing where no sample proposes any.
+/// Returns the best proposal by truncated squared distances (MSAC); nullopt if there is none.
 std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
                                                   const Correspondences& tracks,
                                                   const RelativePoseOptions& options) {
@@ -167,7 +166,7 @@ std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
     const std::vector<int> sample = sampler.draw(size, by_group);
     for (const Matrix3d& E : proposals(tracks, options, k % 4 < 2, sample, sampler)) {
       if (!(squared_sampson_distances(E, rays).min(gate2).sum() < least)) continue;
-      // The five-point algorithm's matrices are essential ones up to its own rounding only.
+      // The five-point algorithm's matrices are essential only up to rounding.
       const RotationAndDirection motion = decomposed(E, rays);
       const ArrayXd distances2 = squared_sampson_distances(essential(motion), rays);
       const double cost = distances2.min(gate2).sum();
@@ -191,17 +190,15 @@ std::vector<int> within(const ArrayXd& distances2, double gate2) {
   return chosen;
 }
 
-/// Variance of a distance, of the median over the inliers; above rounding.
+/// Estimates the variance of a distance from the inliers' median, limited to above rounding.
 double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers) {
   const ArrayXd of_inliers = distances2(inliers);
   constexpr double kMedianOfSquare = 0.4549;  // of a unit Gaussian's square
-  const double variance =
-      median({of_inliers.data(), of_inliers.data() + of_inliers.size()}) / kMedianOfSquare;
-  return std::max(variance, 1e-16);
+  return std::max(median({of_inliers.begin(), of_inliers.end()}) / kMedianOfSquare, 1e-16);
 }
 
-/// What turns the eigensolver's algebraic error of unit rays into Sampson's, downweighted beyond
-/// three standard deviations (Geman and McClure).
+/// Returns the weights that turn the eigensolver's algebraic error of unit rays into Sampson's,
+/// reduced beyond three standard deviations (Geman and McClure).
 std::vector<double> sampson_weights(const Matrix3d& E,
                                     const RayPairs& rays,
                                     const ArrayXd& distances2,

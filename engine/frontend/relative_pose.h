@@ -10,15 +10,15 @@
 
 namespace gpo {
 
-/// What proposes relative poses from few tracks: Nister's five-point algorithm, or the rotation
-/// alone by the eigensolver of Kneip and Lynen 2013, which starts from a guess.
+/// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
+/// Lynen 2013, which optimizes the rotation alone from a guess.
 enum class RelativeSolver { five_point, eigensolver };
 
 /// Tracks that frames i and j see.
 struct RayPairs {
   Eigen::Matrix3Xd i;      ///< K^-1 p, third coordinate 1, 3 x n
   Eigen::Matrix3Xd j;      ///< 3 x n
-  std::vector<int> group;  ///< one a track, from 0 on: the surface that it may lie on
+  std::vector<int> group;  ///< surface that each track may lie on, counted from 0
 };
 
 struct RelativePoseOptions {
@@ -28,7 +28,7 @@ struct RelativePoseOptions {
   std::uint64_t seed = 1;
 };
 
-/// x_i ~ R_ij x_j + s direction, s of any sign where the camera hardly moved.
+/// x_i ~ R_ij x_j + s direction; s has either sign if the camera hardly moved.
 struct RelativePose {
   Eigen::Matrix3d R_ij;
   Eigen::Vector3d direction;  ///< of camera j in frame i, unit length, up to its sign
@@ -36,14 +36,16 @@ struct RelativePose {
   int inliers = 0;
 };
 
-/// RANSAC over a solver's proposals, half of them from samples over all groups so that a plane with
-/// nearly all tracks does not stand for the scene; then Sampson's error over the inliers by the
-/// weighted eigensolver. Nothing where fewer than `kLeastPairRays` agree.
+/// Estimates a relative pose by RANSAC over a solver's proposals and refines it by the weighted
+/// eigensolver, which minimizes Sampson's error over the inliers. Half of the samples draw from all
+/// groups so that a plane with nearly all tracks does not dominate. Returns nullopt if fewer than
+/// `kLeastPairRays` agree.
 std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePoseOptions& options);
 
 inline constexpr int kLeastPairRays = 12;
 
-/// Squared first-order distances to the epipolar geometry, one a track (Hartley & Zisserman, 11.9).
+/// Returns squared first-order distances to the epipolar geometry, one a track (Hartley &
+/// Zisserman, 11.9).
 Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
 
 }  // namespace gpo

@@ -15,9 +15,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSmallestRad = 1e-4;  // keeps the weight of a perfect pair finite
+constexpr double kSmallestRad = 1e-4;  // limits the weight of a perfect pair
 
-/// One step of averaging: x of length frames x 3 that minimizes sum w |x_j - x_i - r|^2, x_0 = 0.
+/// Returns x, frames x 3, that minimizes sum w |x_j - x_i - r|^2 with x_0 = 0.
 Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
                             const std::vector<Vector3d>& residuals,
                             const std::vector<double>& weights,
@@ -40,7 +40,7 @@ Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
   return x;
 }
 
-/// Lie-algebraic averaging with the weight function w(|residual| in rad).
+/// Lie-algebraic averaging with the weight function `weight` of |residual| [rad].
 void average(std::span<const RelativeRotation> relative,
              std::vector<Matrix3d>& R_wc,
              int rounds,
@@ -66,7 +66,7 @@ void average(std::span<const RelativeRotation> relative,
 std::vector<Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                         std::vector<Matrix3d> R_wc) {
   average(relative, R_wc, 30, [](double r) { return 1 / std::max(r, kSmallestRad); });
-  // The l_1/2 weights of Chatterjee & Govindu 2018, whose estimate tolerates more outliers.
+  // The l_1/2 weights of Chatterjee & Govindu 2018 tolerate more outliers.
   average(relative, R_wc, 30, [](double r) { return std::pow(std::max(r, kSmallestRad), -1.5); });
   return R_wc;
 }

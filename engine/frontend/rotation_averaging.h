@@ -9,7 +9,7 @@
 
 namespace gpo {
 
-/// A measured rotation between two frames: x_i = R_ij x_j for directions.
+/// Measured rotation between two frames: x_i = R_ij x_j for directions.
 struct RelativeRotation {
   int i;
   int j;
@@ -17,7 +17,7 @@ struct RelativeRotation {
   double weight = 1;  ///< inverse variance, any unit
 };
 
-/// Robust rotation averaging (Chatterjee & Govindu, ICCV 2013): starting from `R_wc`, least
+/// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least
 /// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                                std::vector<Eigen::Matrix3d> R_wc);

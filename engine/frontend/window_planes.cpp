@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -25,19 +26,19 @@ using Eigen::Matrix3d;
 constexpr int kLeastSeen = 8;
 constexpr int kMostRounds = 8;
 constexpr double kGoodDraws = 25;
-/// A plane has so many times the tracks that chance would put there: half of those that miss its
-/// gate by up to twice the gate. Of a cloud of points the best hypothesis has two to three times.
+/// Least ratio of a plane's tracks to those expected by chance: half of the tracks that miss its
+/// gate by up to twice the gate. The best hypothesis for a cloud of points reaches two to three.
 constexpr double kLeastOverChance = 4.8;
-constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane: that there are any is known
+constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane
 constexpr int kSpentTracks = 4;                 // any four tracks have a homography
-constexpr double kNearlyAll = 0.9;      // of the tracks near one plane: they are noisy, not far
-constexpr double kWellExplained = 0.5;  // of the tracks, by planes
+constexpr double kNearlyAll = 0.9;              // share near one plane: they are noisy, not off it
+constexpr double kWellExplained = 0.5;          // share of the tracks that planes explain
 constexpr double kFarMore = 1.3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Tracks in the reference picture and in a later one [px].
 struct Pairs {
   std::vector<int> tracks;
-  Matrix2Xd from, to;
+  Matrix2Xd from, to;  ///< in the reference frame and in a later one [px]
 };
 
 Pairs pairs_of(const std::vector<Matrix2Xd>& points_px, int frame, const std::vector<int>& among) {
@@ -63,18 +64,17 @@ std::vector<int> spread_frames(int frames, int wanted) {
   return chosen;
 }
 
-/// Squared transfer errors [px^2]; infinite where H turns a point around.
+/// Returns squared transfer errors [px^2]; infinite if H maps a point behind the camera.
 ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd& to) {
   const auto x = from.row(0).array();
   const auto y = from.row(1).array();
   const Eigen::Array<double, 1, Eigen::Dynamic> depth = H(2, 0) * x + H(2, 1) * y + H(2, 2);
   const auto u = (H(0, 0) * x + H(0, 1) * y + H(0, 2)) / depth - to.row(0).array();
   const auto v = (H(1, 0) * x + H(1, 1) * y + H(1, 2)) / depth - to.row(1).array();
-  const double infinity = std::numeric_limits<double>::infinity();
-  return (depth * H(2, 2) > 0).select(u * u + v * v, infinity).transpose();
+  return (depth * H(2, 2) > 0).select(u * u + v * v, kInfinity).transpose();
 }
 
-/// Judges hypotheses by all pairs, thousands of times: single precision, no memory taken.
+/// Scores hypotheses by all pairs, thousands of times: single precision, no allocation.
 class Judge {
  public:
   Judge(const Pairs& pairs, double gate_px)
@@ -84,8 +84,8 @@ class Judge {
         v_(pairs.to.row(1).cast<float>().transpose()),
         a_square_px2_(static_cast<float>(1 / (gate_px * gate_px))) {}
 
-  /// Not how many agree, but how closely (MSAC, Torr and Zisserman 2000): at little parallax one
-  /// homography passes near the tracks of two planes, and through those of one.
+  /// MSAC (Torr and Zisserman 2000) rather than a count: at little parallax one homography is near
+  /// the tracks of two planes, but exact for those of one.
   double score(const Matrix3d& hypothesis) {
     const Eigen::Matrix3f H = (hypothesis / hypothesis(2, 2)).cast<float>();
     depth_ = H(2, 0) * x_ + H(2, 1) * y_ + H(2, 2);
@@ -101,29 +101,25 @@ class Judge {
   Eigen::ArrayXf depth_, du_, dv_;
 };
 
-/// For each pair the others, the nearest quarter of them in the reference picture.
+/// Returns for each pair the nearest quarter of the others in the reference frame.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
   const int size = std::min(std::max(3, n / 4), n - 1);
-  // Distances lie beside the numbers that are sorted by them, thousands of times.
-  struct Other {
-    double square_px2;
-    int number;
-  };
-  std::vector<Other> others(n - 1);
+  // Precomputed distances, as sorting compares them thousands of times.
+  std::vector<std::pair<double, int>> others(n - 1);  // squared distance [px^2], pair
   std::vector<std::vector<int>> near(n);
   for (int k = 0; k < n; ++k) {
     for (int j = 0, at = 0; j < n; ++j)
       if (j != k) others[at++] = {(pairs.from.col(j) - pairs.from.col(k)).squaredNorm(), j};
     const auto nearest = others.begin() + std::min(size, n - 2);
-    std::ranges::nth_element(others, nearest, {}, &Other::square_px2);
-    for (int j = 0; j < size; ++j) near[k].push_back(others[j].number);
+    std::ranges::nth_element(others, nearest, {}, &std::pair<double, int>::first);
+    for (int j = 0; j < size; ++j) near[k].push_back(others[j].second);
   }
   return near;
 }
 
-/// So many that four neighbors of a plane with such a share of the tracks are drawn some ten times:
-/// those that lie near each other tell its homography badly.
+/// Returns the number of hypotheses that draws about ten good samples of a plane with this share of
+/// the tracks. One is not enough: neighboring tracks constrain a homography badly.
 int hypotheses_needed(double share, const PlaneOptions& options) {
   const double wanted = kGoodDraws / (share * share * share);
   return wanted < options.most_hypotheses
@@ -131,7 +127,7 @@ int hypotheses_needed(double share, const PlaneOptions& options) {
              : options.most_hypotheses;
 }
 
-/// Tracks of the hypothesis with which most agree in one frame; four neighbors make one.
+/// Returns the tracks that agree with the best hypothesis (from four neighbors) in one frame.
 std::vector<int> best_hypothesis(const Pairs& pairs,
                                  const PlaneOptions& options,
                                  std::mt19937_64& random) {
@@ -167,10 +163,9 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
   return tracks;
 }
 
-/// A plane as it is found: its tracks, and how far each of all tracks is from it.
-struct Found {
+struct FoundPlane {
   std::vector<int> tracks;
-  ArrayXd rms_px;  ///< over the judging frames that see the track; infinite: none of them does
+  ArrayXd rms_px;  ///< of every track, over the judging frames that see it; infinite: none does
   double gate_px = 0;
 };
 
@@ -184,10 +179,9 @@ class Search {
 
   int track_count() const { return static_cast<int>(points_px_[0].cols()); }
 
-  /// Root mean square transfer errors from the homographies of these tracks, refitted in every
-  /// judging frame; infinite of all where they do not give them.
+  /// Returns every track's RMS transfer error by the homographies of the given tracks, refitted in
+  /// every judging frame; infinite if a fit fails.
   ArrayXd errors_from(const std::vector<int>& tracks) const {
-    const double infinity = std::numeric_limits<double>::infinity();
     std::vector<bool> chosen(track_count(), false);
     for (const int j : tracks) chosen[j] = true;
     ArrayXd squares = ArrayXd::Zero(track_count());
@@ -197,28 +191,30 @@ class Search {
       for (int k = 0; k < static_cast<int>(pairs.tracks.size()); ++k)
         if (chosen[pairs.tracks[k]]) own.push_back(k);
       if (static_cast<int>(own.size()) < kLeastSeen) continue;
-      // Least algebraic error is near enough to the least one for a gate of pixels, and a fifth of
-      // its time.
+      // The algebraic fit is accurate enough for a gate of pixels, in a fifth of the time.
       const auto H = fit_homography(pairs.from(Eigen::all, own), pairs.to(Eigen::all, own));
-      if (!H) return ArrayXd::Constant(track_count(), infinity);
+      if (!H) return ArrayXd::Constant(track_count(), kInfinity);
       squares(pairs.tracks) += squared_errors(*H, pairs.from, pairs.to);
       seen(pairs.tracks) += 1;
     }
-    return (seen > 0).select((squares / seen.max(1)).sqrt(), infinity);
+    return (seen > 0).select((squares / seen.max(1)).sqrt(), kInfinity);
   }
 
-  /// From a first choice of tracks to one that stands still, among those that are free.
-  Found settled(std::vector<int> tracks, const std::vector<int>& free) const {
-    Found found;
+  /// Returns the gate for a plane's own tracks [px].
+  double gate_of(const std::vector<int>& tracks, const ArrayXd& rms_px) const {
+    const ArrayXd own = rms_px(tracks);
+    return std::clamp(options_.gate_to_median * median({own.begin(), own.end()}),
+                      options_.least_gate * options_.gate_px,
+                      options_.gate_px);
+  }
+
+  /// Alternates fitting and selection among the free tracks until the tracks no longer change.
+  FoundPlane settled(std::vector<int> tracks, const std::vector<int>& free) const {
+    FoundPlane found;
     for (int round = 0; round < kMostRounds; ++round) {
+      if (tracks.empty()) return {};
       found.rms_px = errors_from(tracks);
-      std::vector<double> own;
-      own.reserve(tracks.size());
-      for (const int j : tracks) own.push_back(found.rms_px[j]);
-      if (own.empty()) return {};
-      found.gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
-                                 options_.least_gate * options_.gate_px,
-                                 options_.gate_px);
+      found.gate_px = gate_of(tracks, found.rms_px);
       found.tracks.clear();
       for (const int j : free)
         if (found.rms_px[j] <= found.gate_px) found.tracks.push_back(j);
@@ -228,8 +224,8 @@ class Search {
     return found;
   }
 
-  /// Whether its tracks stand out among those that are free.
-  bool stands_out(const Found& found,
+  /// Returns whether the plane has clearly more tracks than expected by chance.
+  bool stands_out(const FoundPlane& found,
                   const std::vector<int>& free,
                   double least_over_chance) const {
     const auto just_off = std::ranges::count_if(free, [&](int j) {
@@ -241,15 +237,11 @@ class Search {
     return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
 
-  /// Share of a plane's tracks that stay where the gate is halved, its homographies refitted.
+  /// Returns the share of a plane's tracks that remain at half the gate, with refitted
+  /// homographies.
   double stability(const std::vector<int>& tracks) const {
     const ArrayXd rms_px = errors_from(tracks);
-    std::vector<double> own;
-    own.reserve(tracks.size());
-    for (const int j : tracks) own.push_back(rms_px[j]);
-    const double gate_px = std::clamp(options_.gate_to_median * median(std::move(own)),
-                                      options_.least_gate * options_.gate_px,
-                                      options_.gate_px);
+    const double gate_px = gate_of(tracks, rms_px);
     std::vector<int> near;
     for (const int j : tracks)
       if (rms_px[j] <= gate_px / 2) near.push_back(j);
@@ -273,7 +265,7 @@ class Search {
     std::vector<std::vector<int>>& planes = result.planes;
     while (widest > 0 && static_cast<int>(planes.size()) < options_.most_planes) {
       const Pairs pairs = pairs_of(points_px_, widest, free);
-      const Found found = settled(best_hypothesis(pairs, options_, random), free);
+      const FoundPlane found = settled(best_hypothesis(pairs, options_, random), free);
       const int least = planes.empty() ? options_.least_tracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
       const double over_chance = planes.empty() ? kLeastOverChance : kLeastOverChanceOfMore;
@@ -335,7 +327,7 @@ TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px, const PlaneOp
   TrackPlanes fine = Search(points_px, options).planes();
   const auto judged = static_cast<double>(points_px[0].cols());
   if (explained(fine) >= kWellExplained * judged) return fine;
-  // Tracks may be as noisy as the gate: then a wider one explains far more of them.
+  // Tracks may be as noisy as the gate: then a wider gate explains far more of them.
   PlaneOptions wide = options;
   wide.least_gate = 1;
   TrackPlanes coarse = Search(points_px, wide).planes();

@@ -11,7 +11,7 @@
 namespace gpo {
 namespace {
 
-/// Axes with x along the direction `x_w` as far as the plane allows, z towards the camera.
+/// Returns axes with x as near as possible to the direction `x_w` and z towards the camera.
 Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Eigen::Vector3d& x_w) {
   const bool towards = plane_w.normal.dot(camera.p_wc) + plane_w.distance >= 0;
   const Eigen::Vector3d z = towards ? plane_w.normal : Eigen::Vector3d(-plane_w.normal);
@@ -25,17 +25,14 @@ std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
                                               const std::vector<Eigen::Vector2d>& raw_px) {
   const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
   std::vector<Eigen::Vector3d> rays;
-  rays.reserve(raw_px.size());
   for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
   return rays;
 }
 
-/// The direction in which the inliers of the reference frame lie on average.
 Eigen::Vector3d centroid_ray(const Window& window) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int j = 0; j < window.track_count(); ++j) {
+  for (int j = 0; j < window.track_count(); ++j)
     if (window.inlier[0][j]) sum += window.points_px[0].col(j);
-  }
   return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
 }
 

@@ -5,7 +5,6 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/cube.h"
-#include "engine/inspection/motion.h"
 #include "engine/inspection/settings/settings.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
@@ -19,10 +18,22 @@
 
 namespace gpo {
 
-/// Milliseconds a stage took when it was computed.
+/// Computation time of each stage [ms].
 struct Timing {
   double track = 0, ransac = 0, rotations = 0, initialize = 0, optimize = 0, total = 0;
 };
+
+/// Motion of a frame of the window, before anything is initialized.
+struct FrameMotion {
+  /// Median motion of the inliers since the reference frame beyond the given rotation, undistorted;
+  /// NaN without inliers [px].
+  double parallax_px = 0;
+  /// Angular rate of the given rotations to the next frame (for the last one: from the one before).
+  double rotation_rate_deg_s = 0;
+};
+
+/// Returns the motion of each frame of the window.
+std::vector<FrameMotion> frame_motion(const Window& window);
 
 /// One finished inspection: the chain of results for one recording and settings. Immutable; shared
 /// with the views by shared_ptr<const>.
@@ -30,29 +41,37 @@ struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
-  std::string rotations_note;  ///< why not what `automatic` tries first, or what told them
-  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< what was taken off its rates
+  std::string rotations_note;                            ///< see `ChosenRotations::note`
+  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;   ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
-  std::shared_ptr<const WindowTruth> truth;  ///< null where none is known
+  std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
-  /// Gravity and meters, of an initialization that is ok; nothing where they are not asked for, or
-  /// the recording has no accelerometer.
+  /// Gravity and metric scale; nullopt if the initialization failed, they are not requested, or the
+  /// recording has no accelerometer.
   std::optional<InertialAlignment> inertial;
-  /// Frame of the window up to which it takes to know the scale; nothing where it is not known.
+  /// Frame of the window from which on the metric scale is available; nullopt if it is not.
   std::optional<int> metric_scale_from;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
   std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations
-  std::optional<Evaluation> evaluation;  ///< of an initialization that is ok, where truth is known
-  std::optional<CubeAnchor> cube;  ///< on the estimated plane, of an initialization that is ok
-  std::optional<CubeAnchor>
-      true_cube;  ///< the same place on the true plane, in the truth's world;
-                  ///< its side is that of `cube` times true_cube.unit / cube.unit
+  std::optional<Evaluation> evaluation;  ///< nullopt if the initialization failed or without truth
+  std::optional<CubeAnchor> cube;        ///< on the estimated plane; nullopt if it failed
+  /// The same place on the true plane, in the truth's world; its side is that of `cube` times
+  /// true_cube.unit / cube.unit.
+  std::optional<CubeAnchor> true_cube;
   Timing timing;
 };
 
-/// What its inliers are a share of and how they were told, for people: "tracks, consistent".
+/// Moves the base centers of both cubes (of the default side) to where a ray of the reference
+/// camera meets their planes, without rotating them. Both are then at the same place of the scene:
+/// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
+/// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
+/// cube if it misses the true plane alone.
+void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
+
+/// Returns what the inliers are counted from and how they were selected, for people: "tracks,
+/// consistent".
 std::string inliers_note(const Inspection& inspection);
 
 }  // namespace gpo

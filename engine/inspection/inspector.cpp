@@ -3,9 +3,16 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/stages.h"
-#include "engine/inspection/window/window_rotations.h"
+#include "engine/inertial/inertial_alignment.h"
+#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/window/window_inputs.h"
+#include "engine/pipeline/method_defaults.h"
+#include "engine/pipeline/pipeline.h"
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,21 +34,21 @@ void check_window(const Recording& recording, const Settings& settings) {
   if (settings.start + settings.frames > count) {
     throw SettingError(
         "frames",
-        fmt::format("{} frames from frame {} on do not fit, the recording has {} frames",
+        fmt::format("{} frames from frame {} on do not fit; the recording has {} frames",
                     settings.frames,
                     settings.start,
                     count));
   }
 }
 
-void without_plane(Evaluation& evaluation) {
+void drop_plane_errors(Evaluation& evaluation) {
   evaluation.pne_deg.reset();
   evaluation.pne_aligned_deg.reset();
   evaluation.pde_m.reset();
   evaluation.pne_bound_deg.reset();
 }
 
-/// Gravity and meters beside the truth's.
+/// Evaluates gravity and metric scale.
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
   if (!inertial.ok) return;
   if (inertial.scale_known && evaluation.scale)
@@ -51,7 +58,225 @@ void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evalua
   evaluation.gravity_error_deg = angle_deg(inertial.gravity_m_s2, down);
 }
 
+/// Returns the cached span if it starts at the same frame and is long enough, else the requested
+/// one.
+FrameSpan covering(const std::optional<FrameSpan>& cached, const FrameSpan& span) {
+  const bool covers = cached && cached->start == span.start && cached->frames >= span.frames;
+  return covers ? *cached : span;
+}
+
+/// Returns the settings that act until the stage, with RANSAC as used here: it is the same for
+/// methods that use all tracks in the end and for those that never do.
+Settings rejecting(SettingStage stage, const Settings& settings) {
+  Settings acting = acting_until(stage, settings);
+  acting.options.ransac = ransac_options(settings.options).enabled;
+  return acting;
+}
+
+void check_excluded(const Tracks& tracks, const Settings& settings) {
+  for (const std::int64_t id : settings.exclude) {
+    if (std::ranges::find(tracks.ids, id) != tracks.ids.end()) continue;
+    throw SettingError("exclude",
+                       tracks.ids.empty()
+                           ? fmt::format("track {} is not in the window, which has no tracks", id)
+                           : fmt::format("track {} is not in the window, which has tracks {} to {}",
+                                         id,
+                                         std::ranges::min(tracks.ids),
+                                         std::ranges::max(tracks.ids)));
+  }
+}
+
+/// Reports the progress of an optimization, not more often than people can read it.
+Watch watch_of(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
+  if (!progress) return {stop};
+  constexpr double kPause_ms = 40;
+  const std::string title = settings.options.method.row().title;
+  return {stop, [=, last = std::chrono::steady_clock::now()](int iteration, double cost) mutable {
+            if (milliseconds_since(last) < kPause_ms) return;
+            last = std::chrono::steady_clock::now();
+            progress(fmt::format("{}: iteration {}, cost {:.4g} px\u00b2", title, iteration, cost),
+                     0,
+                     0);
+          }};
+}
+
+Sources sources_of(const Recording& recording, const Window& window) {
+  Sources sources;
+  sources.camera = &recording.camera;
+  sources.gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  sources.T_body_camera = recording.T_body_camera;
+  const auto& files = recording.image_files;
+  if (std::ssize(files) == recording.frame_count()) {
+    sources.images.assign(files.begin() + window.start,
+                          files.begin() + window.start + window.frame_count());
+  } else if (files.size() == 1) {
+    sources.images = files;
+  }
+  return sources;
+}
+
+InitializeOptions options_for(const Recording& recording, const Settings& settings) {
+  InitializeOptions options = settings.options;
+  if (recording.camera_source == CameraSource::guess) options.camera_is_guess = true;
+  return options;
+}
+
+std::optional<int> metric_scale_from(const Window& window,
+                                     const Sources& sources,
+                                     const Finished& end) {
+  if (!end.inertial || !end.inertial->ok || !end.inertial->scale_known) return std::nullopt;
+  const auto count =
+      poses_that_determine_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
+  if (!count) return std::nullopt;
+  const auto at = std::ranges::find(window.timestamps_ns, end.poses.times_ns[*count - 1]);
+  return static_cast<int>(at - window.timestamps_ns.begin());
+}
+
 }  // namespace
+
+/// A stage's last result, cached until its inputs change.
+template <class Key, class Value>
+struct Cached {
+  std::optional<Key> key;
+  Value value{};
+  double milliseconds = 0;
+
+  /// Recomputes if the key differs. `compute` returns nullopt if stopped; then this returns false.
+  template <class Compute>
+  bool update(const Key& wanted, Compute&& compute) {
+    if (key == wanted) return true;
+    key.reset();
+    const auto begin = std::chrono::steady_clock::now();
+    auto computed = compute();
+    if (!computed) return false;
+    value = std::move(*computed);
+    milliseconds = milliseconds_since(begin);
+    key = wanted;
+    return true;
+  }
+};
+
+/// The cached stages; each `update` returns false if stopped. The key of a stage is the settings
+/// that act until then (`acting_until`), so a setting's row decides which stages it recomputes.
+struct Inspector::Stages {
+  std::shared_ptr<const Recording> recording;
+  std::array<Cached<FrameSpan, Tracked>, 2> longest_tracks;  // of the windows from one start
+  Cached<FrameSpan, std::shared_ptr<const WindowTruth>> longest_truth;
+  Cached<Settings, std::shared_ptr<const Tracks>> tracks;
+  Cached<FrameSpan, std::shared_ptr<const WindowTruth>> truth;
+  Cached<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference image
+  Cached<Settings, std::shared_ptr<const Window>> outliers;
+  Cached<Settings, ChosenRotations> rotations;
+  Cached<Settings, std::vector<Verdict>> growth;
+
+  bool update_tracks(const Settings& settings,
+                     const std::stop_token& stop,
+                     const Progress& progress);
+  bool update_truth(const Settings& settings,
+                    const std::stop_token& stop,
+                    const Progress& progress);
+  bool update_window(const Settings& settings, const std::stop_token& stop);
+  /// Runs the method on the other stages and stores result and growth in `inspection`.
+  void initialize(const Settings& settings,
+                  const std::stop_token& stop,
+                  const Progress& progress,
+                  Inspection& inspection);
+  Timing timing(const Settings& settings, double initialize_ms) const;
+};
+
+bool Inspector::Stages::update_tracks(const Settings& settings,
+                                      const std::stop_token& stop,
+                                      const Progress& progress) {
+  auto& cached = longest_tracks[static_cast<std::size_t>(settings.tracking)];
+  const FrameSpan longest = covering(cached.key, {settings.start, settings.frames});
+  const bool done = cached.update(longest, [&]() {
+    return recording->tracks.empty()
+               ? followed_tracks(*recording, longest, settings.tracking, stop, progress)
+               : std::optional(chosen_tracks(*recording, longest));
+  });
+  return done && tracks.update(acting_until(SettingStage::tracks, settings), [&]() {
+    return std::optional(beginning(cached.value.tracks, settings.frames));
+  });
+}
+
+bool Inspector::Stages::update_truth(const Settings& settings,
+                                     const std::stop_token& stop,
+                                     const Progress& progress) {
+  const FrameSpan span{settings.start, settings.frames};
+  const FrameSpan longest = covering(longest_truth.key, span);
+  const bool done = longest_truth.update(longest, [&]() {
+    auto computed = window_truth(*recording, longest, stop, progress);
+    return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
+  });
+  if (!done) return false;
+  truth.update(span,
+               [&]() { return std::optional(beginning(longest_truth.value, settings.frames)); });
+  return board_corners.update(
+      settings.start, [&]() { return std::optional(corners_in(*recording, settings.start)); });
+}
+
+bool Inspector::Stages::update_window(const Settings& settings, const std::stop_token& stop) {
+  check_excluded(*tracks.value, settings);
+  outliers.update(rejecting(SettingStage::inliers, settings), [&]() {
+    return std::optional(
+        std::make_shared<const Window>(window_of(without(*tracks.value, settings.exclude),
+                                                 recording->camera,
+                                                 recording->timestamps_ns,
+                                                 settings.options)));
+  });
+  const Settings acting = rejecting(SettingStage::rotations, settings);
+  return rotations.update(acting, [&]() -> std::optional<ChosenRotations> {
+    ChosenRotations chosen =
+        window_rotations(*recording, *outliers.value, truth.value.get(), settings.options, stop);
+    return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
+  });
+}
+
+void Inspector::Stages::initialize(const Settings& settings,
+                                   const std::stop_token& stop,
+                                   const Progress& progress,
+                                   Inspection& inspection) {
+  const Rotations& given = rotations.value.rotations;
+  const InitializeOptions options = options_for(*recording, settings);
+  Window window = with_rotations(*outliers.value, given, options);
+  const Sources sources = sources_of(*recording, window);
+  const auto begin = std::chrono::steady_clock::now();
+  Initialization found =
+      run_method(window, given, sources, options, watch_of(settings, stop, progress));
+  inspection.timing = timing(settings, milliseconds_since(begin));
+  inspection.timing.optimize = found.solver.milliseconds;
+  if (!given.R_wc.empty()) {
+    // A stopped growth is incomplete.
+    const bool grown = growth.update(*rotations.key, [&]() {
+      auto verdicts = growing_verdicts(window, stop);
+      return stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
+    });
+    if (!grown) return;
+    inspection.growth = growth.value;
+    inspection.motion = frame_motion(window);
+    if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
+  }
+  Finished end = finished(window, sources, options, inspection.growth, std::move(found));
+  inspection.metric_scale_from = metric_scale_from(window, sources, end);
+  inspection.inertial = std::move(end.inertial);
+  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+  inspection.rotations_used = rotations.value.source;
+  inspection.rotations_note = rotations.value.note;
+  inspection.tracks = tracks.value;
+  inspection.truth = truth.value;
+  inspection.window = std::make_shared<const Window>(std::move(window));
+  inspection.initialization = std::make_shared<const Initialization>(std::move(end.initialization));
+}
+
+Timing Inspector::Stages::timing(const Settings& settings, double initialize_ms) const {
+  const Tracked& tracked = longest_tracks[static_cast<std::size_t>(settings.tracking)].value;
+  Timing t{.track = tracked.milliseconds[settings.frames - 1],
+           .ransac = outliers.milliseconds,
+           .rotations = rotations.milliseconds,
+           .initialize = initialize_ms};
+  t.total = t.track + t.ransac + t.rotations + t.initialize;
+  return t;
+}
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
     : stages_(std::make_unique<Stages>()) {
@@ -65,11 +290,12 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
   check_window(*stages.recording, settings);
-  settings.options.method.row();  // throws before any work is done
+  // These two throw before any work is done.
+  settings.options.method.row();
+  rotation_source_used(*stages.recording, settings.options.rotations);
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  rotation_source_used(*stages.recording, settings.options.rotations);  // so does this
   const bool prepared = stages.update_tracks(settings, stop, progress) &&
                         stages.update_truth(settings, stop, progress) &&
                         stages.update_window(settings, stop);
@@ -78,12 +304,12 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   stages.initialize(settings, stop, progress, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
-    // The truth is of one plane, which is taken to be the one with most tracks.
+    // The truth describes one plane, assumed to be the one with most tracks.
     const bool leads_truth = settings.options.plane == 1;
     if (inspection.truth) {
       inspection.evaluation = evaluate(
           *inspection.initialization, *inspection.window, *inspection.truth, settings.options.seed);
-      if (!leads_truth) without_plane(*inspection.evaluation);
+      if (!leads_truth) drop_plane_errors(*inspection.evaluation);
       if (inspection.inertial)
         compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);
     }

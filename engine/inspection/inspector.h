@@ -12,22 +12,21 @@
 
 namespace gpo {
 
-struct Stages;
-
-/// Computes inspections; keeps each stage (tracks, truth, inliers, rotations) until its own inputs
-/// change, and of the windows from one start the tracks and the truth of the longest, which begin
-/// with those of the shorter ones. One thread at a time.
+/// Computes inspections. Caches each stage (tracks, truth, inliers, rotations) until its own inputs
+/// change. Of the windows from one start it caches tracks and truth of the longest, which begin
+/// with those of the shorter ones. Not thread-safe.
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);
   ~Inspector();
-  /// The whole chain. Null where it was stopped (within 50 ms). Throws InputError, e.g. for a
+  /// Returns a finished inspection; null if stopped (within 50 ms). Throws InputError, e.g. for a
   /// window that does not fit or an unknown method.
   std::shared_ptr<const Inspection> inspect(const Settings& settings,
                                             const std::stop_token& stop = {},
                                             const Progress& progress = {});
 
  private:
+  struct Stages;
   std::unique_ptr<Stages> stages_;
 };
 

@@ -7,24 +7,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-constexpr double kMostSigmaDeg = 15;  // of a tilt that names anything
-constexpr double kLevelDeg = 5;       // a floor is not truer than that, nor is what stands on it
+constexpr double kMostSigmaDeg = 15;  // of a tilt that gives a name
+constexpr double kLevelDeg = 5;       // floors and furniture are not more level than that
 constexpr double kSameHeight = 0.95;  // of the floor's depth: a carpet, not a table
 
 double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane) {
-  if (plane.normal_covariance)
-    return std::sqrt(plane.normal_covariance->trace()) * 180 / std::numbers::pi;
+  if (plane.normal_covariance) return degrees(std::sqrt(plane.normal_covariance->trace()));
   return result.uncertainty ? result.uncertainty->normal_sigma_deg : 0;
 }
 
-/// The window's planes as found; of a method that finds only the leading one, that.
+/// Returns the estimated planes, or the leading one for a method that estimates only that.
 std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   if (!result.planes.empty()) return result.planes;
@@ -76,7 +74,7 @@ std::optional<double> known_scale(const Inspection& inspection) {
 double meters_a_unit(const Inspection& inspection) {
   if (const auto scale = known_scale(inspection)) return *scale;
   const auto& inertial = inspection.inertial;
-  throw InputError(fmt::format("meters: found no scale ({}), expected one",
+  throw InputError(fmt::format("meters: the scale is unknown ({})",
                                !inertial      ? "no accelerometer is used"
                                : inertial->ok ? inertial->scale_reason
                                               : inertial->reason));

@@ -9,25 +9,26 @@
 
 namespace gpo {
 
-/// What a plane is to gravity.
+/// Name of a plane by its orientation to gravity.
 struct PlaneName {
-  /// floor: level, below the cameras, and the lowest such plane of the window, whatever it is;
-  /// table: level, above the floor; ceiling: level, above the cameras; wall: upright; slanted.
+  /// floor: level, below the cameras, and the lowest such plane of the window; table: level, above
+  /// the floor; ceiling: level, above the cameras; wall: upright; slanted.
   std::string name;
   double tilt_deg = 0;   ///< of its normal (towards the cameras) from up: 0 floor, 90 wall
-  double sigma_deg = 0;  ///< of the tilt: that of the normal and of gravity, one standard deviation
+  double sigma_deg = 0;  ///< uncertainty of the tilt (1 sigma), from the normal and from gravity
 };
 
-/// Of a plane by its number in the window; nothing where gravity or the plane is not known, or not
-/// well enough (15 deg) to say.
+/// Returns the name of a plane by its number in the window; nullopt if gravity or the plane is
+/// unknown or less certain than 15 deg.
 std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 
-/// "plane 2 (wall)", or "plane 2".
+/// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
-/// Meters per unit of the estimate by the accelerometer; nothing where it does not tell them.
+/// Returns the meters per unit of the estimate; nullopt if the accelerometer does not determine
+/// them.
 std::optional<double> known_scale(const Inspection& inspection);
-/// The same for who cannot do without. Throws InputError with the reason why it is not known.
+/// Returns the same; throws InputError with the reason if it is unknown.
 double meters_a_unit(const Inspection& inspection);
 
 }  // namespace gpo

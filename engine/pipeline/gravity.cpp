@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/pipeline/gravity.h"
-
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/methods/plane/shared_unknowns.h"
+#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Where things stand in the joint covariance of a result.
+/// Rows of the joint covariance of a result.
 struct JointRows {
   Index frames;
   Index bias_rows;
@@ -32,14 +31,14 @@ struct JointRows {
   }
 };
 
-/// How far accelerations move all rows, and by how much they lower their covariance.
+/// Effect of the accelerations on all rows.
 struct Pulled {
   VectorXd step;
-  MatrixXd less;
+  MatrixXd less;  ///< decrease of the covariance
 };
 
 Pulled pulled_rows(const Uncertainty& u, const UncertainPoses& poses, const PosePull& pull) {
-  // A bias that is not among the rows goes with none of them.
+  // A bias that is not among the rows is correlated with none of them.
   MatrixXd with_poses = MatrixXd::Zero(u.joint_covariance.rows(), pull.gradient.size());
   for (std::size_t k = 0; k < poses.joint_rows.size(); ++k)
     with_poses.col(static_cast<Index>(k)) = u.joint_covariance.col(poses.joint_rows[k]);
@@ -73,7 +72,7 @@ void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& r
   }
 }
 
-/// Of centers, of distance ratios 1 + n.p, and of the bias.
+/// Lowers the covariances of centers, of distance ratios 1 + n.p and of the bias.
 void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const auto tangents = normal_tangents(result.plane.normal);
@@ -102,8 +101,8 @@ void move(const Window& window, const JointRows& rows, const VectorXd& step, Ini
     Pose& camera = r.cameras[i];
     camera.p_wc += step.segment<3>(JointRows::of_center(i));
     if (rows.bias_rows == 0 || !window.gyro) continue;
-    const GyroColumns turn = gyro_columns(window, before, static_cast<int>(i), 3);
-    camera.R_wc = camera.R_wc * so3_exp(turn * step.segment<3>(rows.of_bias()));
+    const GyroColumns by_bias = gyro_columns(window, before, static_cast<int>(i), 3);
+    camera.R_wc = camera.R_wc * so3_exp(by_bias * step.segment<3>(rows.of_bias()));
   }
   if (r.bias_rad_s && rows.bias_rows == 3) *r.bias_rad_s += step.segment<3>(rows.of_bias());
   r.plane = moved_plane(r.plane, step.segment(rows.of_plane(0), 2));
@@ -113,8 +112,8 @@ void move(const Window& window, const JointRows& rows, const VectorXd& step, Ini
         moved_plane(r.planes[k].plane, step.segment(rows.of_plane(static_cast<int>(k)), 3));
 }
 
-/// A result after what accelerations say of its poses (engine/method.md, eq. 25); nothing where
-/// that is no solution of the window.
+/// Returns the result updated by the accelerations (engine/method.md, eq. 25); nullopt if that is
+/// no solution of the window.
 std::optional<Initialization> pulled(const Window& window,
                                      const Initialization& result,
                                      const UncertainPoses& poses,

@@ -3,8 +3,6 @@
 #include "engine/initialize.h"
 
 #include "engine/base/error.h"
-#include "engine/pipeline/chosen_rotations.h"
-#include "engine/pipeline/input_checks.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/window/tracks.h"
@@ -40,7 +38,7 @@ Tracks tracks_of(std::span<const Frame> frames) {
   return select_tracks(observations, 0, static_cast<int>(frames.size()));
 }
 
-/// The frames' own rotations, relative to the first one; empty where they have none.
+/// Returns the frames' own rotations, relative to the first one; empty if they have none.
 std::vector<Eigen::Matrix3d> given_rotations(std::span<const Frame> frames) {
   std::vector<Eigen::Matrix3d> R_wc;
   for (const Frame& frame : frames)
@@ -48,7 +46,7 @@ std::vector<Eigen::Matrix3d> given_rotations(std::span<const Frame> frames) {
   return R_wc;
 }
 
-RotationSource asked_for(const InitializeOptions& options, bool given, bool has_gyroscope) {
+RotationSource requested_source(const InitializeOptions& options, bool given, bool has_gyroscope) {
   using enum RotationSource;
   if (given && (options.rotations == automatic || options.rotations == truth)) return truth;
   const char* lacks = options.rotations == truth                             ? "rotations"
@@ -59,7 +57,7 @@ RotationSource asked_for(const InitializeOptions& options, bool given, bool has_
                      fmt::format("{}: no {} given", to_string(options.rotations), lacks));
 }
 
-/// With what messages name: lines of a file that there is none of are samples.
+/// Completes names for messages; without a file, lines count samples.
 Gyroscope with_names(Gyroscope gyroscope) {
   if (gyroscope.file.empty()) gyroscope.file = "gyroscope";
   if (gyroscope.lines.size() != gyroscope.timestamps_ns.size()) {
@@ -69,7 +67,7 @@ Gyroscope with_names(Gyroscope gyroscope) {
   return gyroscope;
 }
 
-/// The camera's place on the IMU, if its position is known.
+/// Returns the camera's pose on the IMU; nullopt if its position is unknown.
 std::optional<Pose> body_camera_of(const Gyroscope* gyroscope, const InitializeOptions& options) {
   if (gyroscope == nullptr || !options.p_gyro_camera_m) return std::nullopt;
   return Pose{gyroscope->R_gyro_camera, *options.p_gyro_camera_m};
@@ -91,7 +89,7 @@ WindowResult initialize(const Camera& camera,
                         const std::stop_token& stop) {
   check(camera, frames, gyroscope, options);
   const auto R_wc = given_rotations(frames);
-  const RotationSource asked = asked_for(options, !R_wc.empty(), gyroscope != nullptr);
+  const RotationSource requested = requested_source(options, !R_wc.empty(), gyroscope != nullptr);
   std::optional<Gyroscope> named;
   if (gyroscope != nullptr) named = with_names(*gyroscope);
   const Gyroscope* gyro = named ? &*named : nullptr;
@@ -101,7 +99,7 @@ WindowResult initialize(const Camera& camera,
   Tracks tracks = tracks_of(frames);
   Window window = window_of(tracks, camera, timestamps_ns, options);
   const ChosenRotations chosen =
-      chosen_rotations(window, gyro, R_wc, asked, ransac_options(options), stop);
+      chosen_rotations(window, {gyro, R_wc, ransac_options(options)}, requested, stop);
 
   WindowResult result;
   result.ids = std::move(tracks.ids);

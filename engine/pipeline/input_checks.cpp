@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/pipeline/input_checks.h"
-
 #include "engine/base/error.h"
+#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,7 @@
 namespace gpo {
 namespace {
 
-constexpr double kMostSkew = 1e-6;  // of a rotation matrix, each entry of R^T R - I
+constexpr double kMostSkew = 1e-6;  // of each entry of R^T R - I
 
 bool is_rotation(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d skewed = R.transpose() * R - Eigen::Matrix3d::Identity();
@@ -43,22 +42,22 @@ void check_frame(const Frame& frame, int number, const Frame* before) {
   }
   if (static_cast<Eigen::Index>(frame.ids.size()) != frame.raw_px.cols()) {
     refuse(fmt::format(
-        "{} ids and {} pixels, expected as many", frame.ids.size(), frame.raw_px.cols()));
+        "{} ids and {} pixels, expected equal counts", frame.ids.size(), frame.raw_px.cols()));
   }
-  if (!frame.raw_px.allFinite()) refuse("a pixel is no number");
+  if (!frame.raw_px.allFinite()) refuse("a pixel is not finite");
   std::vector<std::int64_t> ids = frame.ids;
   std::ranges::sort(ids);
   if (const auto twice = std::ranges::adjacent_find(ids); twice != ids.end())
     refuse(fmt::format("track {} is seen twice", *twice));
   if (before != nullptr && before->R_wc.has_value() != frame.R_wc.has_value())
     refuse("expected rotations of all frames or of none");
-  if (frame.R_wc && !is_rotation(*frame.R_wc)) refuse("R_wc is no rotation");
+  if (frame.R_wc && !is_rotation(*frame.R_wc)) refuse("R_wc is not a rotation");
 }
 
 void check_gyroscope(const Gyroscope& gyroscope) {
   const auto& t = gyroscope.timestamps_ns;
   if (t.size() != gyroscope.rates_rad_s.size()) {
-    throw InputError(fmt::format("gyroscope: {} time stamps and {} rates, expected as many",
+    throw InputError(fmt::format("gyroscope: {} time stamps and {} rates, expected equal counts",
                                  t.size(),
                                  gyroscope.rates_rad_s.size()));
   }
@@ -67,17 +66,17 @@ void check_gyroscope(const Gyroscope& gyroscope) {
     throw InputError(
         fmt::format("gyroscope: time stamp {} does not come after {}", *(back + 1), *back));
   for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s)
-    if (!rate.allFinite()) throw InputError("gyroscope: a rate is no number");
+    if (!rate.allFinite()) throw InputError("gyroscope: a rate is not finite");
   const auto& accelerations = gyroscope.accelerations_m_s2;
   if (!accelerations.empty() && accelerations.size() != t.size())
-    throw InputError(
-        fmt::format("accelerometer: {} time stamps and {} accelerations, expected as many, or none",
-                    t.size(),
-                    accelerations.size()));
+    throw InputError(fmt::format(
+        "accelerometer: {} time stamps and {} accelerations, expected equal counts or none",
+        t.size(),
+        accelerations.size()));
   for (const Eigen::Vector3d& acceleration : accelerations)
-    if (!acceleration.allFinite()) throw InputError("accelerometer: an acceleration is no number");
+    if (!acceleration.allFinite()) throw InputError("accelerometer: an acceleration is not finite");
   if (!is_rotation(gyroscope.R_gyro_camera))
-    throw InputError("gyroscope: R_gyro_camera is no rotation");
+    throw InputError("gyroscope: R_gyro_camera is not a rotation");
 }
 
 }  // namespace gpo

@@ -2,29 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/internal/background_job.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/methods/certainty/window_evidence.h"
-#include "engine/pipeline/input_checks.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/pipeline/travel.h"
+#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
 #include <deque>
 #include <exception>
+#include <unordered_map>
 #include <utility>
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-/// Below so much of what a ready window needs no window is solved. One homography tells the way
-/// with an error of few percent.
+/// No window is solved below this share of the translation that a ready window needs. One
+/// homography gives the translation to a few percent.
 constexpr double kTravelShare = 0.8;
-constexpr double kMostTurnSigmas = 4;  // of an answer, once it is ready
-constexpr double kLonger = 1.5;        // than the last one, of a window that may better an answer
+constexpr double kMostTurnSigmas = 4;  // rotation of the normal that a later answer may cause
+constexpr double kLonger = 1.5;  // length of a window that may improve an answer, to the last one
 constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // of a gyroscope, before the window
+constexpr int kMostIterations = 600;  // enough for a plane with a third of the tracks
 
 void check(const LiveOptions& options) {
   const auto refuse = [](const char* name, auto value, const char* expected) {
@@ -36,8 +40,9 @@ void check(const LiveOptions& options) {
     refuse("least_share", options.least_share, "0 to 1");
 }
 
-/// Whether one homography's way bounds what the verdict is to be: of the plane with most tracks.
-bool travel_tells(const InitializeOptions& options) {
+/// Returns whether the translation by one homography bounds the verdict: for the plane with most
+/// tracks.
+bool is_bounded_by_travel(const InitializeOptions& options) {
   return options.plane == 1 && options.method.row().needs_plane;
 }
 
@@ -48,15 +53,65 @@ std::string why_not_ready(const WindowResult& result) {
 
 }  // namespace
 
+/// Estimates the camera's translation from its reference frame by one homography, in a fraction of
+/// a millisecond: without rotations, a normal or other frames.
+class Travel {
+ public:
+  Travel(const Camera& camera, const RansacOptions& ransac, const Frame& reference)
+      : camera_(camera), ransac_(ransac), K_(intrinsic_matrix(camera)) {
+    ransac_.most_iterations = kMostIterations;
+    for (std::size_t k = 0; k < reference.ids.size(); ++k)
+      reference_px_[reference.ids[k]] =
+          undistort(camera, reference.raw_px.col(static_cast<Eigen::Index>(k)));
+  }
+
+  struct Step {
+    int seen = 0;  ///< tracks of the reference frame that are seen
+    /// |tau| [distance of the plane with most tracks]; nullopt if they have no homography.
+    std::optional<double> tau;
+  };
+
+  // K^-1 H K ~ R^T (I - tau n^T): its largest and smallest singular values differ by |tau| if the
+  // middle one is scaled to 1 (Zhang and Hanson 1996).
+  Step to(const Frame& frame) const {
+    Eigen::Matrix2Xd from(2, frame.raw_px.cols());
+    Eigen::Matrix2Xd at(2, frame.raw_px.cols());
+    Step step;
+    for (std::size_t k = 0; k < frame.ids.size(); ++k) {
+      const auto first = reference_px_.find(frame.ids[k]);
+      if (first == reference_px_.end() || !first->second.allFinite()) continue;
+      const Eigen::Vector2d now =
+          undistort(camera_, frame.raw_px.col(static_cast<Eigen::Index>(k)));
+      if (!now.allFinite()) continue;
+      from.col(step.seen) = first->second;
+      at.col(step.seen) = now;
+      ++step.seen;
+    }
+    const auto robust =
+        homography_ransac(from.leftCols(step.seen), at.leftCols(step.seen), ransac_);
+    if (!robust) return step;
+    const Eigen::Vector3d s =
+        Eigen::JacobiSVD<Eigen::Matrix3d>(K_.inverse() * robust->H * K_).singularValues();
+    step.tau = (s[0] - s[2]) / s[1];
+    return step;
+  }
+
+ private:
+  Camera camera_;
+  RansacOptions ransac_;
+  Eigen::Matrix3d K_;
+  std::unordered_map<std::int64_t, Eigen::Vector2d> reference_px_;  ///< undistorted, by track
+};
+
 struct LiveInitializer::Impl {
   Camera camera;
   LiveOptions options;
-  // Of the thread that adds frames.
+  // Used by the thread that adds frames.
   std::optional<Gyroscope> gyroscope;
   std::optional<Travel> travel;
-  double farthest = 0;  ///< way from the reference frame [plane distance]
+  double farthest = 0;  ///< largest translation from the reference frame [plane distance]
   int added = 0;
-  // Shared with the job that solves, and guarded by its lock.
+  // Shared with the job that solves, guarded by its lock.
   std::vector<std::shared_ptr<const Frame>> frames;
   struct Task {
     int frames;
@@ -86,19 +141,19 @@ struct LiveInitializer::Impl {
     farthest = 0;
   }
 
-  /// Why the frame cannot go on in this window; empty: it can.
+  /// Returns why the frame starts a new window; empty if it does not.
   std::string why_anew(int seen) {
     const auto lock = job.lock();
     if (status.ready || frames.empty() || job.busy()) return "";
     const auto of = static_cast<double>(frames.front()->ids.size());
     if (status.frames >= options.most_frames)
-      return fmt::format("{} frames, and not ready: {}", status.frames, status.reason);
+      return fmt::format("not ready after {} frames: {}", status.frames, status.reason);
     if (seen < options.least_tracks || seen < options.least_share * of)
       return fmt::format("{} of the first frame's {} tracks are left", seen, of);
     return "";
   }
 
-  /// Adds it to the window; whether the window may be ready now.
+  /// Adds the frame to the window and returns whether the window may be ready now.
   bool append(const Frame& frame) {
     std::string anew;
     Travel::Step step;
@@ -122,7 +177,7 @@ struct LiveInitializer::Impl {
     status.frames = static_cast<int>(frames.size());
     status.started_anew = !anew.empty();
     if (is_first || !grown) return false;
-    if (far || status.ready || !travel_tells(options.initialize) || !step.tau) return true;
+    if (far || status.ready || !is_bounded_by_travel(options.initialize) || !step.tau) return true;
     status.reason = fmt::format(
         "the camera moved by about {:.1f} % of its distance from the plane, {:.0f} % are needed",
         100 * farthest,
@@ -130,7 +185,7 @@ struct LiveInitializer::Impl {
     return false;
   }
 
-  /// Those that a window from then on does not need.
+  /// Drops the samples that a window from this frame on does not need.
   void drop_samples_before(std::int64_t frame_ns) {
     if (!gyroscope) return;
     auto& t = gyroscope->timestamps_ns;
@@ -155,9 +210,9 @@ struct LiveInitializer::Impl {
       throw InputError(
           fmt::format("gyroscope: time stamp {} does not come after {}", timestamp_ns, t.back()));
     }
-    if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is no number");
+    if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is not finite");
     if (acceleration_m_s2 && !acceleration_m_s2->allFinite())
-      throw InputError("accelerometer: an acceleration is no number");
+      throw InputError("accelerometer: an acceleration is not finite");
     if (accelerations.size() != (acceleration_m_s2 ? t.size() : 0))
       throw InputError("accelerometer: expected an acceleration with each sample, or with none");
     t.push_back(timestamp_ns);
@@ -209,20 +264,20 @@ struct LiveInitializer::Impl {
     status.answer = std::move(result);
   }
 
-  /// Than the answer that was ready first.
+  /// Returns why a result does not replace the answer; empty if it does.
   std::string why_not_better(int length, const WindowResult& result) const {
     if (!result.is_ready())
-      return fmt::format("of {} frames it is not ready: {}", length, why_not_ready(result));
+      return fmt::format("the window of {} frames is not ready: {}", length, why_not_ready(result));
     const double sigma_deg = first->initialization.verdict->normal_sigma_deg.value_or(0);
-    const double turn_deg =
+    const double apart_deg =
         angle_deg(first->initialization.plane.normal, result.initialization.plane.normal);
-    if (turn_deg <= kMostTurnSigmas * sigma_deg) return "";
+    if (apart_deg <= kMostTurnSigmas * sigma_deg) return "";
     return fmt::format(
-        "of {} frames its normal is {:.2f} deg from that of {}, {:.1f} standard deviations",
-        length,
-        turn_deg,
+        "the normals of {} and {} frames differ by {:.2f} deg, {:.1f} standard deviations",
         status.ready_frames,
-        turn_deg / sigma_deg);
+        length,
+        apart_deg,
+        apart_deg / sigma_deg);
   }
 
   BackgroundJob::Job next() {
@@ -244,7 +299,7 @@ struct LiveInitializer::Impl {
     job.wake();
   }
 
-  LiveStatus told() {
+  LiveStatus latest() {
     const auto lock = job.lock();
     if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
     LiveStatus now = status;
@@ -284,17 +339,17 @@ LiveStatus LiveInitializer::add_frame(const Frame& frame) {
       impl.solve(task, {});
     }
   }
-  return impl.told();
+  return impl.latest();
 }
 
-LiveStatus LiveInitializer::status() const { return impl_->told(); }
+LiveStatus LiveInitializer::status() const { return impl_->latest(); }
 
 LiveStatus LiveInitializer::wait() {
   {
     auto lock = impl_->job.lock();
     impl_->job.wait_until_idle(lock);
   }
-  return impl_->told();
+  return impl_->latest();
 }
 
 }  // namespace gpo

@@ -4,7 +4,7 @@
 
 #include "engine/frontend/make_window.h"
 #include "engine/methods/certainty/growth.h"
-#include "engine/pipeline/gravity.h"
+#include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <utility>
@@ -12,8 +12,22 @@
 namespace gpo {
 namespace {
 
-/// Gives a result that has none the verdict of the whole window as it grew, if it did, or that
-/// there is no plane.
+Rotations rotations_from(RotationSource source,
+                         const Window& window,
+                         const RotationInputs& inputs,
+                         const std::stop_token& stop) {
+  using enum RotationSource;
+  if (source == gyro) return sensitive_gyro_rotations(*inputs.gyroscope, window.timestamps_ns);
+  if (source == truth) return {{inputs.R_wc_true.begin(), inputs.R_wc_true.end()}, ""};
+  if (auto reason = reason_not_to_try(window)) return {{}, *reason};
+  if (source == averaging) return averaged_rotations(window, stop);
+  if (source == gyro_calibrated) return calibrated_gyro_rotations(*inputs.gyroscope, window, stop);
+  const auto solver = source == direct ? RelativeSolver::eigensolver : RelativeSolver::five_point;
+  return pair_rotations(window, {solver, inputs.ransac.threshold_px, inputs.ransac.seed}, stop);
+}
+
+/// Completes a result without verdict: with that of the whole window as it grew, or that there is
+/// no plane.
 void complete_verdict(const Window& window,
                       std::span<const Verdict> growth,
                       Initialization& result) {
@@ -30,9 +44,8 @@ void complete_verdict(const Window& window,
 }
 
 void add_gravity(const Window& window, const Sources& sources, Gravity when, Finished& end) {
-  const Gyroscope* gyroscope = sources.gyroscope;
-  if (!end.initialization.ok || when == Gravity::off || gyroscope == nullptr ||
-      gyroscope->accelerations_m_s2.empty())
+  if (!end.initialization.ok || when == Gravity::off || sources.gyroscope == nullptr ||
+      sources.gyroscope->accelerations_m_s2.empty())
     return;
   end.poses = uncertain_poses(window, end.initialization);
   end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
@@ -47,9 +60,33 @@ Window window_of(const Tracks& tracks,
   return make_window(tracks,
                      camera,
                      timestamps_ns,
-                     ransac_options(options),
-                     inliers_used(options),
-                     options.plane - 1);
+                     {.ransac = ransac_options(options),
+                      .inliers = inliers_used(options),
+                      .leader = options.plane - 1});
+}
+
+RotationSource first_source(RotationSource requested, bool has_gyroscope) {
+  using enum RotationSource;
+  if (requested == automatic) return has_gyroscope ? gyro_calibrated : five_point;
+  if (requested == raw) return has_gyroscope ? gyro : averaging;
+  return requested;
+}
+
+ChosenRotations chosen_rotations(const Window& window,
+                                 const RotationInputs& inputs,
+                                 RotationSource requested,
+                                 const std::stop_token& stop) {
+  const bool has_gyroscope = inputs.gyroscope != nullptr;
+  const RotationSource first = first_source(requested, has_gyroscope);
+  ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};
+  chosen.note = chosen.rotations.note;
+  const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
+  if (requested != RotationSource::automatic || settled) return chosen;
+  chosen.note = chosen.rotations.reason;
+  chosen.source = has_gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  chosen.rotations = rotations_from(chosen.source, window, inputs, stop);
+  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
+  return chosen;
 }
 
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
 #include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize.h"
@@ -16,7 +17,10 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -27,6 +31,13 @@ namespace gpo {
 // `initialize`, and with it the live `LiveInitializer`, runs them in a row. An Inspector runs the
 // same ones and caches the results of each.
 
+/// Checks of input; each throws InputError, or SettingError for an option.
+void check_options(const InitializeOptions& options);
+/// `number` of the frame is for messages; `before` may be null.
+void check_frame(const Frame& frame, int number, const Frame* before);
+/// Checks order and counts of the samples; they need not cover anything yet.
+void check_gyroscope(const Gyroscope& gyroscope);
+
 /// Returns the window of the tracks: undistorted, with inliers, homographies and planes. Rotations
 /// are left at the identity. `timestamps_ns` are those of all frames of the recording.
 Window window_of(const Tracks& tracks,
@@ -34,10 +45,36 @@ Window window_of(const Tracks& tracks,
                  std::span<const std::int64_t> timestamps_ns,
                  const InitializeOptions& options);
 
+/// Rotations of a window and their source.
+struct ChosenRotations {
+  RotationSource source = RotationSource::gyro;  ///< never automatic or raw
+  Rotations rotations = {};
+  std::string note = "";  ///< why the first choice of `automatic` failed; how an ambiguity ended
+};
+
+/// Inputs of the sources of rotations.
+struct RotationInputs {
+  const Gyroscope* gyroscope = nullptr;             ///< null if no source needs it
+  std::span<const Eigen::Matrix3d> R_wc_true = {};  ///< one a frame; empty if not `truth`
+  RansacOptions ransac = {};                        ///< threshold and seed of relative poses
+};
+
+/// Returns the source that is tried first. `automatic`: the calibrated gyroscope, else five-point
+/// rotations; `raw`: the uncalibrated gyroscope, else averaging; any other: itself.
+RotationSource first_source(RotationSource requested, bool has_gyroscope);
+
+/// Returns the window's rotations from the requested source. `automatic` falls back to the
+/// uncalibrated gyroscope if images cannot calibrate it, and to averaging if five-point rotations
+/// are ambiguous. Throws InputError if the gyroscope does not cover the window.
+ChosenRotations chosen_rotations(const Window& window,
+                                 const RotationInputs& inputs,
+                                 RotationSource requested,
+                                 const std::stop_token& stop);
+
 /// Returns the window as a method gets it, with these rotations, if there are any.
 Window with_rotations(Window window, const Rotations& rotations, const InitializeOptions& options);
 
-/// Returns what the method makes of the window, without assessment; a failure if there are no
+/// Returns the method's result for the window, without assessment; a failure if there are no
 /// rotations. Throws InputError for an unknown method.
 Initialization run_method(const Window& window,
                           const Rotations& rotations,
@@ -48,24 +85,33 @@ Initialization run_method(const Window& window,
 /// Returns the verdicts of the windows of 2, 3, ... frames, as the window grows.
 std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop);
 
-/// The end of the pipeline.
+/// Estimates gravity and metric scale from a successful result and its poses. `Gravity::joint`
+/// moves the result (planes, poses, bias and their covariances) to where images and accelerations
+/// agree best, if it comes with a joint covariance.
+InertialAlignment find_gravity(const Window& window,
+                               const Sources& sources,
+                               const UncertainPoses& poses,
+                               Gravity when,
+                               Initialization& result);
+
+/// Result of the last stage.
 struct Finished {
   Initialization initialization;  ///< with its uncertainty and the verdict on the window
-  /// Gravity and meters; nullopt if the initialization failed, they are not requested or there is
-  /// no accelerometer.
+  /// Gravity and metric scale; nullopt if the initialization failed, they are not requested or
+  /// there is no accelerometer.
   std::optional<InertialAlignment> inertial = std::nullopt;
-  UncertainPoses poses = {};  ///< from which these were found
+  UncertainPoses poses = {};  ///< input of `inertial`
 };
 
 /// Assesses a method's result, finds gravity and completes the verdict. `growth` gives a failed
-/// result its verdict: it may be empty where the result is ok or brings one.
+/// result its verdict; it may be empty if the result is ok or has one.
 Finished finished(const Window& window,
                   const Sources& sources,
                   const InitializeOptions& options,
                   std::span<const Verdict> growth,
                   Initialization result);
 
-/// Lowers `ready` to `weak`: what rests on a guess of the lens may be wrong however well it fits.
+/// Lowers `ready` to `weak`, because a guessed lens may be wrong however well it fits.
 void demote(Verdict& verdict);
 
 }  // namespace gpo

@@ -76,7 +76,7 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
                    "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome info = program("info " + (folder / "in").string());
   EXPECT_EQ(info.exit_code, 0) << info.err;
-  EXPECT_THAT(info.out, HasSubstr("certain to"));
+  EXPECT_THAT(info.out, HasSubstr("uncertainty"));
   // The board is known from then on; 8 coefficients, another file.
   EXPECT_EQ(program(fmt::format("calibrate {} --coefficients 5 --output {}",
                                 (folder / "in").string(),

@@ -149,7 +149,7 @@ TEST(Trajectories, SayWhereThereIsNoTruth) {
   const Outcome outcome =
       program("run " + copy.string() + " --true-trajectory " + (folder / "truth.txt").string());
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("desk: found no ground truth, expected one"));
+  EXPECT_THAT(outcome.err, HasSubstr("desk: no ground truth"));
   EXPECT_FALSE(fs::exists(folder / "truth.txt"));
 }
 

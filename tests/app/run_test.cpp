@@ -188,8 +188,7 @@ TEST(Run, TrajectoryAndPointsAreInMetersWhereTheAccelerometerTells) {
   const Outcome without = program("run " + desk().string() + " --gravity off --metric --points " +
                                   (folder / "none.ply").string());
   EXPECT_NE(without.exit_code, 0);
-  EXPECT_THAT(without.err,
-              HasSubstr("meters: found no scale (no accelerometer is used), expected one"));
+  EXPECT_THAT(without.err, HasSubstr("meters: the scale is unknown (no accelerometer is used)"));
   EXPECT_FALSE(fs::exists(folder / "none.ply"));
   EXPECT_THAT(program("run " + desk().string() + " --metric").err,
               HasSubstr("--metric is not used"));
@@ -248,7 +247,7 @@ TEST(Run, SaysWhatIsNotUsed) {
               file.string());
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,
-            "--loss is not used. Only gpo_joint lets one choose this\n"
+            "--loss is not used. Applies only to gpo_joint\n"
             "--trajectory-format is not used. No trajectory is written\n");
   const json j = json::parse(read_file(file));
   EXPECT_EQ(j["unused_settings"],

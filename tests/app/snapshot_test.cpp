@@ -88,7 +88,7 @@ TEST(Snapshot, SaysWhatIsNotUsed) {
           .err,
       "--methods is not used. Only the views compare and curves read it\n"
       "--lengths is not used. Only the view curves reads it\n"
-      "--loss is not used. Only gpo_joint lets one choose this\n");
+      "--loss is not used. Applies only to gpo_joint\n");
   const std::string three = "--frames 12 --methods gpo,gpo+no-ransac,gpo_joint ";
   EXPECT_EQ(snapshot("compare", file, three + "--loss huber --tracking anchored").err, "");
   EXPECT_EQ(snapshot("compare", file, three + "--ransac --method ba").err,

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -56,11 +56,9 @@ void track(benchmark::State& state, const Recording& recording, Tracking trackin
     };
     track_window([&](int frame) { return recording.images->gray(frame); },
                  recording.camera,
-                 0,
-                 kFrames,
+                 {0, kFrames},
                  options,
-                 {},
-                 step);
+                 {.progress = step});
   }
   if (!ms.empty()) state.counters["ms"] = median(std::move(ms));
 }
@@ -88,7 +86,7 @@ void undistort_tracks(benchmark::State& state, const Recording& recording) {
 /// Between the window's first and last frame, where the most tracks are off the plane.
 void ransac(benchmark::State& state, const Recording& recording) {
   const auto tracks = track_window(
-      [&](int frame) { return recording.images->gray(frame); }, recording.camera, 0, kFrames);
+      [&](int frame) { return recording.images->gray(frame); }, recording.camera, {0, kFrames});
   const Eigen::Matrix2Xd& last = tracks->raw_px.back();
   std::vector<int> seen;
   for (int j = 0; j < last.cols(); ++j) {

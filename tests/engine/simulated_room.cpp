@@ -96,8 +96,10 @@ Room simulate_room(const RoomOptions& options) {
     tracks.ids.push_back(j);
     room.plane_of_track.push_back(plane);
   }
-  room.window = make_window(
-      tracks, camera, base.window.timestamps_ns, {.seed = options.seed}, Inliers::planes);
+  room.window = make_window(tracks,
+                            camera,
+                            base.window.timestamps_ns,
+                            {.ransac = {.seed = options.seed}, .inliers = Inliers::planes});
   for (int i = 0; i < options.frames; ++i) room.window.R_wc[i] = base.cameras[i].R_wc;
   if (options.known_exactly) tell_truly(room);
   return room;

@@ -205,7 +205,8 @@ Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers) {
   Tracks tracks{0, std::vector<std::int64_t>(simulation.window.track_count()), {}};
   std::iota(tracks.ids.begin(), tracks.ids.end(), 0);
   tracks.raw_px = simulation.window.points_px;
-  Window window = make_window(tracks, camera, simulation.window.timestamps_ns, {}, inliers);
+  Window window =
+      make_window(tracks, camera, simulation.window.timestamps_ns, {.inliers = inliers});
   window.R_wc = simulation.window.R_wc;
   return window;
 }

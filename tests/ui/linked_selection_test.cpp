@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/held_keys.h"
 #include "tests/ui/made_inspection.h"

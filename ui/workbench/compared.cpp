@@ -3,7 +3,7 @@
 #include "ui/workbench/compared.h"
 
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>

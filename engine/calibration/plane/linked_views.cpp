@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/parallel.h"
 #include "engine/calibration/plane/plane_chain.h"
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/local_shape.h"
 #include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/patch_alignment.h"
@@ -59,9 +59,9 @@ struct Patches {
 };
 
 Patches patches_of(const PlaneReference& reference,
-               const Matrix3d& H_r_first,
-               const cv::Mat& soft,
-               const Camera& camera) {
+                   const Matrix3d& H_r_first,
+                   const cv::Mat& soft,
+                   const Camera& camera) {
   const int half = kAnchor.half_patch_px;
   Patches all{reference.frame, H_r_first, {}, {}, {}, {}};
   all.undistorted_px = all.corners_px = reference.raw_px;
@@ -174,8 +174,9 @@ Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& 
   for (Eigen::Index k = 0; k < flow_px.cols(); ++k) {
     const Eigen::Vector3d p = undistort(camera, view.raw_px.col(k)).homogeneous();
     const Vector2d distance_px = distort(camera, (H_after * p).hnormalized()) -
-                            distort(camera, (H_before * p).hnormalized());
-    if (distance_px.allFinite()) flow_px.col(k) = distance_px / std::max(1, after->first - before->first);
+                                 distort(camera, (H_before * p).hnormalized());
+    if (distance_px.allFinite())
+      flow_px.col(k) = distance_px / std::max(1, after->first - before->first);
   }
   return flow_px;
 }
@@ -197,9 +198,9 @@ ObservedPlane linked_views(const ChainImages& images,
   std::vector<Patches> patches;
   for (const PlaneReference& reference : spread(chain.references, kMostReferences))
     patches.push_back(patches_of(reference,
-                             chain.H_i_first.at(reference.frame),
-                             smoothed(images.gray(reference.frame)),
-                             camera));
+                                 chain.H_i_first.at(reference.frame),
+                                 smoothed(images.gray(reference.frame)),
+                                 camera));
   std::vector<std::vector<Matrix2Xd>> found(patches.size());
   in_parallel(static_cast<int>(patches.size()),
               static_cast<int>(std::thread::hardware_concurrency()),

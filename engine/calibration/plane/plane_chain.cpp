@@ -29,7 +29,10 @@ constexpr double kChainGate_px = 3;   // see PlaneOptions; wide, as the lens is 
 
 Window window_of(const Tracks& tracks, const Camera& camera) {
   const std::vector<std::int64_t> times(tracks.start + tracks.frame_count(), 0);
-  return make_window(tracks, camera, times, {.threshold_px = kChainGate_px}, Inliers::planes);
+  return make_window(tracks,
+                     camera,
+                     times,
+                     {.ransac = {.threshold_px = kChainGate_px}, .inliers = Inliers::planes});
 }
 
 /// Tracks in every step-th image; start and frames count in steps. nullopt if there are none.
@@ -39,7 +42,7 @@ std::optional<Tracks> tracks_at(const ChainImages& images,
                                 int frames) {
   const auto gray = [&](int k) { return images.gray(k * images.step); };
   const TrackerOptions options{.tracking = Tracking::anchored};
-  auto tracks = track_window(gray, camera, start, frames, options, images.stop, {});
+  auto tracks = track_window(gray, camera, {start, frames}, options, {images.stop});
   if (tracks && tracks->track_count() == 0) tracks.reset();
   return tracks;
 }

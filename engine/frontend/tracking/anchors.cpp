@@ -14,21 +14,14 @@ using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A step of all tracks from a picture to the next.
+/// One step of all tracks, to the next image.
 struct Step {
   Anchors& anchors;
   const cv::Mat& smoothed;
   const Matrix2Xd& before_px;
   const AnchorOptions& options;
-  Held held;
-
-  Step(Anchors& all, const cv::Mat& image, const Matrix2Xd& before, const AnchorOptions& settings)
-      : anchors(all),
-        smoothed(image),
-        before_px(before),
-        options(settings),
-        held{Matrix2Xd::Constant(2, before.cols(), kNaN),
-             std::vector<std::optional<TrackEnd>>(before.cols())} {}
+  Held held{Matrix2Xd::Constant(2, before_px.cols(), kNaN),
+            std::vector<std::optional<TrackEnd>>(before_px.cols())};
 
   bool was_seen(int j) const { return before_px.col(j).allFinite(); }
   bool is_seen(int j) const { return held.raw_px.col(j).allFinite(); }
@@ -45,17 +38,16 @@ struct Step {
   }
 };
 
-/// From the track's own warp in the picture before, moved.
+/// Aligns a track's template, starting at its warp in the image before, moved.
 Found search_from(const Step& step, int j, const Vector2d& motion_px) {
   const PatchTemplate& patch = step.anchors.patches[j];
   Warp start = step.anchors.warps[j];
   start.center += motion_px;
   const Found found = search(step.smoothed, patch, start, MotionModel::affine, step.options.search);
-  // What covers a part of the look may bend the rest out of shape.
+  // An occluder of a part of the template may distort an affine alignment: then only shift it.
   return found.end ? search(step.smoothed, patch, start, MotionModel::shift, step.options.search) : found;
 }
 
-/// Of the neighbors that are seen.
 std::vector<Vector2d> motions_around(const Step& step, int j) {
   std::vector<Vector2d> motions;
   for (const int k : step.anchors.neighborhoods[j].neighbors)
@@ -63,7 +55,6 @@ std::vector<Vector2d> motions_around(const Step& step, int j) {
   return motions;
 }
 
-/// Of each coordinate.
 Vector2d median_motion(std::vector<Vector2d> motions) {
   Vector2d median;
   const auto middle = motions.begin() + std::ssize(motions) / 2;
@@ -74,31 +65,30 @@ Vector2d median_motion(std::vector<Vector2d> motions) {
   return median;
 }
 
-/// Whether as many neighbors as are needed move as a track does, within `farthest_px`.
-bool has_company(const Step& step, int j) {
+/// Returns whether enough neighbors move as a track does, within `farthest_px`.
+bool moves_with_neighbors(const Step& step, int j) {
   const double most = step.options.search.farthest_px * step.options.search.farthest_px;
   const Vector2d motion = step.motion_px(j);
   int alike = 0;
   for (const int k : step.anchors.neighborhoods[j].neighbors) {
-    // Where one is lost, this is false.
+    // False for a lost neighbor (NaN).
     if ((step.motion_px(k) - motion).squaredNorm() <= most) ++alike;
     if (alike == step.options.least_alike) return true;
   }
   return false;
 }
 
-bool tell_something(const Step& step, const std::vector<Vector2d>& around) {
+bool are_enough(const Step& step, const std::vector<Vector2d>& around) {
   return std::ssize(around) / 2 >= step.options.least_alike;
 }
 
-/// A track whose motion is like that of hardly any neighbor has jumped to another place that looks
-/// alike. Too few neighbors tell nothing.
+/// A track that moves unlike its neighbors has jumped to a similar place. Returns nullopt if it has
+/// not, or if there are too few neighbors.
 std::optional<TrackEnd> jump(const Step& step, int j) {
-  if (has_company(step, j)) return std::nullopt;
+  if (moves_with_neighbors(step, j)) return std::nullopt;
   const std::vector<Vector2d> around = motions_around(step, j);
-  if (!tell_something(step, around)) return std::nullopt;
+  if (!are_enough(step, around)) return std::nullopt;
   std::vector<double> off_px;
-  off_px.reserve(around.size());
   for (const Vector2d& motion : around) off_px.push_back((motion - step.motion_px(j)).norm());
   const auto decisive = off_px.begin() + step.options.least_alike - 1;
   std::ranges::nth_element(off_px, decisive);
@@ -108,7 +98,7 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   return TrackEnd{0, LossReason::far_from_prediction, *decisive, limit};
 }
 
-/// Those that are lost or have jumped get a second chance where their neighbors went.
+/// Searches again for tracks that are lost or have jumped, starting at their neighbors' motion.
 void follow_neighbors(Step& step) {
   const Step first = step;
   for (int j = 0; j < step.before_px.cols(); ++j) {
@@ -119,14 +109,15 @@ void follow_neighbors(Step& step) {
       step.take(j, {.end = end});
     }
     const std::vector<Vector2d> around = motions_around(first, j);
-    if (!tell_something(first, around)) continue;
+    if (!are_enough(first, around)) continue;
     const std::optional<TrackEnd> end = step.held.ends[j];
     step.take(j, search_from(step, j, median_motion(around)));
     if (!step.is_seen(j) || jump(step, j)) step.take(j, {.end = end});
   }
 }
 
-/// The look's own shape is uncertain; its neighbors' motion tells it better. With it, where it is.
+/// Takes each template's shape from its neighbors' motion, which is more accurate than its own
+/// alignment, and refines its place.
 void take_shape(Step& step) {
   const Camera& camera = step.anchors.camera;
   Matrix2Xd undistorted_px = step.held.raw_px;
@@ -145,7 +136,7 @@ void take_shape(Step& step) {
   }
 }
 
-void lose_what_slides(Step& step) {
+void lose_sliding_edges(Step& step) {
   const SearchOptions& options = step.options.search;
   for (int j = 0; j < step.before_px.cols(); ++j) {
     if (!step.is_seen(j) || !(step.anchors.patches[j].edge < options.edge)) continue;
@@ -155,8 +146,8 @@ void lose_what_slides(Step& step) {
   }
 }
 
-/// The pixel of a whole place; of one that is far from the picture or not known, one whose patch
-/// has nothing of the picture.
+/// Returns the pixel at a whole place, or one whose patch is outside of the image if the place is
+/// far from the image or unknown.
 cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image, int half) {
   const Vector2d size(image.cols, image.rows);
   const bool near =
@@ -187,12 +178,12 @@ Held hold(Anchors& anchors,
           const Matrix2Xd& before_px,
           const Matrix2Xd& flow_px,
           const AnchorOptions& options) {
-  Step step(anchors, smoothed, before_px, options);
+  Step step{.anchors = anchors, .smoothed = smoothed, .before_px = before_px, .options = options};
   for (int j = 0; j < before_px.cols(); ++j)
     if (step.was_seen(j)) step.take(j, search_from(step, j, flow_px.col(j)));
   follow_neighbors(step);
   take_shape(step);
-  lose_what_slides(step);
+  lose_sliding_edges(step);
   return std::move(step.held);
 }
 

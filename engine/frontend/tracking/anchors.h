@@ -16,25 +16,25 @@
 namespace gpo {
 
 struct AnchorOptions {
-  int half_patch_px = 10;    ///< half the side of a look, in the reference picture [px]
-  int least_alike = 5;       ///< so many neighbors at least move as a track does [-]
-  double most_unlike = 0.5;  ///< from their motion its own differs by no more than this share of
-                             ///< it, or than `search.farthest_px` [-]
+  int half_patch_px = 10;    ///< half the side of a template, in the reference image [px]
+  int least_alike = 5;       ///< least number of neighbors that move as a track does [-]
+  double most_unlike = 0.5;  ///< largest difference of motions that are alike, as a share of the
+                             ///< neighbors' motion; at least `search.farthest_px` [-]
   SearchOptions search = {};
   ShapeOptions shape = {};
 };
 
-/// What tracks look like in the reference frame, and where and how each was seen last.
+/// Templates of tracks in the reference frame and their last warps, one a track.
 struct Anchors {
   Camera camera;
-  std::vector<PatchTemplate> patches;                ///< one a track, around its nearest whole pixel
-  Eigen::Matrix2Xd corners_px;              ///< 2 x tracks, from the looks' middles
-  std::vector<Neighborhood> neighborhoods;  ///< one a track
-  std::vector<Warp> warps;                  ///< one a track, of its look
+  std::vector<PatchTemplate> patches;    ///< templates around the nearest whole pixels
+  Eigen::Matrix2Xd corners_px;  ///< 2 x tracks, from the templates' middles
+  std::vector<Neighborhood> neighborhoods;
+  std::vector<Warp> warps;
 };
 
-/// `soft` is the reference picture (smoothed_image.h); `raw_px` 2 x tracks, its corners in raw
-/// pixels.
+/// Makes the templates. `soft` is the smoothed reference image (smoothed_image.h); `raw_px`, 2 x
+/// tracks, its corners in raw pixels.
 Anchors make_anchors(const cv::Mat& smoothed,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
@@ -42,13 +42,13 @@ Anchors make_anchors(const cv::Mat& smoothed,
 
 struct Held {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
-  std::vector<std::optional<TrackEnd>> ends;  ///< of those that are lost here; frame 0
+  std::vector<std::optional<TrackEnd>> ends;  ///< of tracks that are lost here; frame 0
 };
 
-/// Finds the tracks' looks in the next soft picture, so that they do not drift. `before_px` is
-/// where the tracks were in the one before, NaN: lost, and `flow_px` by how much they have moved,
-/// roughly; both 2 x tracks, raw pixels. A track is lost where its look is not found, where it
-/// moves as hardly any of its neighbors, and where the look is an edge along which it slides.
+/// Aligns the templates with the next smoothed image, so that tracks do not drift. `before_px` has
+/// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
+/// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
+/// does, or if its template is an edge along which it slides.
 Held hold(Anchors& anchors,
           const cv::Mat& smoothed,
           const Eigen::Matrix2Xd& before_px,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/coarse_flow.h"
 
-#include "engine/frontend/tracking/patch_kernel.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/smoothed_image.h"
 
 #include <algorithm>
@@ -19,9 +19,9 @@ using Eigen::Vector2d;
 using Eigen::Vector4d;
 
 constexpr int kCoarsest = 4;        // 1/16 of the size
-constexpr int kLeastSide_px = 24;   // of the smallest picture
-constexpr int kHalf = 8;            // half the side of what is compared [px]
-constexpr int kFarthest = 6;        // of the picture as a whole [px of the smallest picture]
+constexpr int kLeastSide_px = 24;   // of the smallest image
+constexpr int kHalf = 8;            // half the side of a patch [px]
+constexpr int kFarthest = 6;        // global motion [px of the smallest image]
 constexpr int kMostSteps = 8;       // of Gauss-Newton, on a level
 constexpr double kConverged = 0.1;  // length of its last step [px of the level]
 
@@ -40,7 +40,7 @@ Patch empty_patch() {
   return patch;
 }
 
-/// What is around a pixel; the normal matrix over slopes, brightness and 1.
+/// Fills the template around a pixel and returns the normal matrix over slopes, brightness and 1.
 Matrix4d look_at(const cv::Mat& smoothed, int u, int v, Patch& patch) {
   constexpr int kSide = 2 * kHalf;
   for (int row = 0; row < kSide; ++row) {
@@ -67,13 +67,13 @@ Matrix4d look_at(const cv::Mat& smoothed, int u, int v, Patch& patch) {
   return normal;
 }
 
-/// Of what is around `from_px` on a level, starting at `guess_px`; that where it finds no better.
+/// Returns the motion of the patch around `from_px` on a level, or `guess_px` if none fits better.
 Vector2d moved(const cv::Mat& from,
                const cv::Mat& to,
                const Vector2d& from_px,
                const Vector2d& guess_px,
                Patch& patch) {
-  // Near the edge what moves with it is looked at in its place.
+  // Near the image border, use the nearest patch that is inside of both images.
   const Vector2d least = (Vector2d::Constant(kHalf + 1) - guess_px).cwiseMax(kHalf + 1);
   const Vector2d most =
       (Vector2d(from.cols, from.rows) - Vector2d::Constant(kHalf + 3))
@@ -111,11 +111,10 @@ Vector2d moved(const cv::Mat& from,
   return best_px;
 }
 
-/// In whole numbers, so that what is added up is the same in any order: deviations from the mean in
-/// 64ths of the standard deviation, whatever gain and offset the exposure has. CV_16SC1.
+/// Returns deviations from the mean in 64ths of the standard deviation, invariant to gain and
+/// offset of the exposure, CV_16SC1. Sums of integers do not depend on their order.
 cv::Mat standardized(const cv::Mat& smoothed) {
-  cv::Scalar mean;
-  cv::Scalar deviation;
+  cv::Scalar mean, deviation;
   cv::meanStdDev(smoothed, mean, deviation);
   const double scale = deviation[0] > 0 ? 64 / deviation[0] : 0;
   cv::Mat result;
@@ -123,7 +122,7 @@ cv::Mat standardized(const cv::Mat& smoothed) {
   return result;
 }
 
-/// Mean square difference where `to` is moved by so many whole pixels.
+/// Returns the mean square difference of the images for a motion of whole pixels.
 double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
   const cv::Rect common = cv::Rect({0, 0}, to.size()) & cv::Rect(by, from.size());
   std::int64_t sum = 0;
@@ -140,9 +139,9 @@ double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
   return static_cast<double>(sum) / common.area();
 }
 
-/// By how much the picture as a whole moves: what each place starts from, so that a jolt does not
-/// lose those near the edge, around which the next picture has little.
-Vector2d image_motion(const cv::Mat& from, const cv::Mat& to) {
+/// Estimates the motion of the whole image, from which each place starts. Without it a jolt would
+/// lose places near the border.
+Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
   const cv::Mat a = standardized(from);
   const cv::Mat b = standardized(to);
   const int farthest = std::min({kFarthest, from.cols / 3, from.rows / 3});
@@ -176,12 +175,12 @@ Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
                              const Eigen::Matrix2Xd& raw_px) {
   Patch patch = empty_patch();
   const Vector2d start =
-      image_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
+      global_motion(from.back(), to.back()) * std::ldexp(1.0, static_cast<int>(from.size()) - 1);
   Eigen::Matrix2Xd flow = start.replicate(1, raw_px.cols());
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     for (auto level = static_cast<int>(from.size()) - 1; level >= 1; --level) {
       const double scale = std::ldexp(1.0, -level);
-      // The middle of the first pixel of a level is the middle of four.
+      // The center of a level's first pixel is the center of four pixels of the finer level.
       const Vector2d px = scale * (raw_px.col(j).array() + 0.5) - 0.5;
       flow.col(j) = moved(from[level], to[level], px, scale * flow.col(j), patch) / scale;
     }

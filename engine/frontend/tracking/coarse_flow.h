@@ -9,15 +9,15 @@
 
 namespace gpo {
 
-/// Soft pictures (smoothed_image.h), each of half the size of the one before.
+/// Smoothed images (smoothed_image.h), each of half the size of the one before.
 using SoftPyramid = std::vector<cv::Mat>;
 
 /// `gray` is CV_8UC1.
 SoftPyramid soft_pyramid(const cv::Mat& gray);
 
-/// By how much places of one picture move to the next [px]: from coarse to fine down to half the
-/// size, whatever gain and offset the exposure has. Good to a few tenths of a pixel, and a guess
-/// where there is nothing to see. `raw_px` is 2 x n, finite.
+/// Estimates the motion of places from one image to the next [px]: from coarse to fine down to half
+/// the size, invariant to gain and offset of the exposure. Accurate to a few tenths of a pixel; a
+/// guess in areas without texture. `raw_px` is 2 x n, finite.
 Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
                              const SoftPyramid& to,
                              const Eigen::Matrix2Xd& raw_px);

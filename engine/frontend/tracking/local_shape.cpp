@@ -19,14 +19,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kRounds = 3;                  // of weights
-constexpr double kMiddleWeight = 100;       // of the look's middle; that of a corner is 1
-constexpr double kUnit_px = 100;            // of monomials, so that they are well scaled
+constexpr double kMiddleWeight = 100;       // of the template's middle; that of a corner is 1
+constexpr double kUnit_px = 100;            // scales the monomials
 constexpr std::array kCorners{0, 2, 6, 8};  // of the nodes
 
-/// Where the k-th of the nodes is, from the look's middle.
+/// Returns the k-th node, from the template's middle.
 Vector2d node(int k, int half) { return {half * (k % 3 - 1), half * (k / 3 - 1)}; }
 
-/// (15b): (1 + v.d) p = A d + c, a homography, which takes d = 0 to no infinity.
+/// Homography that keeps d = 0 finite (15b): (1 + v.d) p = A d + c.
 struct LocalHomography {
   Eigen::Matrix<double, 2, 3> affine = Eigen::Matrix<double, 2, 3>::Zero();  ///< (A c)
   Vector2d v = Vector2d::Zero();
@@ -42,7 +42,7 @@ Monomials monomials(const Vector2d& d) {
 /// Weighted sums of the monomials of d times 1, p_x, p_y, |p|^2.
 using Moments = Eigen::Matrix<double, 6, 4>;
 
-/// Sums of (dx, dy, 1) (dx, dy, 1)^T times what the column says.
+/// Returns the sums of (dx, dy, 1) (dx, dy, 1)^T times the factor of the column.
 Matrix3d outer(const Moments& moments, int column) {
   const auto m = moments.col(column);
   Matrix3d sum;
@@ -50,8 +50,8 @@ Matrix3d outer(const Moments& moments, int column) {
   return sum;
 }
 
-/// Least squares of (15b); v by the Schur complement of `affine`, whose rows
-/// have one normal matrix.
+/// Solves (15b) by least squares; v by the Schur complement of `affine`, whose rows share one
+/// normal matrix.
 LocalHomography fitted(const Moments& moments) {
   const Matrix3d inverse = outer(moments, 0).inverse();
   const Matrix3d X = outer(moments, 1);
@@ -70,10 +70,9 @@ LocalHomography fitted(const Moments& moments) {
   return H;
 }
 
-/// Where neighbors are, from the look's middle [100 px].
 struct Places {
-  Eigen::ArrayXd x, y;
-  Eigen::ArrayXd seen;  ///< 1, or 0: it is not; then its place is 0
+  Eigen::ArrayXd x, y;  ///< of neighbors, from the template's middle; 0 if not seen [100 px]
+  Eigen::ArrayXd seen;  ///< 1 or 0
 };
 
 Places places_of(const std::vector<int>& neighbors,
@@ -91,8 +90,7 @@ Places places_of(const std::vector<int>& neighbors,
   return places;
 }
 
-/// How much each neighbor counts: less where the homography leaves it off its place (Geman and
-/// McClure), nothing where it is not seen.
+/// Returns the weight of each neighbor by its residual (Geman and McClure); 0 if not seen.
 Eigen::ArrayXd weights(const LocalHomography& H,
                        const Neighborhood& around,
                        const Places& places,
@@ -118,7 +116,7 @@ Moments moments_of(const Neighborhood& around,
   return around.monomials.lazyProduct(factors);
 }
 
-/// The quadratic through nodes around a center.
+/// Returns the quadratic warp through nodes around a center.
 Warp through(const Nodes& nodes_px, const Vector2d& center_px, int half) {
   const auto n = [&](int k) { return nodes_px.col(k); };
   const double h = half;
@@ -156,8 +154,7 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
     for (std::ptrdiff_t k = 0; k < count; ++k)
       around.monomials.col(k) = monomials((undistorted_px.col(near[k]) - origin) / kUnit_px);
     around.neighbors = std::move(near);
-    for (int k = 0; k < 9; ++k)
-      around.nodes_px.col(k) = undistort(camera, middle + node(k, half)) - origin;
+    around.nodes_px = look_nodes(camera, middle, half).colwise() - origin;
   }
   return all;
 }
@@ -191,7 +188,7 @@ Warp shaped(const Camera& camera,
             const Neighborhood& around,
             const ShapeOptions& options) {
   const Vector2d origin = undistort(camera, warp.center);
-  // Through the look's own middle, or those on another surface would outvote it.
+  // The template's middle has a large weight, or neighbors on another surface would outvote it.
   Moments own = Moments::Zero();
   own(0, 0) = kMiddleWeight;
   for (const int k : kCorners) {

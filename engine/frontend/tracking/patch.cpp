@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/patch.h"
 
+#include "engine/base/processor.h"
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace gpo {
 namespace {
 
-constexpr double kRounding_px = 0.01;  // more than floats are off, a look's reach from its middle
+constexpr double kRounding_px = 0.01;  // more than the rounding of floats
 
 using Column = Eigen::Map<Eigen::ArrayXf>;
 using ConstColumn = Eigen::Map<const Eigen::ArrayXf>;
@@ -28,6 +33,147 @@ void add_pixel(const cv::Mat& smoothed, const cv::Point& middle, const cv::Point
   patch.slope_y.push_back((at(0, 1) - at(0, -1)) / 2);
   patch.brightness.push_back(at(0, 0));
   patch.one.push_back(inside ? 1 : 0);
+}
+
+/// Returns the largest distance along x and y of a warped template from the warp's center [px].
+Eigen::Vector2d reach_px(const Patch& patch, const Warp& warp) {
+  return patch.half * warp.linear.cwiseAbs().rowwise().sum() +
+         patch.half * patch.half * warp.quadratic.cwiseAbs().rowwise().sum();
+}
+
+// Eight numbers: one register of AVX2, two of the baseline. One long body, as in plane_kernel.cpp.
+using Floats = float __attribute__((vector_size(32)));
+using Ints = std::int32_t __attribute__((vector_size(32)));
+using Pairs = std::uint32_t __attribute__((vector_size(32)));  // a pixel and the one to its right
+static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
+
+// NOLINTNEXTLINE(readability-function-size): see plane_kernel.cpp
+[[gnu::always_inline]] inline void accumulate(const cv::Mat& smoothed,
+                                              const Patch& patch,
+                                              const Warp& warp,
+                                              PatchSums& sums) {
+  // Relative to a nearby whole pixel: in large images floats resolve only a thousandth of a pixel.
+  const Eigen::Vector2d reach = reach_px(patch, warp);
+  const int first_u = std::max(0, static_cast<int>(std::floor(warp.center.x() - reach.x())));
+  const int first_v = std::max(0, static_cast<int>(std::floor(warp.center.y() - reach.y())));
+  const auto stride = static_cast<int>(smoothed.step1());
+  const auto* first = smoothed.ptr<std::uint16_t>(first_v) + first_u;
+  const auto x0 = static_cast<float>(warp.center.x() - first_u);
+  const auto y0 = static_cast<float>(warp.center.y() - first_v);
+  const Eigen::Matrix2f A = warp.linear.cast<float>();
+  const Eigen::Matrix<float, 2, 3> Q = warp.quadratic.cast<float>();
+  const auto pair = [first](int offset) {
+    std::uint32_t two = 0;
+    std::memcpy(&two, first + offset, sizeof(two));
+    return two;
+  };
+  Floats sum[8] = {};
+  Floats squares = {};
+  for (std::size_t k = 0; k < patch.dx.size(); k += kPatchKernelWidth) {
+    Floats dx, dy, gx, gy, T, one;
+    std::memcpy(&dx, &patch.dx[k], sizeof(Floats));
+    std::memcpy(&dy, &patch.dy[k], sizeof(Floats));
+    std::memcpy(&gx, &patch.slope_x[k], sizeof(Floats));
+    std::memcpy(&gy, &patch.slope_y[k], sizeof(Floats));
+    std::memcpy(&T, &patch.brightness[k], sizeof(Floats));
+    std::memcpy(&one, &patch.one[k], sizeof(Floats));
+    const Floats xx = dx * dx;
+    const Floats xy = dx * dy;
+    const Floats yy = dy * dy;
+    const Floats x = x0 + A(0, 0) * dx + A(0, 1) * dy + Q(0, 0) * xx + Q(0, 1) * xy + Q(0, 2) * yy;
+    const Floats y = y0 + A(1, 0) * dx + A(1, 1) * dy + Q(1, 0) * xx + Q(1, 1) * xy + Q(1, 2) * yy;
+    const Ints u = __builtin_convertvector(x, Ints);
+    const Ints v = __builtin_convertvector(y, Ints);
+    const Ints o = v * stride + u;
+    const Ints p = o + stride;
+    const Pairs upper = {pair(o[0]),
+                         pair(o[1]),
+                         pair(o[2]),
+                         pair(o[3]),
+                         pair(o[4]),
+                         pair(o[5]),
+                         pair(o[6]),
+                         pair(o[7])};
+    const Pairs lower = {pair(p[0]),
+                         pair(p[1]),
+                         pair(p[2]),
+                         pair(p[3]),
+                         pair(p[4]),
+                         pair(p[5]),
+                         pair(p[6]),
+                         pair(p[7])};
+    const Floats a = x - __builtin_convertvector(u, Floats);
+    const Floats b = y - __builtin_convertvector(v, Floats);
+    const Floats upper_left = __builtin_convertvector((Ints)(upper & 0xffffU), Floats);
+    const Floats upper_right = __builtin_convertvector((Ints)(upper >> 16U), Floats);
+    const Floats lower_left = __builtin_convertvector((Ints)(lower & 0xffffU), Floats);
+    const Floats lower_right = __builtin_convertvector((Ints)(lower >> 16U), Floats);
+    const Floats top = upper_left + a * (upper_right - upper_left);
+    const Floats bottom = lower_left + a * (lower_right - lower_left);
+    const Floats I = (top + b * (bottom - top)) * one;
+    const Floats gxI = gx * I;
+    const Floats gyI = gy * I;
+    sum[0] += gxI;
+    sum[1] += gyI;
+    sum[2] += gxI * dx;
+    sum[3] += gxI * dy;
+    sum[4] += gyI * dx;
+    sum[5] += gyI * dy;
+    sum[6] += T * I;
+    sum[7] += I;
+    squares += I * I;
+  }
+  for (int k = 0; k < kPatchKernelWidth; ++k) {
+    for (int i = 0; i < 8; ++i) sums.products[i] += sum[i][k];
+    sums.squares += squares[k];
+  }
+}
+
+[[gnu::always_inline]] inline void accumulate_shifted(const cv::Mat& smoothed,
+                                                      const Patch& patch,
+                                                      const Eigen::Vector2d& center,
+                                                      PatchSums& sums) {
+  using Pixels = std::uint16_t __attribute__((vector_size(16)));
+  const int middle_u = static_cast<int>(std::floor(center.x()));
+  const int middle_v = static_cast<int>(std::floor(center.y()));
+  const auto a = static_cast<float>(center.x() - middle_u);
+  const auto b = static_cast<float>(center.y() - middle_v);
+  const auto stride = static_cast<std::ptrdiff_t>(smoothed.step1());
+  const auto* middle = smoothed.ptr<std::uint16_t>(middle_v) + middle_u;
+  Floats sum[4] = {};
+  Floats squares = {};
+  for (std::size_t k = 0; k < patch.dx.size(); k += kPatchKernelWidth) {
+    const auto* first = middle + static_cast<std::ptrdiff_t>(patch.dy[k]) * stride +
+                        static_cast<std::ptrdiff_t>(patch.dx[k]);
+    Pixels corner[4];
+    std::memcpy(&corner[0], first, sizeof(Pixels));
+    std::memcpy(&corner[1], first + 1, sizeof(Pixels));
+    std::memcpy(&corner[2], first + stride, sizeof(Pixels));
+    std::memcpy(&corner[3], first + stride + 1, sizeof(Pixels));
+    Floats gx, gy, T;
+    std::memcpy(&gx, &patch.slope_x[k], sizeof(Floats));
+    std::memcpy(&gy, &patch.slope_y[k], sizeof(Floats));
+    std::memcpy(&T, &patch.brightness[k], sizeof(Floats));
+    const Floats upper_left = __builtin_convertvector(corner[0], Floats);
+    const Floats upper_right = __builtin_convertvector(corner[1], Floats);
+    const Floats lower_left = __builtin_convertvector(corner[2], Floats);
+    const Floats lower_right = __builtin_convertvector(corner[3], Floats);
+    const Floats top = upper_left + a * (upper_right - upper_left);
+    const Floats bottom = lower_left + a * (lower_right - lower_left);
+    const Floats I = top + b * (bottom - top);
+    sum[0] += gx * I;
+    sum[1] += gy * I;
+    sum[2] += T * I;
+    sum[3] += I;
+    squares += I * I;
+  }
+  for (int k = 0; k < kPatchKernelWidth; ++k) {
+    sums.products[0] += sum[0][k];
+    sums.products[1] += sum[1][k];
+    sums.products[6] += sum[2][k];
+    sums.products[7] += sum[3][k];
+    sums.squares += squares[k];
+  }
 }
 
 }  // namespace
@@ -58,11 +204,6 @@ PatchNormalMatrix patch_normal_matrix(const Patch& patch) {
   return (columns.transpose() * columns).cast<double>();
 }
 
-Eigen::Vector2d reach_px(const Patch& patch, const Warp& warp) {
-  return patch.half * warp.linear.cwiseAbs().rowwise().sum() +
-         patch.half * patch.half * warp.quadratic.cwiseAbs().rowwise().sum();
-}
-
 bool is_inside(const cv::Size& image, const Patch& patch, const Warp& warp) {
   const Eigen::Vector2d reach = reach_px(patch, warp).array() + kRounding_px;
   return warp.center.x() - reach.x() >= 0 && warp.center.y() - reach.y() >= 0 &&
@@ -82,6 +223,46 @@ Patch inside_part(const cv::Size& image, const Patch& patch, const Warp& warp) {
       (*values)[k] = 0;
   }
   return part;
+}
+
+PatchSums patch_sums_baseline(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+  PatchSums sums;
+  accumulate(smoothed, patch, warp, sums);
+  return sums;
+}
+
+[[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& smoothed,
+                                                        const Patch& patch,
+                                                        const Warp& warp) {
+  PatchSums sums;
+  accumulate(smoothed, patch, warp, sums);
+  return sums;
+}
+
+PatchSums patch_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+  static const auto version = has_avx2_fma() ? patch_sums_avx2_fma : patch_sums_baseline;
+  return version(smoothed, patch, warp);
+}
+
+PatchSums shifted_sums_baseline(const cv::Mat& smoothed,
+                               const Patch& patch,
+                               const Eigen::Vector2d& center) {
+  PatchSums sums;
+  accumulate_shifted(smoothed, patch, center, sums);
+  return sums;
+}
+
+[[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& smoothed,
+                                                           const Patch& patch,
+                                                           const Eigen::Vector2d& center) {
+  PatchSums sums;
+  accumulate_shifted(smoothed, patch, center, sums);
+  return sums;
+}
+
+PatchSums shifted_sums(const cv::Mat& smoothed, const Patch& patch, const Eigen::Vector2d& center) {
+  static const auto version = has_avx2_fma() ? shifted_sums_avx2_fma : shifted_sums_baseline;
+  return version(smoothed, patch, center);
 }
 
 }  // namespace gpo

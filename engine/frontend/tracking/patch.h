@@ -9,30 +9,31 @@
 
 namespace gpo {
 
-/// How many of a look's pixels are added up at a time.
+/// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 
-/// The whole pixels around a place in a soft picture (smoothed_image.h), padded to a multiple of the
-/// kernel's width. What is padding, or outside of the picture, is zero in all but the offsets.
+/// Patch template: the whole pixels around a place in a smoothed image (smoothed_image.h), padded to
+/// a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
+/// the offsets.
 struct Patch {
   std::vector<float> dx;          ///< from its middle [px]
   std::vector<float> dy;          ///< [px]
   std::vector<float> slope_x;     ///< [brightness / px]
   std::vector<float> slope_y;     ///< [brightness / px]
   std::vector<float> brightness;  ///< without its mean
-  std::vector<float> one;         ///< 1 in the picture
-  int half = 0;                   ///< the farthest dx and dy [px]
+  std::vector<float> one;         ///< 1 in the image
+  int half = 0;                   ///< largest dx and dy [px]
 };
 
-/// The pixels from `-half` to `half` around a pixel.
+/// Makes a template of the pixels from `-half` to `half` around a pixel.
 Patch make_patch(const cv::Mat& smoothed, const cv::Point& middle, int half);
 
-/// Sums of the products of a look's columns, which are: slopes along x and y; slope along x times
-/// dx, dy; slope along y times dx, dy; brightness; 1.
+/// Sums of the products of a template's columns: slopes along x and y; slope along x times dx, dy;
+/// slope along y times dx, dy; brightness; 1.
 using PatchNormalMatrix = Eigen::Matrix<double, 8, 8>;
 PatchNormalMatrix patch_normal_matrix(const Patch& patch);
 
-/// Where a look's pixels are in a picture: those at d from its middle are at
+/// Maps a template into an image: the pixel at d from its middle is at
 /// center + linear d + quadratic (d_x^2, d_x d_y, d_y^2).
 struct Warp {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [px]
@@ -45,14 +46,38 @@ struct Warp {
   }
 };
 
-/// The farthest along x and y that any of a look's pixels can be from the warp's center [px].
-Eigen::Vector2d reach_px(const Patch& patch, const Warp& warp);
-
-/// Whether a picture holds all pixels of a look where a warp puts them.
+/// Returns whether an image contains all pixels of a warped template.
 bool is_inside(const cv::Size& image, const Patch& patch, const Warp& warp);
 
-/// The look with only those of its pixels that a picture holds where a warp puts them; the others
-/// are zero, offsets and all. The warp's center is to be inside.
+/// Returns the template with all pixels that the warp puts outside of the image set to zero,
+/// offsets included. The warp's center must be inside.
 Patch inside_part(const cv::Size& image, const Patch& patch, const Warp& warp);
+
+/// Sums over a template's pixels of an image's brightness I at the warped places.
+struct PatchSums {
+  /// Sums of I times each of the template's columns.
+  Eigen::Matrix<float, 8, 1> products = Eigen::Matrix<float, 8, 1>::Zero();
+  float squares = 0;  ///< sum of I^2
+};
+
+/// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
+/// interpolation and the widest registers of this processor. (OpenCV's `remap` rounds places to
+/// 1/32 px.)
+PatchSums patch_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
+
+/// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
+/// without the products of dx and dy.
+PatchSums shifted_sums(const cv::Mat& smoothed, const Patch& patch, const Eigen::Vector2d& center);
+
+// The versions that these choose from; the last two only if `has_avx2_fma`
+// (engine/base/processor.h).
+PatchSums patch_sums_baseline(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_baseline(const cv::Mat& smoothed,
+                               const Patch& patch,
+                               const Eigen::Vector2d& center);
+PatchSums patch_sums_avx2_fma(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_avx2_fma(const cv::Mat& smoothed,
+                               const Patch& patch,
+                               const Eigen::Vector2d& center);
 
 }  // namespace gpo

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/patch_alignment.h"
 
-#include "engine/frontend/tracking/patch_kernel.h"
-
 #include <array>
 #include <cmath>
 #include <utility>
@@ -21,16 +19,17 @@ using Eigen::Vector4d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 constexpr int kMostCorrections = 20;  // of Gauss-Newton
-/// What its last step moves a look's pixels by; the next one would be a tenth of it.
-constexpr double kConverged_px[] = {0.01, 0.1};  // by `Unknown`: a shift follows on what is affine
-constexpr double kNear_px = 0.2;                 // the last step before all unknowns are solved for
+/// Last step of a template's pixels, by `Unknown`; the next one would be a tenth of it. A shift
+/// refines an affine result, so it must be more accurate.
+constexpr double kConverged_px[] = {0.01, 0.1};
+constexpr double kNear_px = 0.2;  // last shift before all unknowns are solved for
 
-/// The columns of a look that a search without dx and dy has.
+/// Columns of a template without those of dx and dy.
 constexpr std::array kShiftColumns{0, 1, 6, 7};
 constexpr int kBrightness = 6;
 constexpr int kOne = 7;
 
-/// Least squares of (15a) over t, B, gain and offset; linear in gain times t and B.
+/// Least-squares solution of (15a) over t, B, gain and offset; linear in gain times t and B.
 struct Correction {
   Vector2d t = Vector2d::Zero();
   Matrix2d B = Matrix2d::Zero();
@@ -62,18 +61,18 @@ Correction solved(const PatchSums& sums, const PatchTemplate& patch_template, Mo
   return step;
 }
 
-bool holds(const cv::Size& image, const Vector2d& px) {
+bool contains(const cv::Size& image, const Vector2d& px) {
   return px.x() > 1 && px.y() > 1 && px.x() < image.width - 2 && px.y() < image.height - 2;
 }
 
-/// What shrinks or grows by more from a picture to the next has slid into something else.
+/// A template that shrinks or grows by more from an image to the next has slid to another place.
 bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
   const double share = now.determinant() / before.determinant();
   return share > 0.5 && share < 2;
 }
 
-/// Nothing where less than half of the look's pixels are in the picture, or where it is darker
-/// where it should be brighter.
+/// Returns nullopt if less than half of the template's pixels are in the image, or if the gain is
+/// negative.
 std::optional<Correction> step_from(const cv::Mat& smoothed,
                                     const PatchTemplate& patch_template,
                                     const Warp& warp,
@@ -112,13 +111,13 @@ Found search(const cv::Mat& smoothed,
              const SearchOptions& options) {
   const double converged_px = kConverged_px[static_cast<std::size_t>(unknown)];
   Warp warp = start;
-  MotionModel now = MotionModel::shift;  // near enough, then all of it
+  MotionModel now = MotionModel::shift;  // until it is near enough for all unknowns
   for (int k = 0; k < kMostCorrections; ++k) {
-    if (!holds(smoothed.size(), warp.center))
+    if (!contains(smoothed.size(), warp.center))
       return {.end = TrackEnd{.reason = LossReason::left_image}};
     const auto step = step_from(smoothed, patch_template, warp, now);
     if (!step) break;
-    // (15a): w o (d + t + B d)^-1, so that the look's slopes stay where they were.
+    // (15a): w o (d + t + B d)^-1, so that the template's slopes remain valid.
     warp.linear *= (Matrix2d::Identity() + step->B).inverse();
     const Vector2d moved_px = -warp.linear * step->t;
     warp.center += moved_px;

@@ -14,20 +14,20 @@
 namespace gpo {
 
 struct SearchOptions {
-  double farthest_px = 5;          ///< a look is not searched farther from its prediction [px]
-  double least_correlation = 0.7;  ///< zero-mean normalized, below it a look is not found [-]
-  double edge = 0.25;              ///< a look is one where its slopes' squares along the weakest
-                                   ///< direction have less than this share of the strongest's [-]
-  double least_detail = 0.4;       ///< see `detail_along_edge` [-]
+  double farthest_px = 5;          ///< largest distance from the prediction [px]
+  double least_correlation = 0.7;  ///< of an accepted match, zero-mean normalized [-]
+  double edge = 0.25;  ///< a template is an edge below this ratio of the squared slopes along its
+                       ///< weakest and strongest directions [-]
+  double least_detail = 0.4;  ///< see `detail_along_edge` [-]
 };
 
-/// A look that is searched for again and again.
+/// A template prepared for repeated searches.
 struct PatchTemplate {
   Patch patch;
   PatchNormalMatrix normal;
   Eigen::LDLT<PatchNormalMatrix> affine;      ///< of the normal matrix
   Eigen::LDLT<Eigen::Matrix4d> shift;  ///< of its part without the terms of dx and dy
-  Eigen::Vector2d along_edge;          ///< a unit vector, in which its brightness changes least
+  Eigen::Vector2d along_edge;          ///< unit vector of the weakest slope
   double edge;                         ///< see SearchOptions
 };
 
@@ -35,14 +35,14 @@ PatchTemplate make_patch_template(Patch patch);
 
 enum class MotionModel { shift, affine };
 
-/// Where a look is found, or why not; the end's frame is 0.
+/// Alignment result, or why there is none; the end's frame is 0.
 struct Found {
   Warp warp = {};
   std::optional<TrackEnd> end = std::nullopt;
 };
 
-/// Searches a soft picture for a look, from `start`, whatever gain and offset the exposure has:
-/// inverse compositional Gauss-Newton over the warp's center, or center and linear part
+/// Aligns a template with a smoothed image, starting at `start`: inverse compositional Gauss-Newton
+/// over the warp's center, or center and linear part, invariant to gain and offset of the exposure
 /// (engine/method.md, 15a).
 Found search(const cv::Mat& smoothed,
              const PatchTemplate& patch_template,
@@ -50,10 +50,10 @@ Found search(const cv::Mat& smoothed,
              MotionModel unknown,
              const SearchOptions& options = {});
 
-/// How much of what a look shows along its edge the picture shows again (engine/method.md, 15c):
-/// the picture's slopes regressed on the look's; 1: all of it. Near 0 the look is an edge with
-/// noise, which correlates wherever it slides to. Nothing where a part of the look is not in the
-/// picture.
+/// Returns how much of a template's detail along its edge the image repeats (engine/method.md,
+/// 15c): the regression of the image's slopes on the template's; 1: all of it. Near 0 the template
+/// is an edge with noise, which correlates wherever it slides. Returns nullopt if a part of the
+/// template is outside of the image.
 std::optional<double> detail_along_edge(const cv::Mat& smoothed,
                                         const PatchTemplate& patch_template,
                                         const Warp& warp);

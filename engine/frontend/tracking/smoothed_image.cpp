@@ -8,7 +8,7 @@
 
 namespace gpo {
 
-// In 16 bits throughout, so that the compiler makes eight pixels at a time of it.
+// In 16 bits throughout so that the compiler vectorizes it, eight pixels at a time.
 cv::Mat smoothed(const cv::Mat& gray) {
   cv::Mat smoothed(gray.size(), CV_16UC1);
   std::vector<std::uint16_t> column_sums(gray.cols + 2);
@@ -35,11 +35,9 @@ cv::Mat halved(const cv::Mat& smoothed) {
     const auto* lower = smoothed.ptr<std::uint16_t>(2 * v + 1);
     auto* out = half.ptr<std::uint16_t>(v);
     for (int u = 0; u < half.cols; ++u) {
-      const int left = 2 * u;
-      const int right = left + 1;
+      const int k = 2 * u;
       // Four times 255 * 64 are below 2^16.
-      out[u] =
-          static_cast<std::uint16_t>((upper[left] + upper[right] + lower[left] + lower[right]) / 4);
+      out[u] = static_cast<std::uint16_t>((upper[k] + upper[k + 1] + lower[k] + lower[k + 1]) / 4);
     }
   }
   return half;

@@ -20,7 +20,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
-  // FAST looks at a circle of radius 3 around each pixel: the cell is widened to not lose its rim.
+  // FAST needs a circle of radius 3 around each pixel, so the cell is widened.
   const cv::Rect wide = cv::Rect(cell.x - 3, cell.y - 3, cell.width + 6, cell.height + 6) &
                         cv::Rect(0, 0, gray.cols, gray.rows);
   std::vector<cv::KeyPoint> corners;
@@ -41,12 +41,6 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray,
   return corners;
 }
 
-Eigen::Matrix2Xd to_matrix(const std::vector<cv::Point2f>& points) {
-  Eigen::Matrix2Xd matrix(2, points.size());
-  for (std::size_t j = 0; j < points.size(); ++j) matrix.col(j) << points[j].x, points[j].y;
-  return matrix;
-}
-
 using Pyramid = std::vector<cv::Mat>;
 
 Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
@@ -56,10 +50,9 @@ Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
   return pyramid;
 }
 
-/// Where points of one picture are in another one.
 struct Flow {
-  std::vector<cv::Point2f> points;  ///< NaN where KLT gives up or leaves the picture
-  std::vector<bool> left;           ///< the picture
+  std::vector<cv::Point2f> points;  ///< NaN if KLT fails or leaves the image
+  std::vector<bool> left;           ///< left the image
 };
 
 Flow flow(const Pyramid& from,
@@ -81,7 +74,7 @@ Flow flow(const Pyramid& from,
                            until);
   const cv::Size size = to.front().size();
   for (std::size_t j = 0; j < found.size(); ++j) {
-    // KLT reports success for some points outside of the picture (OpenCV issue 4799).
+    // KLT reports success for some points outside of the image (OpenCV issue 4799).
     const bool inside = found[j].x >= 0 && found[j].y >= 0 &&
                         found[j].x <= static_cast<float>(size.width - 1) &&
                         found[j].y <= static_cast<float>(size.height - 1);
@@ -91,14 +84,15 @@ Flow flow(const Pyramid& from,
   return result;
 }
 
-/// The tracks in the next picture.
+/// The tracks in the next image.
 struct Followed {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
   Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
-  std::vector<std::optional<TrackEnd>> ends;  ///< of those that are lost on the way to it
+  std::vector<std::optional<TrackEnd>> ends;  ///< of tracks that are lost in it
 };
 
-/// Why one is lost that was found there (NaN: nowhere), so far from its beginning on the way back.
+/// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`
+/// from its beginning on the way back; nullopt if it is not lost.
 std::optional<TrackEnd> end_of(const cv::Point2f& there,
                                bool left,
                                double distance_px,
@@ -112,7 +106,7 @@ std::optional<TrackEnd> end_of(const cv::Point2f& there,
                   .limit = options.forward_backward_px};
 }
 
-/// Follows the living tracks into the next picture.
+/// Tracks the living tracks into the next image by KLT.
 Followed follow(const Pyramid& from,
                 const Pyramid& to,
                 const Eigen::Matrix2Xd& before,
@@ -144,7 +138,7 @@ Followed follow(const Pyramid& from,
   return after;
 }
 
-/// Finds the looks of the living tracks in the next picture.
+/// Aligns the templates of the living tracks with the next image.
 Followed follow(const SoftPyramid& from,
                 const SoftPyramid& to,
                 const Eigen::Matrix2Xd& before,
@@ -170,7 +164,7 @@ void append(Followed followed, Tracks& tracks) {
   tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
 }
 
-/// Takes tracks from the picture that it was shown before, if any, to the next one.
+/// Tracks from the image of the call before, if any, to the next one.
 using Follower = std::function<Followed(const cv::Mat& gray, const Eigen::Matrix2Xd& before)>;
 
 Follower frame_to_frame_follower(const TrackerOptions& options) {
@@ -197,8 +191,7 @@ Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
   };
 }
 
-/// The corners of the reference frame.
-Tracks beginning(const cv::Mat& gray, int start, const DetectorOptions& options) {
+Tracks corners_of_reference(const cv::Mat& gray, int start, const DetectorOptions& options) {
   Tracks tracks;
   tracks.start = start;
   tracks.raw_px.push_back(detect_corners(gray, options));
@@ -212,9 +205,9 @@ Tracks beginning(const cv::Mat& gray, int start, const DetectorOptions& options)
 
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options) {
   const double spacing_px = options.spacing * gray.cols;
-  std::vector<cv::Point2f> kept;
+  std::vector<cv::Point2f> corners;
   const auto is_free = [&](const cv::Point2f& p) {
-    return std::ranges::none_of(kept,
+    return std::ranges::none_of(corners,
                                 [&](const cv::Point2f& q) { return cv::norm(p - q) < spacing_px; });
   };
   const int width = gray.cols - 2 * options.border_px;
@@ -229,39 +222,39 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
       for (const cv::KeyPoint& corner : corners_of_cell(gray, cv::Rect(tl, br), options)) {
         if (taken == options.most_per_cell) break;
         if (!is_free(corner.pt)) continue;
-        kept.push_back(corner.pt);
+        corners.push_back(corner.pt);
         ++taken;
       }
     }
   }
-  if (kept.empty()) return Eigen::Matrix2Xd(2, 0);
+  if (corners.empty()) return Eigen::Matrix2Xd(2, 0);
   const int half = options.subpixel_half_px;
   cv::cornerSubPix(gray,
-                   kept,
+                   corners,
                    cv::Size(half, half),
                    cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.01));
-  return to_matrix(kept);
+  Eigen::Matrix2Xd raw_px(2, corners.size());
+  for (std::size_t j = 0; j < corners.size(); ++j) raw_px.col(j) << corners[j].x, corners[j].y;
+  return raw_px;
 }
 
 std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
-                                   int start,
-                                   int frames,
+                                   const FrameSpan& span,
                                    const TrackerOptions& options,
-                                   const std::stop_token& stop,
-                                   const FrameProgress& progress) {
+                                   const TrackingRun& run) {
   Tracks tracks;
   const auto follower = options.tracking == Tracking::anchored
                             ? anchored_follower(camera, options.anchor)
                             : frame_to_frame_follower(options);
-  for (int i = 0; i < frames; ++i) {
-    if (stop.stop_requested()) return std::nullopt;
-    const cv::Mat gray = gray_at(start + i);
-    if (i == 0) tracks = beginning(gray, start, options.detector);
+  for (int i = 0; i < span.frames; ++i) {
+    if (run.stop.stop_requested()) return std::nullopt;
+    const cv::Mat gray = gray_at(span.start + i);
+    if (i == 0) tracks = corners_of_reference(gray, span.start, options.detector);
     Followed followed = follower(gray, tracks.raw_px.back());
     if (i > 0) append(std::move(followed), tracks);
-    if (progress) progress(i + 1, frames);
+    if (run.progress) run.progress(i + 1, span.frames);
   }
   return tracks;
 }

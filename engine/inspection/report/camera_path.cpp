@@ -61,7 +61,7 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_a_unit) {
   if (!inspection.initialization->ok) {
-    throw InputError(fmt::format("{}: found a failed initialization ({}), expected one with poses",
+    throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
                                  inspection.recording->name,
                                  inspection.initialization->reason));
   }
@@ -75,8 +75,7 @@ CameraPath estimated_path(const Inspection& inspection,
 
 CameraPath true_path(const Inspection& inspection) {
   if (!inspection.truth) {
-    throw InputError(inspection.recording->name +
-                     ": found no ground truth, expected one to write its trajectory");
+    throw InputError(inspection.recording->name + ": no ground truth to write a trajectory of");
   }
   CameraPath trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
   const auto& cameras = inspection.truth->cameras;
@@ -91,7 +90,7 @@ CameraPath true_path(const Inspection& inspection) {
 
 std::string to_text(const CameraPath& trajectory, TrajectoryFormat format) {
   struct Style {
-    const char* header;  ///< the columns; KITTI's files have none
+    const char* header;  ///< empty for KITTI
     std::string (*line)(std::int64_t ns, const Pose& camera);
   };
   constexpr std::array<Style, 3> kStyles{
@@ -100,9 +99,8 @@ std::string to_text(const CameraPath& trajectory, TrajectoryFormat format) {
        {"", kitti_line}}};
   if (format == TrajectoryFormat::kitti && !trajectory.complete) {
     throw InputError(
-        "trajectory: found frames without a pose, expected all of them, since KITTI's format has "
-        "no "
-        "time stamps");
+        "trajectory: some frames have no pose, which KITTI's format cannot express. Choose tum or "
+        "euroc");
   }
   const Style& style = kStyles[static_cast<std::size_t>(format)];
   std::string text = *style.header == '\0' ? "" : style.header + trajectory.world + "\n";

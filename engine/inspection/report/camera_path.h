@@ -29,17 +29,16 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
-/// World = reference camera, unit = distance of the plane, or the meter. Throws InputError for an
-/// initialization that failed.
+/// Returns the estimated poses. World = reference camera, unit = distance of the plane, or meter.
+/// Throws InputError if the initialization failed.
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_a_unit = {});
 
-/// The true poses of the same window, of the frames that have one [m]. Throws InputError where no
-/// truth is known.
+/// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);
 
-/// Throws InputError for an incomplete trajectory in KITTI's format, which cannot say which frames
-/// are missing.
+/// Returns the text of a trajectory file. Throws InputError for an incomplete trajectory in KITTI's
+/// format, which cannot mark missing frames.
 std::string to_text(const CameraPath& trajectory, TrajectoryFormat format);
 
 }  // namespace gpo

@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 namespace gpo {
-
 namespace {
 
 constexpr int kMostFramesExamined = 300;
@@ -34,9 +33,8 @@ std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
   std::vector<TimeGap> found;
   for (std::size_t i = 1; i < times.size(); ++i) {
     const auto length = times[i] - times[i - 1];
-    if (static_cast<double>(length) > longest) {
+    if (static_cast<double>(length) > longest)
       found.push_back({label(i - 1), in_seconds(times[i - 1] - origin), in_seconds(length)});
-    }
   }
   return found;
 }
@@ -59,19 +57,16 @@ GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& re
 }
 
 int known_count(const GroundTruth& truth) {
-  return static_cast<int>(std::count_if(
-      truth.poses.begin(), truth.poses.end(), [](const auto& pose) { return pose.has_value(); }));
+  return static_cast<int>(
+      std::ranges::count_if(truth.poses, [](const auto& pose) { return pose.has_value(); }));
 }
 
 TruthInfo examine_board(const Recording& recording) {
   const int frames = recording.frame_count();
   const int count = frames <= kMostFramesExamined ? frames : kSample;
   std::vector<int> sample;
-  sample.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    sample.push_back(count == 1 ? 0
-                                : static_cast<int>(std::int64_t{i} * (frames - 1) / (count - 1)));
-  }
+  for (int i = 0; i < count; ++i)
+    sample.push_back(static_cast<int>(std::int64_t{i} * (frames - 1) / std::max(1, count - 1)));
   const GroundTruth truth = board_truth(recording, sample);
   return {truth.source + " (board.yaml)",
           known_count(truth),
@@ -100,9 +95,8 @@ std::optional<TracksInfo> describe_tracks(const Recording& recording) {
 
 nlohmann::json to_json(const std::vector<TimeGap>& gaps, const char* after) {
   auto list = nlohmann::json::array();
-  for (const auto& gap : gaps) {
+  for (const auto& gap : gaps)
     list.push_back({{after, gap.after}, {"at_s", gap.at_s}, {"length_s", gap.length_s}});
-  }
   return list;
 }
 
@@ -163,13 +157,12 @@ void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) 
             fmt::format("{:.1f} Hz, {} samples{}",
                         gyroscope->rate_hz,
                         gyroscope->samples,
-                        gyroscope->covers_frames ? "" : ", not over all frames"));
+                        gyroscope->covers_frames ? "" : ", does not cover all frames"));
   table.row(
       "  bias",
       fmt::format("{:g}, {:g}, {:g} rad/s ({})", b.x(), b.y(), b.z(), gyroscope->bias_source));
-  if (gyroscope->time_offset_ms != 0) {
+  if (gyroscope->time_offset_ms != 0)
     table.row("  offset", fmt::format("{:.3f} ms ahead of the camera", gyroscope->time_offset_ms));
-  }
   table.gaps(gyroscope->gaps, "line");
 }
 
@@ -181,8 +174,8 @@ void add_truth(Table& table, const RecordingInfo& info) {
                         info.truth->source,
                         info.truth->frames,
                         info.truth->examined,
-                        sampled ? " looked at" : ""));
-  if (const auto& u = info.truth->uncertainty) table.row("  certain to", uncertainty_text(*u));
+                        sampled ? " examined" : ""));
+  if (const auto& u = info.truth->uncertainty) table.row("  uncertainty", uncertainty_text(*u));
 }
 
 std::string tags_text(const Board& board) {
@@ -288,16 +281,14 @@ nlohmann::json to_json(const RecordingInfo& info) {
   if (const auto& truth = info.truth) {
     json["ground_truth"] = {
         {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
-    if (const auto& u = truth->uncertainty) {
-      json["ground_truth"]["rms_px"] = u->rms_px;
-      json["ground_truth"]["position_sigma_m"] = u->position_sigma_m;
-      json["ground_truth"]["rotation_sigma_deg"] = u->rotation_sigma_deg;
-      json["ground_truth"]["normal_sigma_deg"] = u->normal_sigma_deg;
-    }
+    if (const auto& u = truth->uncertainty)
+      json["ground_truth"].update({{"rms_px", u->rms_px},
+                                   {"position_sigma_m", u->position_sigma_m},
+                                   {"rotation_sigma_deg", u->rotation_sigma_deg},
+                                   {"normal_sigma_deg", u->normal_sigma_deg}});
   }
-  if (info.plane) {
+  if (info.plane)
     json["plane"] = {{"normal", to_json(info.plane->normal)}, {"distance", info.plane->distance}};
-  }
   if (info.board) json["board"] = to_json(*info.board);
   if (const auto& tracks = info.tracks) {
     json["tracks"] = {{"count", tracks->tracks},
@@ -310,7 +301,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
 std::string to_text(const RecordingInfo& info) {
   Table table;
   table.row("recording", info.path);
-  table.row("layout", info.layout + (info.images ? "" : ", without pictures"));
+  table.row("layout", info.layout + (info.images ? "" : ", without images"));
   table.row("frames",
             fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
@@ -342,9 +333,8 @@ std::string to_text(const RecordingInfo& info) {
                           info.tracks->observations,
                           info.tracks->longest));
   }
-  for (std::size_t i = 0; i < info.notes.size(); ++i) {
+  for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
-  }
   return table.text();
 }
 

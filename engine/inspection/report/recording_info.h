@@ -13,9 +13,9 @@
 
 namespace gpo {
 
-/// A pause in a series of time stamps.
+/// Gap in a series of time stamps.
 struct TimeGap {
-  int after = 0;        ///< index of the frame, or line of the sample, before the pause
+  int after = 0;        ///< index of the frame, or line of the sample, before the gap
   double at_s = 0;      ///< its time, from the recording's first frame [s]
   double length_s = 0;  ///< [s]
 };
@@ -32,8 +32,8 @@ struct GyroscopeInfo {
 
 struct TruthInfo {
   std::string source;
-  int frames = 0;    ///< that have a pose, of those looked at
-  int examined = 0;  ///< fewer than the recording has where the board is sought in a sample only
+  int frames = 0;                                ///< examined frames that have a pose
+  int examined = 0;                              ///< a sample of a long recording with a board
   std::optional<PoseUncertainty> uncertainty{};  ///< medians, of a truth from a board
 };
 
@@ -43,7 +43,7 @@ struct TracksInfo {
   int longest = 0;  ///< observations of one track
 };
 
-/// What was found in a recording: what `info` prints.
+/// Contents of a recording, as `info` prints them.
 struct RecordingInfo {
   std::string path;
   std::string name;
@@ -64,12 +64,13 @@ struct RecordingInfo {
   std::vector<std::string> notes;
 };
 
-/// Looks for the board in every frame (of more than 300: in a regular sample), which takes some 20
-/// ms a frame and processor, once. Throws InputError for pictures that cannot be decoded.
+/// Describes a recording. Searches for the board in every frame (in a regular sample of more than
+/// 300), which takes about 20 ms a frame and processor, once. Throws InputError for images that
+/// cannot be decoded.
 RecordingInfo describe(const Recording& recording);
 
 nlohmann::json to_json(const RecordingInfo& info);
-/// A table for people, each line ended.
+/// Returns a table for people, each line ended.
 std::string to_text(const RecordingInfo& info);
 
 }  // namespace gpo

@@ -27,6 +27,10 @@ ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
 }
 
+ordered_json plane_json(const Plane& plane) {
+  return {{"normal", vector_json(plane.normal)}, {"distance", plane.distance}};
+}
+
 Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
   const Eigen::Quaterniond q(R);
   return (q.w() < 0 ? -1.0 : 1.0) * q.normalized().coeffs();
@@ -36,8 +40,8 @@ ordered_json settings_json(const Inspection& inspection) {
   const Settings used = settings_used(inspection);
   ordered_json json;
   for (const Setting& setting : settings_table()) {
-    constexpr std::array kToldElsewhere{"start", "frames", "method"};
-    if (std::ranges::find(kToldElsewhere, setting.key) != kToldElsewhere.end()) continue;
+    constexpr std::array kElsewhere{"start", "frames", "method"};
+    if (std::ranges::find(kElsewhere, setting.key) != kElsewhere.end()) continue;
     const ordered_json value = value_json(setting.get(used));
     const bool no_ids = setting.kind == SettingKind::ids && value.empty();
     if (!no_ids) json[setting.key] = value;
@@ -45,7 +49,6 @@ ordered_json settings_json(const Inspection& inspection) {
   return json;
 }
 
-/// Keys of the settings that changed nothing.
 ordered_json unused_json(const Inspection& inspection) {
   ordered_json unused = ordered_json::array();
   for (const Setting& setting : settings_table())
@@ -73,7 +76,6 @@ ordered_json frames_json(const Inspection& inspection) {
   return frames;
 }
 
-/// The plane and the cameras that were found and not believed.
 ordered_json refused_json(const Inspection& inspection) {
   const RefusedSolution& refused = *inspection.initialization->refused;
   ordered_json frames = ordered_json::array();
@@ -81,9 +83,7 @@ ordered_json refused_json(const Inspection& inspection) {
     frames.push_back({{"index", inspection.window->start + static_cast<int>(i)},
                       {"p_wc", vector_json(refused.cameras[i].p_wc)},
                       {"q_wc_xyzw", vector_json(quaternion_xyzw(refused.cameras[i].R_wc))}});
-  return {{"plane",
-           {{"normal", vector_json(refused.plane.normal)}, {"distance", refused.plane.distance}}},
-          {"frames", frames}};
+  return {{"plane", plane_json(refused.plane)}, {"frames", frames}};
 }
 
 ordered_json points_json(const Inspection& inspection) {
@@ -138,8 +138,8 @@ ordered_json timing_json(const Timing& timing) {
           {"total", timing.total}};
 }
 
-/// The window's planes, the leading one first; without normal and distance where the method failed,
-/// or the cameras do not tell them.
+/// Returns the planes, the leading one first. Normal and distance are null if they were not
+/// estimated.
 ordered_json planes_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
   ordered_json planes = ordered_json::array();
@@ -169,19 +169,19 @@ ordered_json planes_json(const Inspection& inspection) {
   return planes;
 }
 
-/// World = reference camera; scale: meters per plane distance, sigma: of its logarithm.
+/// World = reference camera; `scale` in meters per plane distance, `sigma` of its logarithm.
 ordered_json inertial_json(const InertialAlignment& inertial) {
   if (!inertial.ok) return {{"status", "failed"}, {"reason", inertial.reason}};
   ordered_json velocities = ordered_json::array();
   for (const Eigen::Vector3d& v : inertial.velocities_m_s) velocities.push_back(vector_json(v));
-  const bool told = std::isfinite(inertial.log_scale_sigma);
+  const bool determined = std::isfinite(inertial.log_scale_sigma);
   return {{"status", "ok"},
           {"reason", inertial.scale_reason},
           {"gravity", vector_json(inertial.gravity_m_s2)},
           {"gravity_sigma_deg", inertial.gravity_sigma_deg},
           {"direction_covariance_rad2", matrix_json(inertial.direction_covariance)},
           {"scale", inertial.scale},
-          {"sigma", told ? ordered_json(inertial.log_scale_sigma) : ordered_json(nullptr)},
+          {"sigma", determined ? ordered_json(inertial.log_scale_sigma) : ordered_json(nullptr)},
           {"scale_known", inertial.scale_known},
           {"velocities", velocities},
           {"timestamps_ns", inertial.times_ns},
@@ -212,7 +212,7 @@ ordered_json dropped_json(const Inspection& inspection) {
   return dropped;
 }
 
-/// Medians of the uncertainties over the window; absent where the truth is from a file.
+/// Medians of the uncertainties over the window are absent if the truth is from a file.
 ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   ordered_json json = {{"source", truth.source},
@@ -269,10 +269,8 @@ ordered_json verdict_json(const Verdict& verdict) {
                       {"stability", plane.stability}});
   }
   ordered_json criterion = nullptr;
-  if (verdict.criterion) {
-    criterion = {{"planes", verdict.criterion->planes},
-                 {"free_points", verdict.criterion->free_points}};
-  }
+  if (const auto& c = verdict.criterion)
+    criterion = {{"planes", c->planes}, {"free_points", c->free_points}};
   return {{"readiness", to_string(verdict.readiness)},
           {"reason", verdict.reason},
           {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)},
@@ -340,10 +338,7 @@ ordered_json to_json(const Inspection& inspection) {
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);
   json["plane"] = nullptr;
-  if (result.ok) {
-    json["plane"] = {{"normal", vector_json(result.plane.normal)},
-                     {"distance", result.plane.distance}};
-  }
+  if (result.ok) json["plane"] = plane_json(result.plane);
   json["frames"] = frames_json(inspection);
   json["points"] = points_json(inspection);
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);

@@ -9,16 +9,15 @@
 
 namespace gpo {
 
-/// `run --json` of the contract. World = reference camera, gauge d = 1; quaternions x y z w. A
-/// failed initialization has null for its plane and poses; an unknown metric is null. `settings`
-/// has all of them, `unused_settings` the keys of those that the method or the recording did not
-/// use.
+/// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
+/// Plane and poses are null for a failed initialization, metrics are null if unknown.
+/// `unused_settings` has the keys of settings without effect on this method or recording.
 nlohmann::ordered_json to_json(const Inspection& inspection);
 
-/// Its settings as they were used: what was left open is what it came to.
+/// Returns the settings as they were used, with defaults replaced by their values.
 Settings settings_used(const Inspection& inspection);
 
-/// A setting's value; null where it is left to the method.
+/// Returns a setting's value; null if it is left to the method.
 nlohmann::ordered_json value_json(const SettingValue& value);
 
 }  // namespace gpo

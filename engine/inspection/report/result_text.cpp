@@ -45,17 +45,14 @@ std::string rotations_text(const Inspection& inspection) {
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
   if (result.uncertainty) {
-    text +=
-        row("certain to",
-            fmt::format("{:.3f} deg (one standard deviation; rotations {}, lens {})",
-                        result.uncertainty->normal_sigma_deg,
-                        result.uncertainty->rotations == RotationModel::known
-                            ? "held"
-                            : to_string(result.uncertainty->rotations),
-                        result.uncertainty->lens_sigma_deg
-                            ? fmt::format("{:.3f} deg of it", *result.uncertainty->lens_sigma_deg)
-                        : source == CameraSource::guess ? "a guess, taken as exact"
-                                                        : "taken as exact"));
+    const Uncertainty& u = *result.uncertainty;
+    text += row("uncertainty",
+                fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {})",
+                            u.normal_sigma_deg,
+                            to_string(u.rotations),
+                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
+                            : source == CameraSource::guess ? "a guess, assumed exact"
+                                                            : "assumed exact"));
   }
   if (result.bias_rad_s) {
     const Eigen::Vector3d& b = *result.bias_rad_s;
@@ -63,13 +60,12 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   }
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
-  if (result.row_delay_s) {
+  if (result.row_delay_s)
     text += row("shutter", fmt::format("rolling, {:.2f} us a row", 1e6 * *result.row_delay_s));
-  }
   return text;
 }
 
-/// What gravity says of the window's planes: "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
+/// Returns the planes' names by gravity: "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
 std::string planes_text(const Inspection& inspection) {
   std::string text;
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
@@ -85,19 +81,14 @@ std::string planes_text(const Inspection& inspection) {
   return text.empty() ? "" : row("planes", text);
 }
 
-/// Up to which frame it takes to know the scale.
-std::string known_at_text(const Inspection& inspection) {
-  if (!inspection.metric_scale_from) return "";
-  return fmt::format(", known from frame {} on",
-                     inspection.window->start + *inspection.metric_scale_from);
-}
-
-/// Gravity's direction and the scale, or why there are none.
 std::string inertial_text(const Inspection& inspection) {
   const std::optional<InertialAlignment>& inertial = inspection.inertial;
   const Plane& plane = inspection.initialization->plane;
   if (!inertial) return "";
   if (!inertial->ok) return row("gravity", "not found: " + inertial->reason);
+  const auto& at = inspection.metric_scale_from;
+  const std::string since =
+      at ? fmt::format(", known from frame {} on", inspection.window->start + *at) : "";
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
              fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera{})",
@@ -110,12 +101,12 @@ std::string inertial_text(const Inspection& inspection) {
              inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away{}",
                                                  100 * inertial->log_scale_sigma,
                                                  inertial->scale * plane.distance,
-                                                 known_at_text(inspection))
+                                                 since)
                                    : inertial->scale_reason) +
          planes_text(inspection);
 }
 
-/// Nothing of a method that solves nothing.
+/// Returns the solver's row; empty for a closed-form method.
 std::string solver_text(const SolverReport& solver) {
   if (solver.unknowns == 0) return "";
   return row("solver",
@@ -145,11 +136,11 @@ std::string truth_text(const WindowTruth& truth) {
   const auto uncertainty = median_uncertainty(truth.uncertainties);
   return row("truth",
              uncertainty
-                 ? fmt::format("{}, certain to {}", truth.source, uncertainty_text(*uncertainty))
+                 ? fmt::format("{}, uncertainty {}", truth.source, uncertainty_text(*uncertainty))
                  : truth.source);
 }
 
-/// Nothing where a file tells the camera, as it should.
+/// Returns the row of a camera that is not from a file; else empty.
 std::string camera_row(const Recording& recording) {
   const CameraSource source = recording.camera_source;
   if (source == CameraSource::file) return "";

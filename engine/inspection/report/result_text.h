@@ -9,11 +9,11 @@
 
 namespace gpo {
 
-/// The short table that `run` prints, with units.
+/// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Map points, ASCII PLY with the track's id; the very points that the views draw. Unit: distance
-/// of the plane, or the meter.
+/// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
+/// distance of the plane, or meter.
 std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_a_unit = {});
 
 }  // namespace gpo

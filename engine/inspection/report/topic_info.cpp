@@ -33,7 +33,7 @@ std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
     for (int i = 0; i < kTopicRoles; ++i)
       if (const auto topic = roles.topics[i]) topics[*topic].role = static_cast<TopicRole>(i);
   } catch (const InputError&) {
-    // Who opens the recording hears of it.
+    // Opening the recording reports the error.
   }
   return topics;
 }

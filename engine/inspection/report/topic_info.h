@@ -13,19 +13,19 @@
 
 namespace gpo {
 
-/// A topic and what it is read as: what `info` lists of a bag.
+/// A topic of a bag and its role, as `info` lists them.
 struct TopicInfo {
   BagTopic topic;
   std::optional<TopicRole> role;
 };
 
-/// The topics of the bag at a path; empty where there is none, or where it cannot be read. Roles
-/// are missing where the bag has no camera.
+/// Returns the topics of the bag at a path; empty if there is none or it cannot be read. Roles are
+/// missing if the bag has no camera.
 std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
                                        const TopicChoices& choices);
 
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
-/// Rows of the table of a recording, each line ended.
+/// Returns rows of the table of a recording, each line ended.
 std::string to_text(const std::vector<TopicInfo>& topics);
 
 }  // namespace gpo

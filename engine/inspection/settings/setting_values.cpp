@@ -65,9 +65,7 @@ SettingValue choice_from(const Setting& setting,
 }
 
 std::string who_reads(const Setting& setting) {
-  const std::vector<std::string> readers = readers_of(setting.key);
-  return fmt::format(
-      "Only {} let{} one choose this", fmt::join(readers, " and "), readers.size() == 1 ? "s" : "");
+  return fmt::format("Applies only to {}", fmt::join(readers_of(setting.key), " and "));
 }
 
 }  // namespace
@@ -156,9 +154,8 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
     case SettingReader::all:
       return "";
     case SettingReader::tracker:
-      return recording != nullptr && !recording->tracks.empty()
-                 ? "The recording brings its own tracks"
-                 : "";
+      return recording != nullptr && !recording->tracks.empty() ? "The recording has its own tracks"
+                                                                : "";
     case SettingReader::inlier_test:
       return !uses_ransac(settings.options) && settings.options.method.row().needs_plane
                  ? "Without RANSAC every track counts as an inlier"
@@ -167,7 +164,7 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
       return is_read(setting, settings.options.method) ? "" : who_reads(setting);
     case SettingReader::gravity:
       return gravity_used(settings.options) != settings.options.gravity
-                 ? "Only gpo_joint takes gravity into its solution; here it is found after"
+                 ? "Only gpo_joint estimates gravity jointly; other methods find it afterwards"
                  : "";
   }
   return "";

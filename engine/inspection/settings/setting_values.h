@@ -8,45 +8,47 @@
 
 namespace gpo {
 
-/// A value as scripts, sessions and the command line write it: a number, a choice's key, on, off,
-/// ids with commas or none, or default where it is left to the method.
+/// Returns a value as scripts, sessions and the command line write it: a number, a choice's key,
+/// on, off, ids with commas or none, or default if it is left to the method.
 std::string value_text(const SettingValue& value);
-/// Reads it. Throws SettingError that names the setting, what was found and what is expected.
+/// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,
                         const std::string& text,
                         const MethodTable& methods = {});
-/// Sets it; a method is found in the table.
+/// Sets a value; the table resolves a method.
 void set_value(Settings& settings,
                const Setting& setting,
                const SettingValue& value,
                const MethodTable& methods = {});
 
 std::string setting_text(const Settings& settings, const std::string& key);
-/// The settings with another value. Throws InputError for an unknown key, SettingError for a value.
+/// Returns the settings with another value. Throws InputError for an unknown key, SettingError for
+/// an invalid value.
 Settings with_setting(Settings settings,
                       const std::string& key,
                       const std::string& text,
                       const MethodTable& methods = {});
 
-/// The settings with a switch on or off; left to the method where that does so by itself.
+/// Returns the settings with a switch on or off; left to the method if that is its default.
 Settings switched(Settings settings, const std::string& key, bool on);
 
-/// The settings with the default value of one.
+/// Returns the settings with one at its default.
 Settings with_default(Settings settings, const std::string& key);
 
-/// Whether the method heeds a setting; false only for an option that it does not name.
+/// Returns whether the method reads a setting; false only for an option that it does not list.
 bool is_read(const Setting& setting, const MethodChoice& method);
 
-/// Why a setting changes nothing beside the others, or in this recording (null: in any), in one
-/// line; empty where it may.
+/// Returns why a setting has no effect with the others or in this recording (null: in any), in one
+/// line; empty if it may have one.
 std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording);
 
-/// What is left to the method as it comes to, what the method does not read at its default:
-/// settings that come to the same are equal. Throws InputError for an unknown method.
+/// Returns the settings in a normal form, equal for equal results: values left to the method are
+/// replaced by those it uses, values that it does not read by their defaults. Throws InputError for
+/// an unknown method.
 Settings as_used(Settings settings);
 
-/// What the results of a stage depend on: the settings that act before or in it, as the method uses
-/// them; all others at their defaults, the method among them.
+/// Returns the settings on which the results of a stage depend, in normal form; those of later
+/// stages, the method among them, are at their defaults.
 Settings acting_until(SettingStage stage, const Settings& settings);
 
 }  // namespace gpo

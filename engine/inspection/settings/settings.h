@@ -11,22 +11,21 @@
 
 namespace gpo {
 
-/// Everything that a result depends on beside the recording. Immutable in use. One more field is
-/// one more row in `settings_table`.
+/// All inputs of a result other than the recording. Immutable in use. Each field has a row in
+/// `settings_table`.
 struct Settings {
   int start = 0;                           ///< reference frame, counts in the recording
   int frames = 30;                         ///< length of the window
   Tracking tracking = Tracking::anchored;  ///< of the built-in front end
-  /// Ids of tracks that are left out as if they had never been seen, ascending.
-  std::vector<std::int64_t> exclude = {};
-  InitializeOptions options = {};  ///< how the window's tracks are initialized
+  std::vector<std::int64_t> exclude = {};  ///< ids of excluded tracks, ascending
+  InitializeOptions options = {};          ///< how the window's tracks are initialized
 
   bool operator==(const Settings&) const = default;
 };
 
-/// Whole sets of settings by one word: the best that we have, which are the defaults; and what the
-/// paper does: corners followed from frame to frame, inliers told frame by frame, the gyroscope as
-/// it is, `gpo` from rest by Ceres.
+/// Named sets of settings: the defaults, which are the most accurate; and those of the paper:
+/// corners tracked from frame to frame, inliers by frame, an uncalibrated gyroscope, `gpo` by Ceres
+/// starting without translation.
 enum class Preset { best, paper };
 
 template <>
@@ -35,11 +34,11 @@ struct ChoiceKeys<Preset> {
   static constexpr std::array keys{"best", "paper"};
 };
 
-/// The settings with all that a preset decides as it has it; what it does not, as it was: the
-/// window, the seed, tracks left out, thresholds.
+/// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
+/// leading plane and threshold.
 Settings with_preset(Settings settings, Preset preset);
 
-/// The preset that the settings are an instance of; nothing: modified.
+/// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);
 
 }  // namespace gpo

@@ -3,7 +3,7 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/window/window_rotations.h"
+#include "engine/inspection/window/window_inputs.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 
@@ -69,8 +69,8 @@ void set_field(T& field, const SettingValue& value) {
   }
 }
 
-/// The row with what follows from the field that `Field` finds in settings: its kind, whether it is
-/// optional, the choices of an enumeration, how it is read and set.
+/// Completes a row from the field that `Field` returns: its kind, whether it is optional, the
+/// choices of an enumeration, and access to it.
 template <class Field>
 Setting row(Field, Setting setting) {
   using Stored = std::decay_t<decltype(Field{}(std::declval<Settings&>()))>;
@@ -112,15 +112,15 @@ std::vector<Setting> window_rows() {
   rows.push_back(row([](auto& s) -> auto& { return s.options.method; },
                      {.key = "method",
                       .title = "Method",
-                      .help = "Initializer",
+                      .help = "Initialization method",
                       .stage = initialization,
                       .choices = method_choices({})}));
   rows.push_back(row(
       [](auto& s) -> auto& { return s.options.rotations; },
       {.key = "rotations",
        .title = "Rotations",
-       .help = "Where the camera rotations come from: a gyroscope, decomposed homographies of one "
-               "plane (averaging), or all tracks where they are not one plane (five-point, direct)",
+       .help = "Source of the camera rotations: a gyroscope, decomposed homographies of one plane "
+               "(averaging), or all tracks of a scene that is not one plane (five-point, direct)",
        .stage = rotations,
        .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
                  {"raw", "raw", "with rotations as they are", 0x7788AA},
@@ -137,7 +137,7 @@ std::vector<Setting> window_rows() {
       [](auto& s) -> auto& { return s.tracking; },
       {.key = "tracking",
        .title = "Tracking",
-       .help = "How the built-in front end follows corners",
+       .help = "How the built-in front end tracks corners",
        .reader = SettingReader::tracker,
        .stage = tracks,
        .words = {{"frame-to-frame", "frame-to-frame", "with tracks from frame to frame", 0xDDCC77},
@@ -151,7 +151,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                      {.key = "ransac",
                       .title = "RANSAC",
                       .help = "Reject tracks off the plane by a homography from the reference "
-                              "frame; default: as the method does",
+                              "frame; default: the method's choice",
                       .leads = true,
                       .words = {{"ransac", "on", "with RANSAC", 0x882255},
                                 {"no-ransac", "off", "without RANSAC", 0xBB3355}},
@@ -168,8 +168,8 @@ void add_inlier_rows(std::vector<Setting>& rows) {
       row([](auto& s) -> auto& { return s.options.inliers; },
           {.key = "inliers",
            .title = "Inliers",
-           .help = "Tracks on the plane: told frame by frame, consistent over the window, "
-                   "or those of one of the window's planes",
+           .help = "Select tracks on the plane by frame, by consistency over the window, or by "
+                   "the window's planes",
            .reader = SettingReader::inlier_test,
            .advanced = true,
            .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
@@ -179,7 +179,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
   rows.push_back(row([](auto& s) -> auto& { return s.options.plane; },
                      {.key = "plane",
                       .title = "Plane",
-                      .help = "Which of the window's planes leads: 1 has most tracks",
+                      .help = "Leading plane of the window: 1 has most tracks",
                       .least = 1,
                       .most = 9,
                       .reader = SettingReader::inlier_test}));
@@ -189,11 +189,9 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .help = "Seed of every random choice",
                       .most = 1e9,
                       .advanced = true}));
-  rows.push_back(row([](auto& s) -> auto& { return s.exclude; },
-                     {.key = "exclude",
-                      .title = "Excluded",
-                      .help = "Tracks left out by hand, by their ids",
-                      .advanced = true}));
+  rows.push_back(row(
+      [](auto& s) -> auto& { return s.exclude; },
+      {.key = "exclude", .title = "Excluded", .help = "Ids of excluded tracks", .advanced = true}));
 }
 
 void add_option_rows(std::vector<Setting>& rows) {
@@ -207,7 +205,7 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.solver; },
       {.key = "solver",
        .title = "Solver",
-       .help = "Who minimizes: our own Schur solver, or Ceres",
+       .help = "Solver: our own Schur solver, or Ceres",
        .words = {{"schur", "schur", "by our own solver", 0x332288},
                  {"ceres", "ceres", "by Ceres", 0xAA4499}}});
   add([](auto& s) -> auto& { return s.options.method_options.error; },
@@ -225,7 +223,7 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.shutter; },
       {.key = "shutter",
        .title = "Shutter",
-       .help = "Rows read one after another at an estimated pace, or all at once",
+       .help = "Rolling shutter with an estimated row delay, or global shutter",
        .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
   add([](auto& s) -> auto& { return s.options.method_options.planes; },
@@ -249,19 +247,19 @@ std::span<const Setting> settings_table() {
     std::vector<Setting> rows = window_rows();
     add_inlier_rows(rows);
     add_option_rows(rows);
-    rows.push_back(
-        row([](auto& s) -> auto& { return s.options.gravity; },
-            {.key = "gravity",
-             .title = "Gravity",
-             .help = "Gravity and meters by the accelerometer, where there is one: after the "
-                     "initialization, from its poses; joint: with it, so that accelerations move "
-                     "what gpo_joint found, too; or off",
-             .reader = SettingReader::gravity,
-             .stage = SettingStage::initialization,
-             .advanced = true,
-             .words = {{"gravity-after", "after", "with gravity after it", 0x5B8C9E},
-                       {"joint-gravity", "joint", "with gravity in it", 0xB07AA1},
-                       {"no-gravity", "off", "without gravity", 0x9C755F}}}));
+    rows.push_back(row(
+        [](auto& s) -> auto& { return s.options.gravity; },
+        {.key = "gravity",
+         .title = "Gravity",
+         .help = "Estimate gravity and metric scale from the accelerometer: after the "
+                 "initialization, from its poses; joint: together with the result of gpo_joint; "
+                 "or off",
+         .reader = SettingReader::gravity,
+         .stage = SettingStage::initialization,
+         .advanced = true,
+         .words = {{"gravity-after", "after", "with gravity after it", 0x5B8C9E},
+                   {"joint-gravity", "joint", "with gravity in it", 0xB07AA1},
+                   {"no-gravity", "off", "without gravity", 0x9C755F}}}));
     return rows;
   }();
   return table;
@@ -281,7 +279,7 @@ const Setting& find_setting(std::string_view key) {
   const auto found = std::ranges::find(settings_table(), key, &Setting::key);
   if (found != settings_table().end()) return *found;
   throw InputError(fmt::format(
-      "no setting is called '{}', expected one of {}", key, fmt::join(setting_keys(), ", ")));
+      "unknown setting '{}', expected one of {}", key, fmt::join(setting_keys(), ", ")));
 }
 
 }  // namespace gpo

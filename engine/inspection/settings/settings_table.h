@@ -14,16 +14,16 @@
 
 namespace gpo {
 
-/// A setting's value; nothing: left to the method. A choice is told by its key.
+/// A setting's value; monostate: left to the method. A choice is its key.
 using SettingValue = std::
     variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
 
 /// How a setting is typed, shown and stored.
 enum class SettingKind { on_off, whole, number, choice, ids };
 
-/// Who heeds a setting: all; the built-in front end; the test whether a track is an inlier; the
-/// methods that name it among their options (`Method::reads`); all but for gravity in one solution
-/// with the planes (`gravity_used`).
+/// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
+/// methods that list it among their options (`Method::reads`); the estimation of gravity
+/// (`gravity_used`).
 enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
 /// The stages of an inspection in their order. A setting acts from its stage on.
@@ -35,16 +35,16 @@ struct SettingChoice {
   std::uint32_t rgb = 0;  ///< 0xRRGGBB, of a method
 };
 
-/// How a configuration names a value of a setting (`gpo+no-ransac`).
+/// Name of a setting's value in a configuration (`gpo+no-ransac`).
 struct SettingWord {
-  const char* word;   ///< no two are the same in the whole table
+  const char* word;   ///< unique in the whole table
   const char* value;  ///< as `setting_text` writes it
   const char* title;  ///< after the method's: "without RANSAC"
   std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
 };
 
-/// One setting: the command line, the JSON result, results.csv, sessions, scripts, the settings
-/// panel, comparisons and what an Inspector keeps all read its row.
+/// One setting. Command line, JSON result, results.csv, sessions, scripts, settings panel,
+/// comparisons and the Inspector's cache all read its row.
 struct Setting {
   std::string key = {};    ///< in files and scripts; on the command line with dashes
   std::string title = {};  ///< in the window
@@ -54,14 +54,15 @@ struct Setting {
   double most = 0;
   SettingReader reader = SettingReader::all;
   SettingStage stage = SettingStage::inliers;
-  bool advanced = false;                    ///< what few people change
-  bool leads = false;                       ///< its word stands before the others' in a key
-  std::vector<SettingWord> words = {};      ///< empty: no configuration names it
-  std::vector<SettingChoice> choices = {};  ///< of a choice; of the method ours, see `choices_of`
-  SettingValue (*used)(const Settings&) = nullptr;  ///< what is left to the method comes to
-  /// Why a choice is not to be had in a recording, one line; empty: it is. Null: all are.
+  bool advanced = false;                            ///< rarely changed
+  bool leads = false;                               ///< its word comes first in a key
+  std::vector<SettingWord> words = {};              ///< empty: configurations do not name it
+  std::vector<SettingChoice> choices = {};          ///< of a choice; for methods see `choices_of`
+  SettingValue (*used)(const Settings&) = nullptr;  ///< returns the value that the method uses
+  /// Returns why a recording does not allow a choice, one line; empty if it does. Null: all
+  /// allowed.
   std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
-  // Of its field in `Settings`:
+  // From its field in `Settings`:
   SettingKind kind = SettingKind::whole;
   bool optional = false;  ///< may be left to the method
   SettingValue (*get)(const Settings&) = nullptr;
@@ -70,9 +71,9 @@ struct Setting {
 
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
-/// The values to choose from; of the method those of the table.
+/// Returns the choices of a setting; for the method those of the table.
 std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods);
-/// Throws InputError that names the known ones.
+/// Returns the setting. Throws InputError that lists the known ones.
 const Setting& find_setting(std::string_view key);
 
 }  // namespace gpo

@@ -9,15 +9,10 @@
 #include <utility>
 
 namespace gpo {
-namespace {
-
-/// Cells of two degrees: less than the landscape's valley is wide before it has settled.
-constexpr int kSide = 96;
-
-}  // namespace
 
 std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
                                                  const std::stop_token& stop) {
+  constexpr int kSide = 96;  // cells of two degrees, narrower than the valley of a short window
   const Window& window = *inspection.window;
   auto landscape = normal_landscape(window, kSide, stop);
   auto candidates = candidates_of_window(window, stop);

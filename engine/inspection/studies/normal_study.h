@@ -15,20 +15,20 @@
 
 namespace gpo {
 
-/// What a window says about the plane's normal, whatever a method makes of it. Immutable.
+/// Evidence of a window on the plane's normal, independent of the method. Immutable.
 struct NormalStudy {
   std::shared_ptr<const Window> window;
   NormalLandscape landscape;
   std::vector<std::vector<HomographyCandidate>> candidates;  ///< one a frame of the window
   std::vector<NormalCluster> clusters;                       ///< of the whole window's candidates
-  std::string error = {};  ///< why it could not be made, one line: then it has `window` alone
+  std::string error = {};  ///< why it failed, one line; then only `window` is set
 };
 
-/// Null where it was stopped. Throws what the engine throws.
+/// Returns the study; null if stopped. Throws InputError for bad input.
 std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
                                                  const std::stop_token& stop = {});
 
-/// The true normal in the reference camera, towards it; nothing where it is unknown.
+/// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
 }  // namespace gpo

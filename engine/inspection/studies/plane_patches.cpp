@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Single tracks far away, near the plane's horizon, are not its extent.
-constexpr double kFarthest = 3;  // median distances from the camera
+constexpr double kFarthest =
+    3;  // of the extent, in median distances: excludes points near the horizon
 
 std::vector<MapPoint> points_on(const Window& window,
                                 const std::vector<int>& tracks,
@@ -28,7 +28,6 @@ std::vector<MapPoint> points_on(const Window& window,
   }
   if (points.empty()) return points;
   std::vector<double> distances;
-  distances.reserve(points.size());
   for (const MapPoint& point : points) distances.push_back(point.position.norm());
   const double most = kFarthest * median(std::move(distances));
   std::erase_if(points, [&](const MapPoint& point) { return point.position.norm() > most; });
@@ -41,7 +40,7 @@ std::optional<PlanePatch> patch_of(const Window& window,
                                    const Plane& plane) {
   PlanePatch patch{number, plane.normal, {}, points_on(window, tracks, plane)};
   if (patch.points.size() < 3) return std::nullopt;
-  // Along the picture's rows as far as the plane allows.
+  // As near as possible to the image rows.
   Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;
   if (x.norm() < 0.1) x = patch.normal.unitOrthogonal();
   x.normalize();

@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// The part of a plane beside the leading one that its tracks lie on, in the estimate's world.
+/// Extent of a plane other than the leading one, in the estimate's world.
 struct PlanePatch {
   int number = 0;  ///< of the plane in the window
   Eigen::Vector3d normal;
@@ -20,10 +20,10 @@ struct PlanePatch {
   std::vector<MapPoint> points;
 };
 
-/// One a further plane of an initialization that is ok.
+/// Returns the patches of all further planes of a successful initialization.
 std::vector<PlanePatch> plane_patches(const Inspection& inspection);
 
-/// Of the plane of a solution that was refused; nothing where none of its tracks meets it.
+/// Returns the patch of a refused solution's plane; nullopt if none of its tracks meets it.
 std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 
 }  // namespace gpo

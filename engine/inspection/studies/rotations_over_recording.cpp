@@ -18,8 +18,7 @@ namespace {
 constexpr double kWindow_s = 0.3;
 constexpr int kFewestFrames = 5;
 constexpr int kMostFrames = 20;
-/// A camera only turns where rotations leave at most so many times what the homographies leave.
-constexpr double kOnlyTurns = 1.5;
+constexpr double kOnlyRotates = 1.5;  // residual of rotations to that of homographies
 
 int window_frames(const Recording& recording) {
   std::vector<double> periods_s;
@@ -30,8 +29,8 @@ int window_frames(const Recording& recording) {
   return std::clamp(frames, kFewestFrames, kMostFrames);
 }
 
-/// R_wc with K R_cw K^-1 nearest to each homography; empty where one is missing.
-std::vector<Eigen::Matrix3d> turning_only(const Window& window) {
+/// Returns R_wc with K R_cw K^-1 nearest to each homography; empty if one is missing.
+std::vector<Eigen::Matrix3d> rotations_of_homographies(const Window& window) {
   std::vector<Eigen::Matrix3d> R_wc{Eigen::Matrix3d::Identity()};
   for (int i = 1; i < window.frame_count(); ++i) {
     if (!window.H_i1[i].allFinite()) return {};
@@ -42,9 +41,9 @@ std::vector<Eigen::Matrix3d> turning_only(const Window& window) {
   return R_wc;
 }
 
-bool only_turns(const Window& window) {
+bool only_rotates(const Window& window) {
   const WindowEvidence evidence = evidence_of(window);
-  return evidence.rotation_rms_px() < kOnlyTurns * evidence.noise_px();
+  return evidence.rotation_rms_px() < kOnlyRotates * evidence.noise_px();
 }
 
 std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
@@ -57,11 +56,11 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
       R_wc.emplace_back(result.cameras[0].R_wc.transpose() * camera.R_wc);
     return R_wc;
   }
-  // A window whose rotations nothing told has I everywhere.
-  const bool told =
+  // Rotations that could not be determined are I in all frames.
+  const bool determined =
       std::ranges::any_of(window.R_wc, [](const auto& R) { return !R.isIdentity(0); });
-  if (told) return window.R_wc;
-  if (only_turns(window)) return turning_only(window);
+  if (determined) return window.R_wc;
+  if (only_rotates(window)) return rotations_of_homographies(window);
   return {};
 }
 

@@ -12,12 +12,11 @@
 
 namespace gpo {
 
-/// Rotations of windows of about 0.3 s, spread over the recording, so many at most, one after the
-/// other,
-/// from the pictures alone: five-point rotations where the scene is more than a plane, else those
-/// of the cameras that the default method finds, or would have started from; where the camera does
-/// nothing but turn, those that explain the homographies. Windows that tell nothing are left out.
-/// `progress(done, of)` is called after each. Throws InputError where there is nothing to track.
+/// Estimates rotations of at most `most_windows` windows of about 0.3 s, spread over the recording,
+/// from the images alone. Uses five-point rotations if the scene is more than a plane, else those
+/// of the default method's cameras or its start, or those that explain the homographies if the
+/// camera only rotates. Skips windows without rotations. Calls `progress(done, of)` after each.
+/// Throws InputError if there are no tracks.
 std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
     int most_windows = 80,

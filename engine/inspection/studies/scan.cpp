@@ -35,7 +35,7 @@ ScannedStart scanned(const Inspection& inspection) {
   return start;
 }
 
-/// Nothing where it was stopped.
+/// Returns nullopt if stopped.
 std::optional<ScannedStart> scan_one(Inspector& inspector,
                                      const Settings& settings,
                                      const std::stop_token& stop) {
@@ -82,7 +82,6 @@ std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step
   if (last < 0) return {};
   const auto count = static_cast<unsigned>(last / step + 1);
   std::vector<int> starts;
-  starts.reserve(count);
   // 0, then every odd multiple of the largest power of two, of its half, ... of one.
   starts.push_back(0);
   for (unsigned stride = std::bit_ceil(count) / 2; stride > 0; stride /= 2)
@@ -93,10 +92,9 @@ std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step
 
 void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const Settings& settings,
-                 std::span<const int> starts,
-                 int jobs,
-                 const std::stop_token& stop,
+                 const ScanOptions& options,
                  const std::function<void(ScannedStart)>& found) {
+  const auto& [starts, jobs, stop] = options;
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
   const auto work = [&] {
@@ -110,7 +108,6 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
     }
   };
   std::vector<std::jthread> threads;
-  threads.reserve(static_cast<std::size_t>(jobs));
   for (int i = 0; i < jobs; ++i) threads.emplace_back(work);
 }
 

@@ -14,50 +14,53 @@
 
 namespace gpo {
 
-/// What an initialization from one frame comes to.
+/// Result of an initialization from one frame.
 struct ScannedStart {
   int start = 0;    ///< reference frame, counts in the recording
   bool ok = false;  ///< there is a result
   Readiness readiness = Readiness::degenerate;
-  std::optional<double> sigma_deg = {};  ///< standard deviation of the normal
-  std::optional<double> pne_deg = {};    ///< its error, where truth is known
-  std::string reason = {};               ///< the failure's, else the verdict's; one line
+  std::optional<double> sigma_deg = {};  ///< uncertainty of the normal (1 sigma)
+  std::optional<double> pne_deg = {};    ///< error of the normal; nullopt without truth
+  std::string reason = {};               ///< of the failure, else of the verdict; one line
 };
 
-/// "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)": the start and what it comes to, without what is
-/// not known.
+/// Returns "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)", without unknown values.
 std::string to_text(const ScannedStart& start);
 
-/// The one to initialize from: fit for more first, then by how sure the normal is. Null: none of
-/// them has a result.
+/// Returns the start to initialize from: the best readiness, then the lowest uncertainty; null if
+/// none has a result.
 const ScannedStart* best_start(std::span<const ScannedStart> starts);
 
-/// The step that scans a recording with about a hundred windows of so many frames.
+/// Returns the step that scans a recording with about a hundred windows.
 int scan_step(int recorded_frames, int window_frames);
 
-/// Starts `step` frames apart whose window fits, coarse to fine: the first ones lie all over the
-/// recording.
+/// Returns starts `step` frames apart whose window fits, coarse to fine: the first ones cover the
+/// whole recording.
 std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step);
 
-/// Inspects a window from each start, with these settings otherwise, on so many threads.
-/// `found` is called by one thread at a time, in no order. Returns when all are done, or soon after
-/// it was stopped. What cannot be inspected is a start with its reason.
+struct ScanOptions {
+  std::span<const int> starts;
+  int jobs = 1;  ///< threads
+  std::stop_token stop = {};
+};
+
+/// Inspects a window from each start, with the given settings otherwise. Calls `found` from one
+/// thread at a time, in any order. Returns when all are done, or soon after it was stopped. A start
+/// that cannot be inspected has a reason.
 void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const Settings& settings,
-                 std::span<const int> starts,
-                 int jobs,
-                 const std::stop_token& stop,
+                 const ScanOptions& options,
                  const std::function<void(ScannedStart)>& found);
 
-/// "start,time_s,status,verdict,sigma_deg,pne_deg,reason", a line a start; unknown cells are empty.
+/// Returns a table "start,time_s,status,verdict,sigma_deg,pne_deg,reason"; unknown cells are empty.
 std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording);
 
-/// The starts of a recording as far as they are scanned. Immutable.
+/// The scanned starts of a recording so far. Immutable.
 struct StartScan {
   Settings settings;                 ///< start 0
   int step = 1;                      ///< frames from one start to the next
-  int of = 0;                        ///< starts
-  std::vector<ScannedStart> starts;  ///< those that are done, by frame
+  int of = 0;                        ///< number of starts
+  std::vector<ScannedStart> starts;  ///< the finished ones, by frame
 
   bool finished() const { return static_cast<int>(starts.size()) == of; }
 };

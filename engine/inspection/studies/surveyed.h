@@ -4,23 +4,28 @@
 
 #include "engine/inspection/inspection.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace gpo {
 
-/// One of many settings, and what came of it.
+/// Result for one of many settings.
 struct Surveyed {
   Settings settings;
-  std::shared_ptr<const Inspection> inspection;  ///< null: it could not be computed
-  std::string error;                             ///< why not, one line
+  std::shared_ptr<const Inspection> inspection;  ///< null if it failed
+  std::string error;                             ///< why it failed, one line
 };
 
-/// Immutable; what was computed later stands later.
+/// Results in the order of their computation. Immutable.
 using SurveyResults = std::vector<Surveyed>;
 
-/// Null where these settings are not among them.
-const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings);
+/// Returns the result for the settings; null if there is none.
+inline const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
+  if (results == nullptr) return nullptr;
+  const auto found = std::ranges::find(*results, settings, &Surveyed::settings);
+  return found == results->end() ? nullptr : &*found;
+}
 
 }  // namespace gpo

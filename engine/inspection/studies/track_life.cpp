@@ -2,33 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/track_life.h"
 
-#include "engine/frontend/consistent_inliers.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/inspection/plane_names.h"
-#include "engine/inspection/studies/residuals.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-std::optional<double> length_of(const Eigen::Vector2d& difference) {
-  const double length = difference.norm();
-  return std::isfinite(length) ? std::optional(length) : std::nullopt;
+std::optional<double> if_finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-std::optional<double> forward_backward(const Tracks& tracks, int frame, int column) {
-  if (tracks.forward_backward_px.empty()) return std::nullopt;
-  const double error = tracks.forward_backward_px[frame][column];
-  return std::isfinite(error) ? std::optional(error) : std::nullopt;
-}
-
-/// From the tracks, not from the window, which does not have those that are left out by hand.
+/// Reads the tracks, not the window, which does not have the excluded ones.
 TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
@@ -36,17 +27,18 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   const Eigen::Vector2d first_px = undistort(camera, tracks.raw_px[0].col(column));
   TrackFrame seen{window.start + frame, tracks.raw_px[frame].col(column), {}, {}, {}, false};
   if (frame > 0) {
-    seen.transfer_px =
-        length_of(transfer(window.H_i1[frame], first_px) - undistort(camera, seen.raw_px));
+    const Eigen::Vector2d undistorted_px = undistort(camera, seen.raw_px);
+    seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());
   }
   if (const auto H = estimated_homography(inspection, frame))
-    seen.residual_px = length_of(distort(camera, transfer(*H, first_px)) - seen.raw_px);
-  seen.forward_backward_px = forward_backward(tracks, frame, column);
+    seen.residual_px = if_finite((distort(camera, transfer(*H, first_px)) - seen.raw_px).norm());
+  if (!tracks.forward_backward_px.empty())
+    seen.forward_backward_px = if_finite(tracks.forward_backward_px[frame][column]);
   seen.inlier = window.inlier[frame][column];
   return seen;
 }
 
-/// What a verdict counts, over the frames that see the track beside the reference frame.
+/// Counts for a verdict, over the frames that see the track, the reference frame aside.
 struct Tally {
   int seen = 0;
   int inlier = 0;
@@ -62,7 +54,7 @@ struct Tally {
   }
 };
 
-/// Why a track of which no frame is an inlier is none over the window.
+/// Returns why a track that is an inlier in no frame is inconsistent over the window.
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const ConsistencyOptions options{.threshold_px = inspection.settings.options.ransac_threshold_px};
@@ -83,7 +75,7 @@ std::string reason_of_inconsistency(const Inspection& inspection, const Tally& t
       track.largest_mean_square);
 }
 
-/// Of a track that is no outlier, but on a plane that does not lead.
+/// Returns the verdict on a track of a plane other than the leading one.
 std::string verdict_on(const Inspection& inspection, int plane, const Tally& tally, int column) {
   const auto& inlier = inspection.window->planes[plane].inlier;
   const auto agreeing =
@@ -98,8 +90,7 @@ std::string verdict_on(const Inspection& inspection, int plane, const Tally& tal
 
 std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   const Settings& settings = inspection.settings;
-  if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end())
-    return "left out by hand";
+  if (std::ranges::find(settings.exclude, life.id) != settings.exclude.end()) return "excluded";
   const Tally tally(life, inspection.window->start);
   const auto plane = inspection.window->plane_of(life.column);
   if (plane && *plane != inspection.window->leader && tally.seen > 0)
@@ -119,24 +110,86 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   return text;
 }
 
+/// Returns the number of each track's plane as a cell.
+std::vector<std::string> plane_cells(const Window& window) {
+  std::vector<std::string> cells(window.track_count());
+  for (std::size_t k = 0; k < window.planes.size(); ++k)
+    for (const int j : window.planes[k].tracks) cells[j] = std::to_string(k + 1);
+  return cells;
+}
+
+/// Replaces commas, which separate cells.
+std::string cell(std::string text) {
+  std::ranges::replace(text, ',', ';');
+  return text;
+}
+
+/// Returns why a track is an outlier in one frame, or else over the window; in the last frame that
+/// sees it also why it was lost.
+std::string reason_in(const TrackFrame& seen,
+                      const TrackLife& life,
+                      const std::string& loss,
+                      double threshold_px) {
+  const bool far = seen.transfer_px && *seen.transfer_px > threshold_px;
+  if (!seen.inlier && !far) return life.verdict;
+  std::string reason;
+  if (far)
+    reason =
+        fmt::format("transfer error {:.1f} px above {:.1f} px", *seen.transfer_px, threshold_px);
+  if (&seen != &life.frames.back() || loss.empty()) return reason;
+  return reason + (reason.empty() ? "" : "; ") + loss;
+}
+
+std::string loss_of(const Tracks& tracks, int column) {
+  if (tracks.ends.empty() || !tracks.ends[column]) return "";
+  const TrackEnd& end = *tracks.ends[column];
+  return fmt::format("lost in frame {}: {}", tracks.start + end.frame, reason_of(end));
+}
+
 }  // namespace
+
+std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
+                                                    int frame_in_window) {
+  const Window& window = *inspection.window;
+  const Initialization& estimate = *inspection.initialization;
+  if (!estimate.ok) return std::nullopt;
+  const Pose& pose = estimate.cameras[frame_in_window];
+  const Eigen::Vector3d tau = -pose.p_wc / estimate.plane.distance;
+  return window.K * pose.R_wc.transpose() *
+         (Eigen::Matrix3d::Identity() - tau * estimate.plane.normal.transpose()) *
+         window.K.inverse();
+}
+
+std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window) {
+  const auto H = estimated_homography(inspection, frame_in_window);
+  if (!H) return {};
+  const Window& window = *inspection.window;
+  std::vector<double> residuals;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.inlier[frame_in_window][j]) continue;
+    const Eigen::Vector2d predicted =
+        distort(inspection.recording->camera, transfer(*H, window.points_px[0].col(j)));
+    const double residual = (predicted - inspection.tracks->raw_px[frame_in_window].col(j)).norm();
+    if (std::isfinite(residual)) residuals.push_back(residual);
+  }
+  return residuals;
+}
 
 std::string reason_of(const TrackEnd& end) {
   switch (end.reason) {
     case LossReason::left_image:
-      return "left the picture";
+      return "left the image";
     case LossReason::no_flow:
       return "not found again";
     case LossReason::forward_backward:
       return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
     case LossReason::look_not_found:
-      return "its look in the reference frame not found";
+      return "template of the reference frame not found";
     case LossReason::far_from_prediction:
-      return fmt::format("its look found {:.1f} px from where it was expected, above {:.1f} px",
-                         end.value,
-                         end.limit);
+      return fmt::format(
+          "template found {:.1f} px from the prediction, above {:.1f} px", end.value, end.limit);
     case LossReason::low_correlation:
-      return fmt::format("correlation {:.2f} with its look in the reference frame below {:.1f}",
+      return fmt::format("correlation {:.2f} with the template of the reference frame below {:.1f}",
                          end.value,
                          end.limit);
   }
@@ -155,9 +208,8 @@ TrackLife track_life(const Inspection& inspection, int column) {
     life.inlier_until = life.frames.back().frame;
     if (!life.inlier_since) life.inlier_since = life.inlier_until;
   }
-  for (const MapPoint& point : inspection.initialization->points) {
+  for (const MapPoint& point : inspection.initialization->points)
     if (point.track == column) life.depth = point.position.z();
-  }
   life.verdict = verdict_of(inspection, life);
   if (!tracks.ends.empty() && tracks.ends[column]) {
     const TrackEnd& end = *tracks.ends[column];
@@ -176,6 +228,32 @@ std::optional<double> rms_residual_px(const TrackLife& life) {
     ++count;
   }
   return count > 0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
+}
+
+std::string tracks_csv(const Inspection& inspection) {
+  const Tracks& tracks = *inspection.tracks;
+  const Window& window = *inspection.window;
+  const double threshold_px = inspection.settings.options.ransac_threshold_px;
+  const auto planes = plane_cells(window);
+  std::string csv = "#frame,track,x,y,plane,verdict,residual_px,reason\n";
+  for (int column = 0; column < tracks.track_count(); ++column) {
+    TrackLife life = track_life(inspection, column);
+    const bool on_plane = window.is_inlier_track(column);
+    const std::string loss = loss_of(tracks, column);
+    for (TrackFrame& seen : life.frames) {
+      if (seen.frame == window.start) seen.inlier = on_plane;
+      csv += fmt::format("{},{},{},{},{},{},{},{}\n",
+                         seen.frame,
+                         life.id,
+                         seen.raw_px.x(),
+                         seen.raw_px.y(),
+                         planes[column],
+                         seen.inlier ? "inlier" : "outlier",
+                         seen.residual_px ? fmt::format("{:.4f}", *seen.residual_px) : "",
+                         cell(reason_in(seen, life, loss, threshold_px)));
+    }
+  }
+  return csv;
 }
 
 }  // namespace gpo

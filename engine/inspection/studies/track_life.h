@@ -14,21 +14,30 @@
 
 namespace gpo {
 
+/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 by the result's plane and poses, undistorted;
+/// nullopt if the initialization failed.
+std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
+                                                    int frame_in_window);
+
+/// Returns the lengths of the inliers' residuals in a frame of the window [raw px]: from the
+/// observation to the result's prediction from the reference frame. Empty if the initialization
+/// failed.
+std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
+
 /// A track in a frame that sees it.
 struct TrackFrame {
   int frame = 0;           ///< in the recording
-  Eigen::Vector2d raw_px;  ///< where it is seen
-  /// Transfer error of the frame's own homography, undistorted, which RANSAC compares with its
-  /// threshold; nothing in the reference frame.
+  Eigen::Vector2d raw_px;  ///< observation
+  /// Transfer error by the frame's homography, undistorted, which RANSAC compares with its
+  /// threshold; nullopt in the reference frame.
   std::optional<double> transfer_px;
-  /// From there to where the result's plane and poses put it, in raw pixels; nothing where the
-  /// initialization failed or puts it nowhere.
+  /// Residual against the result's plane and poses [raw px]; nullopt without a prediction.
   std::optional<double> residual_px;
-  std::optional<double> forward_backward_px;  ///< where the built-in front end measured it
+  std::optional<double> forward_backward_px;  ///< nullopt if not measured
   bool inlier = false;
 };
 
-/// All that is known of a track of a window.
+/// History of a track of a window.
 struct TrackLife {
   std::int64_t id = 0;
   int column = 0;                                 ///< of the window's matrices
@@ -38,14 +47,19 @@ struct TrackLife {
   std::string verdict;                            ///< one sentence for people
 };
 
-/// The track of a column of the window; also of one left out by hand, as it was seen.
+/// Returns the history of a column of the window; for an excluded track as it was observed.
 TrackLife track_life(const Inspection& inspection, int column);
 
-/// Root mean square of its residuals in the frames where it is an inlier of the leading plane, by
-/// which they are told; nothing where there is none.
+/// Returns the RMS of the residuals in the frames where the track is an inlier of the leading
+/// plane; nullopt without any.
 std::optional<double> rms_residual_px(const TrackLife& life);
 
-/// "forward-backward error 0.83 px above 0.5 px".
+/// Returns why a track ended: "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end);
+
+/// Returns every track of a window in every frame that sees it, as a table that `read_tracks` can
+/// read: `frame,track,x,y` in raw pixels, the number of its plane (empty: none), inlier or outlier,
+/// the residual [raw px] (empty: none) and why it is an outlier or lost.
+std::string tracks_csv(const Inspection& inspection);
 
 }  // namespace gpo

@@ -7,7 +7,7 @@
 
 namespace gpo {
 
-/// "tracking 41/60": a stage's name, what is done, of how many (0: unknown).
+/// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
 
 }  // namespace gpo

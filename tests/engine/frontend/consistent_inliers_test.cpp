@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/consistent_inliers.h"
-
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/make_window.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/gpo.h"
@@ -172,8 +171,10 @@ TEST(ConsistentInliers, RejectNothingWithoutRansac) {
   const Simulation s = simulate({.frames = 10, .off_plane = 0.15});
   const Camera camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
   const Tracks tracks{0, std::vector<std::int64_t>(150), s.window.points_px};
-  const Window window =
-      make_window(tracks, camera, s.window.timestamps_ns, {.enabled = false}, Inliers::consistent);
+  const Window window = make_window(tracks,
+                                    camera,
+                                    s.window.timestamps_ns,
+                                    {.ransac = {.enabled = false}, .inliers = Inliers::consistent});
   EXPECT_EQ(window.inlier_count(9), 150);
   EXPECT_EQ(window.inliers, Inliers::per_frame);
 }

@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/gyro_calibration.h"
-
-#include "engine/frontend/homography_rotations.h"
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/simulated_window.h"

@@ -19,7 +19,7 @@ TEST(MakeWindow, AFewWrongMatchesInOneFrameDoNotTakeThatFramesInliers) {
   tracks.raw_px = simulation.window.points_px;
   for (int j = 0; j < 12; ++j) tracks.raw_px[4].col(10 * j) += Eigen::Vector2d(90 - 15 * j, 8 * j);
   const Window window =
-      make_window(tracks, camera, simulation.window.timestamps_ns, {}, Inliers::planes);
+      make_window(tracks, camera, simulation.window.timestamps_ns, {.inliers = Inliers::planes});
   ASSERT_EQ(window.planes.size(), 1U);
   EXPECT_GE(window.inlier_count(4), window.inlier_count(5) - 16);
 }

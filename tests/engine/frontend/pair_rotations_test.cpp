@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/pair_rotations.h"
-
+#include "engine/frontend/rotations.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_room.h"
 #include "tests/engine/simulated_window.h"
@@ -107,7 +106,7 @@ TEST(PairRotations, OfOnePlaneAreRefused) {
     for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
       for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         test::Simulation s = test::simulate({.motion = motion, .seed = seed});
-        const char* reason = "nearly all tracks lie on one plane, on which they are ambiguous";
+        const char* reason = "ambiguous, nearly all tracks lie on one plane";
         const Rotations rotations = pair_rotations(s.window, {.solver = solver});
         EXPECT_THAT(rotations.R_wc, IsEmpty());
         EXPECT_THAT(rotations.reason, HasSubstr(reason));

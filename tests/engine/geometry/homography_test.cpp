@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/homography.h"
 
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
 #include "engine/methods/methods.h"
@@ -339,7 +339,7 @@ TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
   EXPECT_EQ(automatic->rotations_used, RotationSource::averaging);
   EXPECT_EQ(to_json(*automatic)["settings"]["rotations"], "averaging");
   const std::string reason = to_json(*automatic)["rotations_note"];
-  EXPECT_THAT(reason, HasSubstr("five-point rotations: nearly all tracks lie on one plane"));
+  EXPECT_THAT(reason, HasSubstr("five-point rotations: ambiguous"));
   EXPECT_THAT(to_text(*automatic), HasSubstr("averaging (" + reason + ")"));
   const auto asked =
       inspector.inspect({.frames = 16, .options = {.rotations = RotationSource::averaging}});
@@ -349,7 +349,7 @@ TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
     const auto refused = inspector.inspect({.frames = 16, .options = {.rotations = source}});
     EXPECT_EQ(refused->rotations_used, source);
     EXPECT_FALSE(refused->initialization->ok);
-    EXPECT_THAT(refused->initialization->reason, HasSubstr("on which they are ambiguous"));
+    EXPECT_THAT(refused->initialization->reason, HasSubstr("nearly all tracks lie on one plane"));
   }
 }
 
@@ -376,7 +376,7 @@ TEST(Inspector, SaysWhatARecordingLacks) {
               HasSubstr("rotations: truth: desk has no ground truth"));
   bare.images.reset();
   EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
-              HasSubstr("no pictures and no tracks"));
+              HasSubstr("no images and no tracks"));
 }
 
 TEST(Inspector, NamesATrackToLeaveOutThatIsNotThere) {

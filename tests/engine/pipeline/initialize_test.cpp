@@ -161,15 +161,15 @@ TEST(Initialize, BadInputIsRefusedByOneLineThatNamesIt) {
   EXPECT_THAT(of_frames([](Frames& f) { f[2].timestamp_ns = f[1].timestamp_ns; }),
               HasSubstr("frame 2: time stamp"));
   EXPECT_EQ(of_frames([](Frames& f) { f[1].ids.pop_back(); }),
-            "frame 1: 149 ids and 150 pixels, expected as many");
+            "frame 1: 149 ids and 150 pixels, expected equal counts");
   EXPECT_EQ(of_frames([](Frames& f) { f[1].ids[4] = 7; }), "frame 1: track 7 is seen twice");
   EXPECT_EQ(
       of_frames([](Frames& f) { f[3].raw_px(0, 0) = std::numeric_limits<double>::quiet_NaN(); }),
-      "frame 3: a pixel is no number");
+      "frame 3: a pixel is not finite");
   EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Identity(); }),
             "frame 1: expected rotations of all frames or of none");
   EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Zero(); }),
-            "frame 0: R_wc is no rotation");
+            "frame 0: R_wc is not a rotation");
   EXPECT_THAT(of_options([](auto& o) { o.method = "magic"; }), HasSubstr("method: unknown method"));
   EXPECT_EQ(of_options([](auto& o) { o.plane = 0; }), "plane: 0, expected at least 1");
   EXPECT_EQ(of_options([](auto& o) { o.rotations = RotationSource::gyro; }),

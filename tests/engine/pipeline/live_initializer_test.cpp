@@ -164,7 +164,7 @@ TEST(LiveInitializer, TakesAccelerationsWithAllSamplesOrWithNone) {
   EXPECT_EQ(test::error_of([&] { with.add_gyroscope(2000, zero); }), expected);
   EXPECT_EQ(test::error_of([&] { without.add_imu(2000, zero, up); }), expected);
   EXPECT_EQ(test::error_of([&] { with.add_imu(2000, zero, up / 0.0); }),
-            "accelerometer: an acceleration is no number");
+            "accelerometer: an acceleration is not finite");
   with.add_imu(2000, zero, up);
 }
 

@@ -34,7 +34,7 @@ Tracks made_tracks(const Window& window) {
 Window made_window(const Window& like, const Tracks& tracks) {
   const Camera camera{
       640, 480, like.K(0, 0), like.K(1, 1), like.K(0, 2), like.K(1, 2), Distortion::none, {}};
-  return make_window(tracks, camera, like.timestamps_ns, {}, Inliers::per_frame);
+  return make_window(tracks, camera, like.timestamps_ns, {});
 }
 
 TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {

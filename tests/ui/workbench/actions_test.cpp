@@ -67,7 +67,7 @@ TEST(Actions, TakeArgumentsAndSayWhatIsWrongWithThem) {
         {"start x", "start: 'x', expected"},
         {"nobody 3", "no action is called \"nobody\"; F1 lists them"},
         {"set seed -1", "seed: '-1', expected a number from 0 to 1e+09"},
-        {"set colour red", "no setting is called 'colour'"},
+        {"set colour red", "unknown setting 'colour'"},
         {"tails perhaps", "tails: 'perhaps', expected on or off"},
         {"screenshot a.jpg", "screenshot: 'a.jpg', expected a file name that ends in .png"},
         {"select track 7", "select track: the window has no track 7"}}) {

@@ -3,7 +3,7 @@
 #include "ui/views/charts/residual_charts.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/residuals.h"
+#include "engine/inspection/studies/track_life.h"
 #include "engine/methods/common/window_checks.h"
 #include "ui/context/theme.h"
 #include "ui/views/charts/axis_ticks.h"

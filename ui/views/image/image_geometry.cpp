@@ -3,7 +3,7 @@
 #include "ui/views/image/image_geometry.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/inspection/studies/residuals.h"
+#include "engine/inspection/studies/track_life.h"
 
 #include <algorithm>
 #include <cmath>

@@ -83,7 +83,7 @@ BackgroundJob::Job Scan::next() {
           settings = *wanted_,
           starts = starts_left(*latest_, *recording_)](const std::stop_token& stop) {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    scan_starts(recording, settings, starts, cores, stop, [&](ScannedStart found) {
+    scan_starts(recording, settings, {starts, cores, stop}, [&](ScannedStart found) {
       if (job_.publish(stop, [&] { add(std::move(found)); })) job_.notify();
     });
   };

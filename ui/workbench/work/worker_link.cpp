@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/results_file.h"
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/playing.h"
 #include "ui/workbench/session/recent_files.h"

@@ -32,7 +32,7 @@ Tracks tracked(const Recording& recording, const FrameCache& images, Tracking tr
   TrackerOptions options;
   options.tracking = tracking;
   return *track_window(
-      [&](int frame) { return images.gray(frame); }, recording.camera, 0, kFrames, options);
+      [&](int frame) { return images.gray(frame); }, recording.camera, {0, kFrames}, options);
 }
 
 /// The recording's pictures, each changed in place.
@@ -223,8 +223,7 @@ TEST(Anchors, HoldTracksOnEverySurface) {
   options.tracking = Tracking::anchored;
   const Tracks tracks = *track_window([&](int frame) { return scene.gray(frame); },
                                       scene.camera(),
-                                      0,
-                                      test::CornerScene::kFrames,
+                                      {0, test::CornerScene::kFrames},
                                       options);
   const int last = test::CornerScene::kFrames - 1;
   for (const int plane : {0, 1}) {

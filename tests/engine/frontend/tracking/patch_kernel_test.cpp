@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/patch_kernel.h"
-
 #include "engine/base/processor.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/smoothed_image.h"
 #include "tests/engine/frontend/texture.h"
 

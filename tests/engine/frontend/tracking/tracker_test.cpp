@@ -60,7 +60,7 @@ TEST(Detector, FindsNothingInAnEmptyImage) {
 }
 
 TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
-  const auto tracks = track_window(moving_image, kSmallCamera, 0, 10);
+  const auto tracks = track_window(moving_image, kSmallCamera, {0, 10});
   ASSERT_TRUE(tracks);
   EXPECT_EQ(tracks->frame_count(), 10);
   double squares = 0;
@@ -76,7 +76,7 @@ TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
 }
 
 TEST(Tracker, DropsWhatLeavesTheImageForGood) {
-  const auto tracks = track_window(moving_image, kSmallCamera, 0, 30);
+  const auto tracks = track_window(moving_image, kSmallCamera, {0, 30});
   for (int j = 0; j < tracks->track_count(); ++j) {
     bool lost = false;
     for (int i = 0; i < 30; ++i) {
@@ -92,7 +92,7 @@ TEST(Tracker, DropsWhatLeavesTheImageForGood) {
 }
 
 TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
-  const auto tracks = track_window(moving_image, kSmallCamera, 0, 30);
+  const auto tracks = track_window(moving_image, kSmallCamera, {0, 30});
   ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
   std::map<LossReason, int> ended;
   for (int j = 0; j < tracks->track_count(); ++j) {
@@ -114,7 +114,7 @@ TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
 }
 
 TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
-  const auto tracks = track_window(moving_image, kSmallCamera, 0, 10);
+  const auto tracks = track_window(moving_image, kSmallCamera, {0, 10});
   ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
   EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
   for (int i = 1; i < 10; ++i) {
@@ -129,15 +129,16 @@ TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
 TEST(Tracker, StopsWhenAsked) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(moving_image, kSmallCamera, 0, 3, {}, source.get_token()));
+  EXPECT_FALSE(track_window(moving_image, kSmallCamera, {0, 3}, {}, {source.get_token()}));
 }
 
 TEST(Tracker, TellsItsProgress) {
   std::vector<int> told;
-  track_window(moving_image, kSmallCamera, 0, 3, {}, {}, [&](int done, int of) {
+  const auto progress = [&](int done, int of) {
     EXPECT_EQ(of, 3);
     told.push_back(done);
-  });
+  };
+  track_window(moving_image, kSmallCamera, {0, 3}, {}, {.progress = progress});
   EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
 }
 
@@ -158,7 +159,7 @@ TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
 }
 
 TEST(MakeWindow, UndistortsAndMarksInliers) {
-  const auto tracks = track_window(moving_image, kSmallCamera, 0, 6);
+  const auto tracks = track_window(moving_image, kSmallCamera, {0, 6});
   const Camera camera{
       kWidth, kHeight, 300, 300, 160, 120, Distortion::radial_tangential, {0.1, 0, 0, 0}};
   const std::vector<std::int64_t> times{0, 1, 2, 3, 4, 5};
@@ -169,7 +170,7 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
     for (int i = 1; i < 6; ++i) EXPECT_LE(window.inlier[i][j], tracks->seen(i, j));
   }
   EXPECT_GT(window.inlier_count(0), window.track_count() / 2);
-  const Window all = make_window(*tracks, camera, times, {.enabled = false});
+  const Window all = make_window(*tracks, camera, times, {.ransac = {.enabled = false}});
   for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
 }
 

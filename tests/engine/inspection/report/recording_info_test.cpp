@@ -83,7 +83,7 @@ TEST(RecordingInfo, IsWrittenAsJson) {
 
 TEST(RecordingInfo, IsWrittenForPeople) {
   const std::string text = to_text(describe(tracks_recording()));
-  EXPECT_THAT(text, HasSubstr("layout        tracks, without pictures\n"));
+  EXPECT_THAT(text, HasSubstr("layout        tracks, without images\n"));
   EXPECT_THAT(text, HasSubstr("frames        6, 10.00 Hz, 0.60 s\n"));
   EXPECT_THAT(text, HasSubstr("  gaps        0.200 s after frame 2 (at 0.200 s)\n"));
   EXPECT_THAT(text, HasSubstr("gyroscope     100.0 Hz, 10 samples\n"));
@@ -111,8 +111,8 @@ TEST(RecordingInfo, LooksForTheBoardInASampleOfALongRecording) {
   ASSERT_TRUE(info.truth);
   EXPECT_EQ(info.truth->examined, 60);
   EXPECT_EQ(info.truth->frames, 30);
-  EXPECT_THAT(to_text(info), HasSubstr("chessboard (board.yaml), 30 of 60 frames looked at\n"));
-  EXPECT_THAT(to_text(info), HasSubstr("  certain to  "));
+  EXPECT_THAT(to_text(info), HasSubstr("chessboard (board.yaml), 30 of 60 frames examined\n"));
+  EXPECT_THAT(to_text(info), HasSubstr("  uncertainty "));
   const auto truth = to_json(info)["ground_truth"];
   EXPECT_LT(truth["rms_px"], 0.2);
   EXPECT_LT(truth["position_sigma_m"], 2e-3);

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/inspection/settings/setting_values.h"
-#include "engine/inspection/window/window_rotations.h"
+#include "engine/inspection/window/window_inputs.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
 
@@ -111,7 +111,7 @@ TEST(SettingValues, ErrorsNameTheSettingAndWhatIsExpected) {
             "loss: unknown value 'cauchy', expected one of squared, huber");
   EXPECT_THAT(refusal("method", "gpoo"), HasSubstr("method: unknown value 'gpoo'"));
   EXPECT_THAT(refusal("exclude", "3,x"), HasSubstr("exclude: 'x', expected a number"));
-  EXPECT_THAT(refusal("nonsense", "3"), HasSubstr("no setting is called 'nonsense'"));
+  EXPECT_THAT(refusal("nonsense", "3"), HasSubstr("unknown setting 'nonsense'"));
   EXPECT_THROW(with_setting({}, "frames", "1"), SettingError);
 }
 
@@ -128,16 +128,16 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   for (const char* key : {"start", "method", "ransac_threshold_px", "inliers", "solver"})
     EXPECT_EQ(why(settings, key), "") << key;
   for (const char* key : {"error", "loss", "shutter", "planes", "time_offset"})
-    EXPECT_EQ(why(settings, key), "Only gpo_joint lets one choose this") << key;
+    EXPECT_EQ(why(settings, key), "Applies only to gpo_joint") << key;
   settings.options.ransac = false;
   EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
   EXPECT_THAT(why(settings, "inliers"), HasSubstr("RANSAC"));
   settings.options.method = "ba";  // takes all tracks, and still counts inliers
   EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
-  EXPECT_EQ(why(settings, "solver"), "Only gpo and gpo_joint let one choose this");
+  EXPECT_EQ(why(settings, "solver"), "Applies only to gpo and gpo_joint");
   EXPECT_EQ(why(settings, "gravity"), "");
   settings.options.gravity = Gravity::joint;
-  EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint takes gravity"));
+  EXPECT_THAT(why(settings, "gravity"), HasSubstr("Only gpo_joint estimates gravity"));
   EXPECT_EQ(as_used(settings).options.gravity, Gravity::after);
   Recording recording;
   EXPECT_EQ(why_idle(find_setting("tracking"), settings, &recording), "");

@@ -42,8 +42,7 @@ TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
   const Settings settings{.frames = 20};
   const std::vector<int> starts = starts_to_scan(desk()->frame_count(), 20, 10);
   std::vector<ScannedStart> found;
-  scan_starts(
-      desk(), settings, starts, 2, {}, [&](ScannedStart one) { found.push_back(std::move(one)); });
+  scan_starts(desk(), settings, {starts, 2}, [&](const auto& one) { found.push_back(one); });
   ASSERT_EQ(found.size(), starts.size());
   Inspector inspector(desk());
   for (const ScannedStart& one : found) {
@@ -60,10 +59,11 @@ TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
 
 TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
   std::vector<ScannedStart> found;
-  scan_starts(
-      desk(), {.frames = 20, .options = {.method = "gpoo"}}, std::vector{3}, 1, {}, [&](auto one) {
-        found.push_back(one);
-      });
+  const std::vector<int> starts{3};
+  scan_starts(desk(),
+              {.frames = 20, .options = {.method = "gpoo"}},
+              {.starts = starts},
+              [&](const auto& one) { found.push_back(one); });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].start, 3);
   EXPECT_FALSE(found[0].ok);

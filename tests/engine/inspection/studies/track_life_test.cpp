@@ -3,7 +3,6 @@
 #include "engine/inspection/studies/track_life.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/residuals.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/gpo.h"
 #include "engine/window/tracks.h"
@@ -137,7 +136,7 @@ TEST(TrackLife, OfATrackLeftOutByHandIsAsItWasSeen) {
   inspection.window = window;
   inspection.settings.exclude = {1140};
   const TrackLife life = track_life(inspection, 140);
-  EXPECT_EQ(life.verdict, "left out by hand");
+  EXPECT_EQ(life.verdict, "excluded");
   ASSERT_EQ(life.frames.size(), 30U);
   EXPECT_EQ(life.frames[9].transfer_px, before.frames[9].transfer_px);
   EXPECT_EQ(life.frames[9].residual_px, before.frames[9].residual_px);

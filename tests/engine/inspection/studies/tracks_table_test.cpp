@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/tracks_table.h"
-
+#include "engine/inspection/studies/track_life.h"
 #include "engine/methods/gpo.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/window/tracks.h"

@@ -1,12 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/consistent_inliers.h"
+#include "engine/frontend/inliers.h"
 
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 namespace gpo {
 namespace {
@@ -14,18 +16,63 @@ namespace {
 using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
 
-/// Where a Gaussian's upper quartile is.
-constexpr double kQuartileSigmas = 0.6745;
+std::vector<bool> agreeing_pairs(const Matrix3d& H,
+                                 const Matrix2Xd& from,
+                                 const Matrix2Xd& to,
+                                 double threshold_px) {
+  std::vector<bool> inlier(from.cols());
+  for (Eigen::Index j = 0; j < from.cols(); ++j) {
+    const Eigen::Vector3d y = H * from.col(j).homogeneous();
+    inlier[j] = y.z() * H(2, 2) > 0 && (y.hnormalized() - to.col(j)).norm() <= threshold_px;
+  }
+  return inlier;
+}
+
+/// Returns whether more than `most` pairs agree with H, up to rounding. Stops as soon as they
+/// cannot, in a tenth of the time that fitting and `agreeing_pairs` take.
+bool more_agree(const Matrix3d& H,
+                const Matrix2Xd& from,
+                const Matrix2Xd& to,
+                double threshold_px,
+                std::ptrdiff_t most) {
+  std::ptrdiff_t may_refuse = from.cols() - most;
+  for (Eigen::Index j = 0; j < from.cols() && may_refuse > 0; ++j) {
+    const Eigen::Vector3d y = H * from.col(j).homogeneous();
+    const Eigen::Vector2d error = y.head<2>() - y.z() * to.col(j);
+    const double radius = threshold_px * y.z();
+    if (!(y.z() * H(2, 2) > 0 && error.squaredNorm() <= radius * radius)) --may_refuse;
+  }
+  return may_refuse > 0;
+}
 
 std::vector<int> indices(const std::vector<bool>& flags) {
   std::vector<int> of_true;
-  for (std::size_t j = 0; j < flags.size(); ++j) {
+  for (std::size_t j = 0; j < flags.size(); ++j)
     if (flags[j]) of_true.push_back(static_cast<int>(j));
-  }
   return of_true;
 }
 
-/// The homographies of the inliers; whether there are enough in every frame.
+std::array<int, 4> draw_four(std::mt19937_64& random, int n) {
+  std::array<int, 4> sample{};
+  for (int k = 0; k < 4;) {
+    // Not std::uniform_int_distribution, whose numbers differ between standard libraries.
+    sample[k] = static_cast<int>(random() % static_cast<std::uint64_t>(n));
+    if (std::find(sample.begin(), sample.begin() + k, sample[k]) == sample.begin() + k) ++k;
+  }
+  return sample;
+}
+
+int iterations_needed(double inlier_ratio, const RansacOptions& options) {
+  const double good_sample = std::pow(inlier_ratio, 4);
+  if (good_sample >= 1) return 1;
+  const double needed = std::log(1 - options.confidence) / std::log1p(-good_sample);
+  return needed < options.most_iterations ? static_cast<int>(std::ceil(needed))
+                                          : options.most_iterations;
+}
+
+constexpr double kQuartileSigmas = 0.6745;  // upper quartile of a Gaussian
+
+/// Fits the homographies to the inliers; false if a frame has too few.
 bool fit(PlaneTracks& tracks,
          const std::vector<Matrix2Xd>& points_px,
          const ConsistencyOptions& options) {
@@ -38,12 +85,11 @@ bool fit(PlaneTracks& tracks,
   return true;
 }
 
-/// Transfer errors of the tracks, frames x tracks, in standard deviations of one coordinate of
-/// their frame's inliers; NaN where not seen. Beside it, how large an error still agrees, one a
-/// frame.
 struct Errors {
+  /// Transfer errors in standard deviations of one coordinate of their frame's inliers, frames x
+  /// tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
-  Eigen::ArrayXd gate;
+  Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
 };
 
 Errors errors_of(const PlaneTracks& tracks,
@@ -67,7 +113,7 @@ Errors errors_of(const PlaneTracks& tracks,
   return errors;
 }
 
-/// The mean square is over the frames that see the track, each error at most its gate.
+/// Averages the square over all frames that see the track, each error limited to its gate.
 TrackConsistency consistency_of(const Errors& errors, Eigen::Index track, double share) {
   TrackConsistency result;
   double sum = 0;
@@ -83,14 +129,12 @@ TrackConsistency consistency_of(const Errors& errors, Eigen::Index track, double
   return result;
 }
 
-/// Above it a mean square stands out among the others; never below that of pure noise. Their spread
-/// is that of the upper half, as drift makes some tracks much worse than the median one, not
-/// better.
+/// Returns the limit of the mean squares, never below that of pure noise. Their spread is estimated
+/// from the upper half, as drift makes some tracks much worse than the median one, not better.
 double largest_mean_square(const std::vector<TrackConsistency>& tracks, double sigmas) {
   std::vector<double> values;
-  for (const TrackConsistency& track : tracks) {
+  for (const TrackConsistency& track : tracks)
     if (track.mean_square) values.push_back(*track.mean_square);
-  }
   if (values.empty()) return 0;
   std::ranges::sort(values);
   const double middle = values[values.size() / 2];
@@ -107,7 +151,7 @@ std::vector<TrackConsistency> consistency(const Errors& errors, const Consistenc
   return tracks;
 }
 
-/// The inliers, one a frame and track; none in the reference frame.
+/// Returns the inliers, one a frame and track; none in the reference frame.
 std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOptions& options) {
   const Eigen::Index tracks = errors.normalized.cols();
   const std::vector<TrackConsistency> of_tracks = consistency(errors, options);
@@ -122,6 +166,45 @@ std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOpt
 }
 
 }  // namespace
+
+std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
+                                                  const Matrix2Xd& to,
+                                                  const RansacOptions& options) {
+  const int n = static_cast<int>(from.cols());
+  if (n < 4) return std::nullopt;
+  RobustHomography best{Matrix3d::Identity(), std::vector<bool>(n, !options.enabled)};
+  if (!options.enabled) {
+    const auto H = fit_homography(from, to);
+    if (H) best.H = refine_homography(*H, from, to);
+    return H ? std::optional(best) : std::nullopt;
+  }
+  std::mt19937_64 random(options.seed);
+  std::ptrdiff_t most = 0;
+  int needed = options.most_iterations;
+  for (int iteration = 0; iteration < needed; ++iteration) {
+    const std::array<int, 4> sample = draw_four(random, n);
+    const Matrix3d H_4 = homography_through_four(from(Eigen::all, sample), to(Eigen::all, sample));
+    if (!more_agree(H_4, from, to, options.threshold_px, most)) continue;
+    const auto H = fit_homography(from(Eigen::all, sample), to(Eigen::all, sample));
+    if (!H) continue;
+    std::vector<bool> inlier = agreeing_pairs(*H, from, to, options.threshold_px);
+    const auto count = std::ranges::count(inlier, true);
+    if (count <= most) continue;
+    most = count;
+    best = {*H, std::move(inlier)};
+    needed = iterations_needed(static_cast<double>(count) / n, options);
+  }
+  // Refinement on the inliers gains pairs that the sample's noise had rejected, and loses others.
+  for (int round = 0; round < 3 && most >= 4; ++round) {
+    const std::vector<int> own = indices(best.inlier);
+    best.H = refine_homography(best.H, from(Eigen::all, own), to(Eigen::all, own));
+    std::vector<bool> inlier = agreeing_pairs(best.H, from, to, options.threshold_px);
+    most = std::ranges::count(inlier, true);
+    if (inlier == best.inlier) break;
+    best.inlier = std::move(inlier);
+  }
+  return most >= 4 ? std::optional(best) : std::nullopt;
+}
 
 std::optional<PlaneTracks> consistent_inliers(const std::vector<Matrix2Xd>& points_px,
                                               PlaneTracks found,

@@ -1,0 +1,77 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace gpo {
+
+struct RansacOptions {
+  bool enabled = true;         ///< off: every pair is an inlier (the paper's ablation)
+  double threshold_px = 2.0;   ///< largest transfer error of an inlier, in the second image [px]
+  std::uint64_t seed = 1;      ///< of the random samples
+  double confidence = 0.9999;  ///< of having drawn one sample without an outlier [-]
+  int most_iterations = 2000;  ///< [-]
+
+  bool operator==(const RansacOptions&) const = default;
+};
+
+struct RobustHomography {
+  Eigen::Matrix3d H;         ///< to ~ H from, refined on its inliers
+  std::vector<bool> inlier;  ///< one a pair
+};
+
+/// Estimates a homography by 4-point RANSAC (Fischler & Bolles), checking each sample's
+/// orientation, and refines it on its inliers. `from` and `to` are 2 x n. Returns nullopt if fewer
+/// than 4 pairs agree.
+std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
+                                                  const Eigen::Matrix2Xd& to,
+                                                  const RansacOptions& options);
+
+/// Inliers of a plane in each frame, and the homographies fitted to them.
+struct PlaneTracks {
+  std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1, one a frame; NaN: unknown
+  std::vector<std::vector<bool>> inlier;  ///< one a frame and track
+};
+
+struct ConsistencyOptions {
+  double threshold_px = 2.0;     ///< largest transfer error of an agreeing track [px]
+  double sigmas = 3.5;           ///< the same in standard deviations of its frame's tracks [-]
+  double least_sigma_px = 0.03;  ///< lower bound of that deviation, of one coordinate [px]
+  double share = 0.9;            ///< of the frames that see a track, in which it must agree [-]
+  double sigmas_of_track = 3.0;  ///< by which its mean square may exceed the median track's [-]
+  int least_inliers = 8;         ///< in each frame
+  int most_rounds = 10;          ///< of fitting and selection [-]
+};
+
+/// Selects the tracks that agree with the homographies over the whole window, starting from the
+/// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
+/// that see it, the reference frame aside, and its mean square error is not an outlier among the
+/// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
+/// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
+/// inlier in the frames in which it agrees. `points_px` is one a frame, 2 x tracks, NaN: not seen.
+/// Returns nullopt if a frame has too few inliers.
+std::optional<PlaneTracks> consistent_inliers(const std::vector<Eigen::Matrix2Xd>& points_px,
+                                              PlaneTracks found,
+                                              const ConsistencyOptions& options);
+
+/// Criteria of that selection for one track.
+struct TrackConsistency {
+  int seen = 0;      ///< frames that see it, the reference frame aside
+  int agreeing = 0;  ///< frames in which it agrees with the plane
+  /// Mean of its squared errors, in variances of their frames; nullopt if it agrees in too few.
+  std::optional<double> mean_square;
+  double largest_mean_square = 0;  ///< limit for a selected track
+};
+
+/// Evaluates the criteria at the result of `consistent_inliers`, one a track.
+std::vector<TrackConsistency> consistency(const std::vector<Eigen::Matrix2Xd>& points_px,
+                                          const PlaneTracks& found,
+                                          const ConsistencyOptions& options);
+
+}  // namespace gpo

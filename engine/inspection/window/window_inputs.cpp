@@ -1,0 +1,179 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/window/window_inputs.h"
+
+#include "engine/base/error.h"
+#include "engine/frontend/tracking/tracker.h"
+#include "engine/pipeline/method_defaults.h"
+#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board_truth.h"
+#include "engine/recording/frame_cache.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};  // z = 0
+
+/// Returns the board's plane in the truth's world, as seen in the reference image.
+std::optional<Plane> plane_of_board(const Recording& recording,
+                                    int frame,
+                                    const std::optional<Pose>& T_truth_camera) {
+  if (!recording.board || !recording.images || !T_truth_camera) return std::nullopt;
+  const auto corners = find_board(recording.images->gray(frame), *recording.board);
+  const auto found = board_pose(corners, *recording.board, recording.camera);
+  if (!found) return std::nullopt;
+  return plane_in_camera(kBoardPlane, found->pose * inverse(*T_truth_camera));
+}
+
+std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start) {
+  std::vector<Eigen::Matrix3d> R_wc;
+  for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
+    const auto& reference = truth->cameras.front();
+    if (!reference || !truth->cameras[i]) {
+      throw SettingError("rotations",
+                         fmt::format("truth: frame {} has no ground truth ({})",
+                                     start + static_cast<int>(reference ? i : 0),
+                                     truth->source));
+    }
+    R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
+  }
+  if (R_wc.empty()) throw SettingError("rotations", "truth: the window has no ground truth");
+  return R_wc;
+}
+
+}  // namespace
+
+double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+Tracked chosen_tracks(const Recording& recording, const FrameSpan& span) {
+  const auto begin = std::chrono::steady_clock::now();
+  Tracks tracks = select_tracks(recording.tracks, span.start, span.frames);
+  return {std::make_shared<const Tracks>(std::move(tracks)),
+          std::vector<double>(span.frames, milliseconds_since(begin))};
+}
+
+std::optional<Tracked> followed_tracks(const Recording& recording,
+                                       const FrameSpan& span,
+                                       Tracking tracking,
+                                       const std::stop_token& stop,
+                                       const Progress& progress) {
+  if (!recording.images) {
+    throw InputError(
+        fmt::format("{}: no images and no tracks. Add a file of tracks", recording.name));
+  }
+  Tracked tracked;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto report = [&](int done, int of) {
+    tracked.milliseconds.push_back(milliseconds_since(begin));
+    if (progress) progress("tracking", done, of);
+  };
+  ImagesAhead images(*recording.images, span.start, span.start + span.frames);
+  auto tracks = track_window([&](int frame) { return images.gray(frame); },
+                             recording.camera,
+                             span,
+                             {.tracking = tracking},
+                             {stop, report});
+  if (!tracks) return std::nullopt;
+  tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));
+  return tracked;
+}
+
+std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& whole, int frames) {
+  if (whole->frame_count() == frames) return whole;
+  Tracks tracks = *whole;
+  tracks.raw_px.resize(frames);
+  if (!tracks.forward_backward_px.empty()) tracks.forward_backward_px.resize(frames);
+  for (std::optional<TrackEnd>& end : tracks.ends)
+    if (end && end->frame >= frames) end.reset();
+  return std::make_shared<const Tracks>(std::move(tracks));
+}
+
+std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
+                                                const FrameSpan& span,
+                                                const std::stop_token& stop,
+                                                const Progress& progress) {
+  if (recording.truth) {
+    const auto begin = recording.truth->poses.begin() + span.start;
+    WindowTruth truth{recording.truth->source, {begin, begin + span.frames}, recording.plane};
+    truth.upright = recording.truth->upright;
+    if (!truth.plane) truth.plane = plane_of_board(recording, span.start, truth.cameras.front());
+    return std::make_shared<const WindowTruth>(std::move(truth));
+  }
+  if (!recording.board || !recording.images) return nullptr;
+  const auto report = [&](int done, int of) {
+    if (progress) progress("finding the board", done, of);
+  };
+  GroundTruth found = board_truth(recording, span.start, span.frames, stop, report);
+  return std::make_shared<const WindowTruth>(WindowTruth{
+      found.source, std::move(found.poses), kBoardPlane, std::move(found.uncertainties)});
+}
+
+std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
+                                             int frames) {
+  if (!whole || static_cast<int>(whole->cameras.size()) == frames) return whole;
+  WindowTruth truth = *whole;
+  truth.cameras.resize(frames);
+  if (!truth.uncertainties.empty()) truth.uncertainties.resize(frames);
+  return std::make_shared<const WindowTruth>(std::move(truth));
+}
+
+std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame) {
+  if (!recording.board || !recording.images) return {};
+  auto corners = find_board(recording.images->gray(frame), *recording.board);
+  const auto hidden = [](const Eigen::Vector2d& corner) { return !corner.allFinite(); };
+  if (std::ranges::none_of(corners, hidden)) return corners;
+  const auto found = board_pose(corners, *recording.board, recording.camera);
+  if (!found) return {};
+  const auto whole = project_board(*recording.board, recording.camera, found->pose);
+  std::ranges::transform(corners, whole, corners.begin(), [&](const auto& seen, const auto& put) {
+    return hidden(seen) ? put : seen;
+  });
+  return corners;
+}
+
+std::string why_no_rotations(const Recording& recording, RotationSource source) {
+  if (needs_gyroscope(source) && !recording.gyroscope) return recording.name + " has no gyroscope";
+  const bool truth = recording.truth || (recording.board && recording.images);
+  if (source == RotationSource::truth && !truth)
+    return recording.name + " has no ground truth, and no images of a board to compute it from";
+  return "";
+}
+
+RotationSource rotation_source_used(const Recording& recording, RotationSource requested) {
+  const RotationSource first = first_source(requested, recording.gyroscope.has_value());
+  if (first != requested) return first;
+  if (const std::string why_not = why_no_rotations(recording, requested); !why_not.empty())
+    throw SettingError("rotations", fmt::format("{}: {}", to_string(requested), why_not));
+  return requested;
+}
+
+std::string automatic_rotations(const Recording& recording) {
+  return recording.gyroscope ? to_string(RotationSource::gyro_calibrated)
+                             : fmt::format("{} or {}",
+                                           to_string(RotationSource::five_point),
+                                           to_string(RotationSource::averaging));
+}
+
+ChosenRotations window_rotations(const Recording& recording,
+                                 const Window& window,
+                                 const WindowTruth* truth,
+                                 const InitializeOptions& options,
+                                 const std::stop_token& stop) {
+  const RotationSource first = rotation_source_used(recording, options.rotations);
+  std::vector<Eigen::Matrix3d> R_wc_true;
+  if (first == RotationSource::truth) R_wc_true = true_rotations(truth, window.start);
+  const Gyroscope* gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  return chosen_rotations(
+      window, {gyroscope, R_wc_true, ransac_options(options)}, options.rotations, stop);
+}
+
+}  // namespace gpo
