@@ -121,7 +121,7 @@ TEST(Evaluate, InterruptedSaysHowToGoOn) {
             " & pid=$!; while [ ! -d " + (folder / "windows").string() +
             " ]; do sleep 0.005; done; kill -INT $pid; wait $pid");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped; the same command goes on from there"));
+  EXPECT_THAT(outcome.err, HasSubstr("stopped; run the same command again to continue"));
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
 }
 

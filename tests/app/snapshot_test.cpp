@@ -92,8 +92,8 @@ TEST(Snapshot, SaysWhatIsNotUsed) {
   const std::string three = "--frames 12 --methods gpo,gpo+no-ransac,gpo_joint ";
   EXPECT_EQ(snapshot("compare", file, three + "--loss huber --tracking anchored").err, "");
   EXPECT_EQ(snapshot("compare", file, three + "--ransac --method ba").err,
-            "--method is not used. The compared methods say it themselves\n"
-            "--ransac is not used. The compared methods say it themselves\n");
+            "--method is not used. The compared methods set it themselves\n"
+            "--ransac is not used. The compared methods set it themselves\n");
 }
 
 TEST(Snapshot, CurvesNeedGroundTruth) {
