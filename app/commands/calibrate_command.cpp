@@ -9,7 +9,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/gyroscope_report.h"
 #include "engine/calibration/self_calibration.h"
-#include "engine/experiment/figure.h"
+#include "engine/base/chart.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"

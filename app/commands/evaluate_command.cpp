@@ -7,7 +7,7 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/tables.h"
+#include "engine/experiment/summary.h"
 #include "engine/experiment/window_files.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"

@@ -3,7 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"

@@ -3,8 +3,6 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/command_method.h"
-#include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
@@ -136,7 +134,7 @@ OwnMethods::OwnMethods(const MethodArguments& arguments)
     : allow_commands_(arguments.allow_commands) {
   options_.time_limit =
       std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
-  options_.told = [log = log](const std::string& name, const std::string& line) {
+  options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };
   add(arguments.spelled, options_);
@@ -173,7 +171,7 @@ void OwnMethods::add(const MethodSpecs& spelled, const CommandOptions& options) 
     more.add(std::move(method));
   }
   for (const std::string& text : spelled.results) {
-    Method method = result_method(parse_program_result(text), options.told, number());
+    Method method = result_method(parse_program_result(text), options.on_line, number());
     method.result = text;
     more.add(std::move(method));
   }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/external_methods/command_method.h"
-#include "engine/external_methods/method_specs.h"
+#include "engine/external_methods/own_method.h"
 
 #include <atomic>
 #include <filesystem>

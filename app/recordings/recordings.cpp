@@ -6,7 +6,7 @@
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera_guess.h"

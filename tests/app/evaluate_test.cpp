@@ -287,7 +287,7 @@ TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
   const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err,
-              HasSubstr("experiment.json: is of another experiment (`lengths` differs)"));
+              HasSubstr("experiment.json: belongs to another experiment (`lengths` differs)"));
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 

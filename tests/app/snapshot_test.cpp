@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"--view image --frame -1", "--frame: -1"},
                       BadInput{"--view image --tolerance 300", "--tolerance"},
                       BadInput{"--view compare --methods gpo,nonsense",
-                               "unknown method 'nonsense', expected all, or some of gpo"},
+                               "unknown method 'nonsense', expected all or some of gpo"},
                       BadInput{"--view curves --methods gpo+nonsense",
                                "unknown setting 'nonsense', expected one of ransac"},
                       BadInput{"--view curves --lengths 1", "--lengths"},

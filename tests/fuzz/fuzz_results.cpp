@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"
 
