@@ -33,7 +33,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   return named;
 }
 
-/// "--help", and "-h" where there is one.
+/// Returns e.g. "--help" and "-h".
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -48,8 +48,8 @@ std::vector<std::string> split(const std::string& list) {
   return words;
 }
 
-/// The keys that an option takes: in braces behind its type, or at the end of its help, as in
-/// ": best, paper".
+/// Returns the keys that an option accepts, from braces in its type or from the end of its help, as
+/// in ": best, paper".
 std::vector<std::string> keys_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t brace = type.find('{');
@@ -88,17 +88,16 @@ std::string man_options(const CLI::App& command) {
   return text;
 }
 
-// groff 1.23 takes the adjustment of each paragraph from the string AD, those before from .ad
-// alone.
+// groff 1.23 reads the adjustment of each paragraph from the string AD, older versions from .ad.
 std::string man_page(const CLI::App& app, const std::string& version) {
   std::string text = fmt::format(
       ".TH GPO\\-INSPECTOR 1 \"\" \"gpo\\-inspector {}\" \"User Commands\"\n.ds AD l\n.ad l\n"
       ".SH NAME\ngpo\\-inspector \\- inspects monocular initialization on planar scenes\n"
       ".SH SYNOPSIS\n.B gpo\\-inspector\n[\\fICOMMAND\\fR] [\\fIOPTIONS\\fR] [\\fIRECORDING\\fR]\n"
-      ".SH DESCRIPTION\nOpens a recorded sequence, follows points through a window of frames, "
-      "initializes, and draws the estimated cameras, the plane and a virtual cube over the picture "
-      "and in 3\\-D, beside the truth where there is one. Everything that it draws it also draws "
-      "without a display. Without a command it opens the window.\n",
+      ".SH DESCRIPTION\nOpens a recorded sequence, tracks points through a window of frames, "
+      "initializes, and draws the estimated cameras, the plane and a virtual cube over the image "
+      "and in 3\\-D, next to the ground truth if there is one. It can draw everything without a "
+      "display, too. Without a command it opens the window.\n",
       version);
   text += ".SH OPTIONS\n" + man_options(app) + ".SH COMMANDS\n";
   for (const CLI::App* command : commands_of(app))
@@ -107,7 +106,7 @@ std::string man_page(const CLI::App& app, const std::string& version) {
                         roff(command->get_description()),
                         man_options(*command));
   return text +
-         ".SH EXIT STATUS\n0: done; 1: no initialization, no calibration, or a picture differs; "
+         ".SH EXIT STATUS\n0: done; 1: no initialization, no calibration, or an image differs; "
          "2: bad input or usage.\n";
 }
 
@@ -130,7 +129,6 @@ std::string bash_completion(const CLI::App& app) {
                             names_of(*option).front(),
                             fmt::join(all, " "));
   }
-  const std::string names = names_of_commands(app, " ");
   return fmt::format(
       "{0}() {{\n"
       "  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= word "
@@ -151,10 +149,10 @@ std::string bash_completion(const CLI::App& app) {
       keys,
       shell_words(app),
       words,
-      names);
+      names_of_commands(app, " "));
 }
 
-/// Of what stands in one of zsh's specifications, in single quotes.
+/// Escapes text of a zsh specification in single quotes.
 std::string zsh_text(std::string text) {
   for (const char* special : {"\\", "[", "]", ":"})
     text = replaced(std::move(text), special, std::string("\\") + special);

@@ -13,7 +13,7 @@ class App;
 
 namespace gpo {
 
-/// What a package installs beside the program, made from the very options that --help prints.
+/// Pages that a package installs beside the program, generated from the options of --help.
 enum class Page { man, bash, zsh };
 
 template <>
@@ -22,13 +22,13 @@ struct ChoiceKeys<Page> {
   static constexpr std::array keys{"man", "bash", "zsh"};
 };
 
-/// Declares the command that prints one; for those who make packages, not in --help.
+/// Adds the command that prints a page. It is for packagers and not listed in --help.
 void add_pages(CLI::App& app, Page& page);
 
-/// Of all that --help lists.
+/// Returns the names of all commands that --help lists.
 std::string names_of_commands(const CLI::App& app, const char* separator);
 
-/// The manual page (roff, section 1), or a shell's completion script.
+/// Returns the manual page (roff, section 1) or the completion script of a shell.
 std::string page_of(const CLI::App& app, Page page, const std::string& version);
 
 }  // namespace gpo

@@ -3,19 +3,24 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
-#include "app/terminal/progress_bar.h"
+#include "app/terminal/progress.h"
+#include "engine/base/chart.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/self_calibration.h"
+#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
+#include "engine/inspection/studies/rotations_over_recording.h"
 #include "engine/recording/board/board_corners.h"
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "ui/views/figures/figure_view.h"
 
 #include <array>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,8 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostFrames = 600;
-constexpr std::size_t kCacheBytes = std::size_t{64} << 20;  // each picture is looked at once
+constexpr std::size_t kCacheBytes = std::size_t{64} << 20;  // each frame is decoded only once
 
 double required_length(const std::optional<double>& length, const char* option) {
   if (!length) throw InputError(fmt::format("{} is required with --board", option));
@@ -37,7 +41,7 @@ double required_length(const std::optional<double>& length, const char* option) 
   throw InputError(fmt::format("{}: {:g}, expected a length in meters, > 0", option, *length));
 }
 
-/// Corners of a chessboard, squares of a ChArUco board.
+/// Returns the corners of a chessboard or the squares of a ChArUco board.
 cv::Size board_counts(const std::string& text, bool charuco) {
   const auto good = [](int count) { return count >= 3 && count <= 100; };
   const auto counts = parse_size(text);
@@ -50,25 +54,21 @@ cv::Size board_counts(const std::string& text, bool charuco) {
 
 BoardMarkers markers_of(const CalibrateArguments& arguments, const Board& board) {
   BoardMarkers markers{required_length(arguments.marker, "--marker"), ""};
-  if (markers.side_m >= board.square_m) {
+  if (markers.side_m >= board.square_m)
     throw InputError(fmt::format("--marker: {:g}, expected less than the square's side, {:g}",
                                  markers.side_m,
                                  board.square_m));
-  }
-  const auto name = dictionary_name(arguments.dictionary.value_or(""));
-  if (!name) {
-    throw InputError(fmt::format("--dictionary: '{}', expected one of {}",
-                                 arguments.dictionary.value_or(""),
-                                 dictionary_names()));
-  }
-  markers.dictionary = *name;
-  if (marker_count(board) > dictionary_size(*name)) {
+  const std::string given = arguments.dictionary.value_or("");
+  const auto name = dictionary_name(given);
+  if (!name)
     throw InputError(
-        fmt::format("--dictionary: {} has {} markers, expected {}, as many as the board",
-                    *name,
-                    dictionary_size(*name),
-                    marker_count(board)));
-  }
+        fmt::format("--dictionary: '{}', expected one of {}", given, dictionary_names()));
+  markers.dictionary = *name;
+  if (marker_count(board) > dictionary_size(*name))
+    throw InputError(fmt::format("--dictionary: {} has {} markers, the board needs {}",
+                                 *name,
+                                 dictionary_size(*name),
+                                 marker_count(board)));
   return markers;
 }
 
@@ -82,36 +82,36 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
-/// Beside a board.yaml what describes another board is not read unless `--board` is there, too.
-void tell_unused_options(const CalibrateArguments& arguments, const fs::path& board_file) {
-  std::vector<std::string> unused;
-  if (arguments.square) unused.emplace_back("--square");
-  if (arguments.pattern) unused.emplace_back("--pattern");
-  if (arguments.marker) unused.emplace_back("--marker");
-  if (arguments.dictionary) unused.emplace_back("--dictionary");
-  if (unused.empty()) return;
-  fmt::print(stderr,
-             "{}: not used, the board is that of {}; --board describes another one\n",
-             fmt::join(unused, ", "),
-             board_file.string());
+/// Returns the given options that describe a board, apart from `--board` itself.
+std::vector<std::string> board_details(const CalibrateArguments& arguments) {
+  std::vector<std::string> details;
+  if (arguments.square) details.emplace_back("--square");
+  if (arguments.pattern) details.emplace_back("--pattern");
+  if (arguments.marker) details.emplace_back("--marker");
+  if (arguments.dictionary) details.emplace_back("--dictionary");
+  return details;
 }
 
-/// The options', else that of the recording's board.yaml.
+/// Returns the board of the options or of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
   const fs::path folder = fs::is_directory(recording) ? recording : recording.parent_path();
   for (const fs::path& base : {folder, folder / "mav0"}) {
     const fs::path file = base / "board.yaml";
     if (!fs::exists(file)) continue;
-    tell_unused_options(arguments, file);
+    if (const auto details = board_details(arguments); !details.empty())
+      fmt::print(stderr,
+                 "{}: not used, {} describes the board; add --board to describe another one\n",
+                 fmt::join(details, ", "),
+                 file.string());
     return read_board(file);
   }
   throw InputError(
       fmt::format("--board is required: there is no {}", (folder / "board.yaml").string()));
 }
 
-/// The camera does not depend on the unit, but who takes the wrong one will want to know.
-void question_square(double side_m) {
+/// The camera does not depend on the unit of length, but a wrong one is a mistake worth a note.
+void warn_of_large_square(double side_m) {
   constexpr double kLargest_m = 1;
   if (side_m < kLargest_m) return;
   fmt::print(
@@ -122,72 +122,108 @@ void question_square(double side_m) {
 }
 
 CalibrationOptions options_of(const CalibrateArguments& arguments) {
-  CalibrationOptions options;
-  options.coefficients = arguments.coefficients;
-  if (arguments.model == "equidistant") {
-    options.distortion = Distortion::equidistant;
-    if (arguments.coefficients != 4) {
-      throw InputError(fmt::format("--coefficients: {}, expected 4 with --model equidistant",
-                                   arguments.coefficients));
-    }
-  }
+  CalibrationOptions options{.coefficients = arguments.coefficients};
+  if (arguments.model != "equidistant") return options;
+  options.distortion = Distortion::equidistant;
+  if (arguments.coefficients != 4)
+    throw InputError(fmt::format("--coefficients: {}, expected 4 with --model equidistant",
+                                 arguments.coefficients));
   return options;
 }
 
-/// What describes a board says nothing of a plane.
 void refuse_board_options(const CalibrateArguments& arguments) {
-  const std::array<std::pair<bool, const char*>, 6> given{
-      {{arguments.board.has_value(), "--board"},
-       {arguments.square.has_value(), "--square"},
-       {arguments.pattern.has_value(), "--pattern"},
-       {arguments.marker.has_value(), "--marker"},
-       {arguments.dictionary.has_value(), "--dictionary"},
-       {arguments.model != "radial-tangential" || arguments.coefficients != 4,
-        "--model, --coefficients"}}};
-  for (const auto& [is_given, name] : given)
-    if (is_given) throw InputError(fmt::format("{}: not used with --from plane", name));
+  auto given = board_details(arguments);
+  if (arguments.board) given.insert(given.begin(), "--board");
+  if (arguments.model != "radial-tangential" || arguments.coefficients != 4)
+    given.emplace_back("--model, --coefficients");
+  if (!given.empty())
+    throw InputError(fmt::format("{}: not used with --from plane", given.front()));
+}
+
+int report_failure(const std::string& reason) {
+  fmt::print("calibration failed: {}\n", reason);
+  return kFailed;
+}
+
+template <class Calibration>
+int write_camera(const CalibrateArguments& arguments, const Calibration& calibration) {
+  fmt::print("{}", to_text(calibration));
+  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+  return kDone;
 }
 
 int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& recording) {
   refuse_board_options(arguments);
   const auto opened = open_recording(recording, {.tracks = {}, .cache_bytes = kCacheBytes});
   if (!opened->images)
-    throw InputError(recording.string() + ": found no pictures, expected a video or pictures");
+    throw InputError(recording.string() + ": has no images, expected a video or images");
   const SelfCalibration calibration = self_calibrate(*opened);
-  if (!calibration.lens.ok) {
-    fmt::print("calibration failed: {}\n", calibration.lens.reason);
-    return kFailed;
+  if (!calibration.lens.ok) return report_failure(calibration.lens.reason);
+  return write_camera(arguments, calibration);
+}
+
+int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& recording) {
+  constexpr int kMaxFrames = 600;
+  const CalibrationOptions options = options_of(arguments);
+  const Board board = board_of(arguments, recording);
+  warn_of_large_square(board.square_m);
+  const auto images = open_images(recording, kCacheBytes, arguments.topics);
+  ProgressBar bar("looking for the board");
+  const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar));
+  const CameraCalibration calibration = calibrate_camera(search, board, options);
+  if (!calibration.ok) return report_failure(calibration.reason);
+  return write_camera(arguments, calibration);
+}
+
+void write_rate_figure(const fs::path& file,
+                       const std::vector<ImageRotations>& windows,
+                       const Recording& recording,
+                       const GyroscopeFit& fit) {
+  const Figure figure{
+      .name = "gyroscope",
+      .title = fmt::format("{}: angular rates in the camera's axes", recording.name),
+      .charts = gyroscope_charts(windows, *recording.gyroscope, fit),
+      .note = fmt::format("clock {:+.2f} +- {:.2f} ms, rotation +- {:.2f} deg, residual {:.2f} deg",
+                          1e3 * fit.time_offset_s,
+                          1e3 * fit.time_offset_sigma_s,
+                          fit.rotation_sigma_deg.maxCoeff(),
+                          fit.rms_deg)};
+  write_image(file, draw_figure(figure, default_figure_size(figure)));
+}
+
+int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& path) {
+  InspectArguments opened;
+  opened.recording = path;
+  const auto recording = open(opened);
+  if (!recording->gyroscope) throw InputError(recording->name + " has no gyroscope");
+  constexpr int kWindows = 80;
+  const Interrupt interrupt;
+  ProgressBar bar("rotations from images");
+  const auto windows =
+      rotations_over_recording(recording, kWindows, std::ref(bar), interrupt.token());
+  interrupt.check("nothing was written");
+  const GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
+  if (fit.windows > 0) {
+    fmt::print("{}", to_text(fit, *recording->gyroscope));
+    if (arguments.figure) write_rate_figure(*arguments.figure, windows, *recording, fit);
   }
-  fmt::print("{}", to_text(calibration));
-  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
+  if (!fit.ok) return report_failure(fit.reason);
+  write_output(arguments.output, to_yaml(fit, recording->camera, recording->name));
   return kDone;
 }
 
 }  // namespace
 
 int calibrate_command(const CalibrateArguments& arguments) {
-  check_outputs(std::array{NamedFile{"--output", arguments.output}},
-                std::array{NamedFile{"recording", arguments.recording}});
+  check_outputs(
+      std::array{NamedFile{"--output", arguments.output}, NamedFile{"--figure", arguments.figure}},
+      std::array{NamedFile{"recording", arguments.recording}});
   const fs::path recording = resolve_recordings({arguments.recording}).front();
-  if (!fs::exists(recording)) {
+  if (arguments.gyroscope) return calibrate_gyroscope(arguments, recording);
+  if (!fs::exists(recording))
     throw InputError(fmt::format("{}: no such file or folder", recording.string()));
-  }
-  if (arguments.from == "plane") return calibrate_by_plane(arguments, recording);
-  const CalibrationOptions options = options_of(arguments);
-  const Board board = board_of(arguments, recording);
-  question_square(board.square_m);
-  const auto images = open_images(recording, kCacheBytes, arguments.topics);
-  ProgressBar bar("looking for the board");
-  const BoardSearch search = find_calibration_views(
-      *images, board, kMostFrames, [&](int done, int of) { bar.show(done, of); });
-  const CameraCalibration calibration = calibrate_camera(search, board, options);
-  if (!calibration.ok) {
-    fmt::print("calibration failed: {}\n", calibration.reason);
-    return kFailed;
-  }
-  fmt::print("{}", to_text(calibration));
-  write_output(arguments.output, to_yaml(calibration, arguments.recording.filename().string()));
-  return kDone;
+  return arguments.from == "plane" ? calibrate_by_plane(arguments, recording)
+                                   : calibrate_by_board(arguments, recording);
 }
 
 }  // namespace gpo

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
-#include "app/terminal/interrupt.h"
-#include "app/terminal/progress_bar.h"
+#include "app/terminal/progress.h"
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/tables.h"
+#include "engine/experiment/summary.h"
 #include "engine/experiment/window_files.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
@@ -33,7 +32,7 @@ namespace fs = std::filesystem;
 using Clock = ReportTimer::Clock;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 
-/// No more recordings than jobs are in work at once; the others keep no pictures.
+/// Returns the cache limit of each recording. Recordings that no job works on cache no frames.
 std::size_t cache_bytes(const EvaluateArguments& arguments) {
   const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
   return (arguments.cache_mib << 20) /
@@ -46,16 +45,14 @@ Recordings open_all(const EvaluateArguments& arguments) {
   for (const fs::path& path : arguments.recordings) {
     recordings.push_back(open_given(
         path, {.tracks = {}, .cache_bytes = cache_bytes(arguments), .topics = arguments.topics}));
-    const Recording& recording = *recordings.back();
-    for (const std::string& note : recording.notes) {
-      fmt::print(stderr, "{}: {}\n", recording.name, note);
-    }
+    for (const std::string& note : recordings.back()->notes)
+      fmt::print(stderr, "{}: {}\n", recordings.back()->name, note);
   }
   return recordings;
 }
 
-/// "evaluating 132/432 windows, 3:10 left", on a terminal in one line that changes, else a line
-/// every ten seconds.
+/// Prints "evaluating 132/432 windows, 3:10 left": overwrites one line on a terminal, otherwise
+/// adds a line every ten seconds.
 class ProgressLine {
  public:
   void operator()(const ExperimentProgress& progress) {
@@ -74,7 +71,7 @@ class ProgressLine {
 
  private:
   static std::string left(double share, Clock::duration spent) {
-    if (share <= 0) return "";  // nothing to judge by yet
+    if (share <= 0) return "";
     const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
     const std::int64_t whole = std::lround(seconds);
     return fmt::format(", {}:{:02} left", whole / 60, whole % 60);
@@ -86,16 +83,16 @@ class ProgressLine {
   bool first_ = true;
 };
 
-/// "85mm" [mm]. Throws InputError.
+/// Parses e.g. "85mm" [mm]. Throws InputError.
 std::optional<double> parse_width(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
-  constexpr double kNarrowest_mm = 50, kWidest_mm = 400;
+  constexpr double kMin_mm = 50, kMax_mm = 400;
   const bool has_unit = text->ends_with("mm");
   const auto width =
       has_unit ? parse_number(std::string_view(*text).substr(0, text->size() - 2)) : std::nullopt;
-  if (width && *width >= kNarrowest_mm && *width <= kWidest_mm) return width;
+  if (width && *width >= kMin_mm && *width <= kMax_mm) return width;
   throw InputError(fmt::format(
-      "--figure-width: '{}', expected {}mm to {}mm, e.g. 85mm", *text, kNarrowest_mm, kWidest_mm));
+      "--figure-width: '{}', expected {}mm to {}mm, e.g. 85mm", *text, kMin_mm, kMax_mm));
 }
 
 void write_figure(const fs::path& folder,
@@ -110,7 +107,7 @@ void write_figure(const fs::path& folder,
   write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }
 
-/// Everything that is made of the finished windows.
+/// Writes tables, figures and summary of the finished windows.
 void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
   const fs::path& folder = arguments.output;
   const std::optional<double> width_mm = parse_width(arguments.figure_width);
@@ -125,9 +122,8 @@ void write_results(const EvaluateArguments& arguments, const Experiment& experim
   write_file(folder / "running_time.csv", to_csv(times));
   fmt::print("{}", to_text(errors));
   make_folder(folder / "figures");
-  for (const Figure& figure : figures(rows, experiment.configurations)) {
+  for (const Figure& figure : figures(rows, experiment.configurations))
     write_figure(folder / "figures", figure, width_mm);
-  }
   fmt::print(
       "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, "
       "running_time.md, figures\n",
@@ -137,44 +133,44 @@ void write_results(const EvaluateArguments& arguments, const Experiment& experim
 }
 
 void check_usage(const EvaluateArguments& arguments) {
-  if (arguments.recordings.empty() == arguments.merge.empty()) {
+  if (arguments.recordings.empty() == arguments.merge.empty())
     throw InputError("evaluate: expected either recordings or --merge DIR...");
-  }
-  if (arguments.shard && !arguments.merge.empty()) {
+  if (arguments.shard && !arguments.merge.empty())
     throw InputError("evaluate: expected either --shard or --merge");
-  }
   parse_width(arguments.figure_width);
   check_experiment_folder(arguments.output);
 }
 
 int run(const EvaluateArguments& arguments, const MethodTable& methods) {
-  const ExperimentRequest request{parse_configurations(arguments.methods, methods),
-                                  parse_ranges(arguments.lengths, "lengths"),
-                                  parse_ranges(arguments.starts, "starts"),
-                                  arguments.seed};
+  const ExperimentRequest request{
+      .configurations = parse_configurations(arguments.methods, methods),
+      .lengths = parse_ranges(arguments.lengths, "lengths"),
+      .starts = parse_ranges(arguments.starts, "starts"),
+      .seed = arguments.seed};
   const Shard shard = arguments.shard ? parse_shard(*arguments.shard) : Shard{};
-  cv::setNumThreads(1);  // the times are those of one thread, whatever the jobs
+  cv::setNumThreads(1);  // reported running times are those of one thread
   const Recordings recordings = open_all(arguments);
   const Experiment experiment = plan_experiment(recordings, request);
   for (const std::string& note : notes_of(experiment)) fmt::print(stderr, "{}\n", note);
   const std::string output = arguments.output.string();
   ProgressLine line;
   const Interrupt interrupt;
-  const RunOptions options{arguments.jobs,
-                           arguments.timing_jobs,
-                           shard,
-                           interrupt.token(),
-                           std::ref(line),
-                           [](const std::string& note) { fmt::print(stderr, "{}\n", note); }};
+  const RunOptions options{
+      .jobs = arguments.jobs,
+      .timing_jobs = arguments.timing_jobs,
+      .shard = shard,
+      .stop = interrupt.token(),
+      .progress = std::ref(line),
+      .note = [](const std::string& note) { fmt::print(stderr, "{}\n", note); }};
   if (!run_experiment(experiment, recordings, arguments.output, options)) {
-    fmt::print(stderr, "\nstopped; the same command goes on from there ({})\n", output);
+    fmt::print(stderr, "\nstopped; run the same command again to continue ({})\n", output);
     return kFailed;
   }
   if (!arguments.shard) {
     write_results(arguments, experiment);
     return kDone;
   }
-  fmt::print("{}: shard {} is finished; when all are: evaluate --merge {} ... --output DIR\n",
+  fmt::print("{}: shard {} is finished; once all are: evaluate --merge {} ... --output DIR\n",
              output,
              *arguments.shard,
              output);

@@ -21,7 +21,7 @@ std::string help_of(const Setting& setting) {
          (keys.empty() ? "" : fmt::format(": {}", fmt::join(keys, ", ")));
 }
 
-void tell(const std::string& key, const std::string& why) {
+void report_idle(const std::string& key, const std::string& why) {
   if (!why.empty()) fmt::print(stderr, "{} is not used. {}\n", option_name(key), why);
 }
 
@@ -34,14 +34,14 @@ std::string option_name(std::string name) {
 }
 
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
-  // Taken as soon as it is read, so that single options overrule it wherever they stand.
+  // Applied as soon as it is parsed, so that single options override it in any position.
   command
       .add_option_function<std::string>(
           "--preset",
           [&settings](const std::string& key) {
             settings = with_preset(std::move(settings), choice<Preset>(key));
           },
-          "All settings by one word: the best that we have, or what the paper does: best, paper")
+          "Sets all settings to our best ones or to the paper's: best, paper")
       ->default_str("best")
       ->type_name("KEY")
       ->check(CLI::IsMember({"best", "paper"}))
@@ -50,7 +50,7 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
     const std::string name = option_name(setting.key);
     const std::string help = help_of(setting);
     const auto take = [&settings, &given, key = setting.key](const std::string& text) {
-      // Which methods there are is known once everything is read, see `find_method`.
+      // The user's own methods are only known after parsing, see `find_methods`.
       if (key == "method")
         settings.options.method = text;
       else
@@ -83,25 +83,25 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
   }
 }
 
-void tell_unused(std::span<const std::string> given, const Inspection& inspection) {
+void report_unused(std::span<const std::string> given, const Inspection& inspection) {
   for (const std::string& key : given)
-    tell(key, why_idle(find_setting(key), inspection.settings, inspection.recording.get()));
+    report_idle(key, why_idle(find_setting(key), inspection.settings, inspection.recording.get()));
 }
 
-void tell_unused(std::span<const std::string> given,
-                 std::span<const Configuration> compared,
-                 std::span<const std::shared_ptr<const Inspection>> inspections) {
+void report_unused(std::span<const std::string> given,
+                   std::span<const Configuration> compared,
+                   std::span<const std::shared_ptr<const Inspection>> inspections) {
   for (const std::string& key : given) {
     const Setting& setting = find_setting(key);
-    const auto says = [&](const Configuration& one) { return key == "method" || one.names(key); };
+    const auto sets = [&](const Configuration& one) { return key == "method" || one.names(key); };
     const auto why = [&](const std::shared_ptr<const Inspection>& one) {
       return why_idle(setting, one->settings, one->recording.get());
     };
-    const bool heeded = std::ranges::any_of(inspections, &std::string::empty, why);
-    if (std::ranges::any_of(compared, says)) {
-      tell(key, "The compared methods say it themselves");
-    } else if (!heeded && !inspections.empty()) {
-      tell(key, why(inspections.front()));
+    const bool used = std::ranges::any_of(inspections, &std::string::empty, why);
+    if (std::ranges::any_of(compared, sets)) {
+      report_idle(key, "The compared methods set it themselves");
+    } else if (!used && !inspections.empty()) {
+      report_idle(key, why(inspections.front()));
     }
   }
 }

@@ -16,17 +16,17 @@ class App;
 
 namespace gpo {
 
-/// What a setting or an argument is called on the command line: "--ransac-threshold-px".
+/// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
 std::string option_name(std::string name);
 
-/// One option a setting. `given` receives the keys of those that are given.
+/// Adds one option per setting. `given` receives the keys of the options on the command line.
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given);
 
-/// Says which of the given settings changed nothing and why, a line each, on standard error.
-void tell_unused(std::span<const std::string> given, const Inspection& inspection);
-/// The same of a comparison: what none of its methods reads, and what they say themselves.
-void tell_unused(std::span<const std::string> given,
-                 std::span<const Configuration> compared,
-                 std::span<const std::shared_ptr<const Inspection>> inspections);
+/// Prints the given settings that have no effect, with the reason, one per line on standard error.
+void report_unused(std::span<const std::string> given, const Inspection& inspection);
+/// The same for a comparison: settings that no method reads, or that the methods set themselves.
+void report_unused(std::span<const std::string> given,
+                   std::span<const Configuration> compared,
+                   std::span<const std::shared_ptr<const Inspection>> inspections);
 
 }  // namespace gpo

@@ -2,16 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/commands/setting_options.h"
-#include "app/images/snapshots.h"
+#include "app/commands/snapshots.h"
+#include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
+#include "ui/context/offscreen_context.h"
 #include "ui/views/image_compare.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
 #include "ui/workbench/session/script.h"
+#include "ui/workbench_host.h"
 
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -21,8 +27,56 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of what only some views heed.
-void tell_unused_by_view(const SnapshotArguments& arguments) {
+/// Runs one command and prints its messages. Throws InputError with the first error.
+void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
+  const auto& messages = host.state.messages.lines;
+  const std::size_t before = messages.size();
+  if (!line.empty()) run_line(host.state, line);
+  host.settle();
+  context.bind();
+  for (const Command& command : host.draw()) apply(host.state, command);
+  for (std::size_t i = before; i < messages.size(); ++i) {
+    if (messages[i].severity == Severity::error) throw InputError(messages[i].text);
+    fmt::print("{}\n", messages[i].text);
+  }
+}
+
+/// Runs the window's commands off-screen.
+int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own) {
+  const InspectArguments& arguments = snapshot.inspect;
+  const std::vector<ScriptLine> lines = read_script(*snapshot.script);
+  OffscreenContext context(size.width, size.height);
+  Gui gui;
+  WorkbenchHost host(gui,
+                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
+                     example_recording());
+  host.timings = false;
+  host.size = size;
+  host.state.document.settings = arguments.settings;
+  host.state.methods = own.table;
+  host.link.add_methods = [&own](const fs::path& session, WorkbenchState& state) {
+    own.add_session(session);
+    report_not_started(own);
+    state.methods = own.table;
+  };
+  host.link.calibrates = arguments.calibrate == "auto";
+  if (!arguments.recording.empty()) host.state.requests.open = arguments.recording;
+  run_script_line(host, context, "");
+  for (const ScriptLine& line : lines) {
+    try {
+      run_script_line(host, context, line.text);
+      for (std::string& text : own.log->take())
+        host.state.messages.lines.push_back({Severity::note, std::move(text)});
+    } catch (const InputError& error) {
+      throw InputError(
+          fmt::format("{}:{}: {}", snapshot.script->string(), line.number, error.what()));
+    }
+    if (host.state.requests.quit) break;
+  }
+  return kDone;
+}
+
+void report_unused_by_view(const SnapshotArguments& arguments) {
   const bool curves = arguments.view == "curves";
   if (arguments.methods && !curves && arguments.view != "compare")
     fmt::print(stderr, "--methods is not used. Only the views compare and curves read it\n");
@@ -32,81 +86,75 @@ void tell_unused_by_view(const SnapshotArguments& arguments) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-/// Draws, and says what was not used and what failed.
+/// Draws, and prints the unused settings and the failures.
 DrawnView draw(const SnapshotArguments& arguments,
                const std::optional<cv::Size>& size,
                const MethodTable& methods) {
-  const ComparisonRequest compared{
-      arguments.methods, arguments.lengths, arguments.inspect.settings, methods};
-  const ViewRequest request{arguments.view, arguments.frame, size, compared};
+  const ComparisonRequest compared{.methods = arguments.methods,
+                                   .lengths = arguments.lengths,
+                                   .window = arguments.inspect.settings,
+                                   .table = methods};
+  const ViewRequest request{
+      .view = arguments.view, .frame = arguments.frame, .size = size, .compared = compared};
   DrawnView drawn = draw_view(open(arguments.inspect), request);
   if (arguments.view == "compare" || arguments.view == "curves")
-    tell_unused(arguments.inspect.given, configurations_of(compared), drawn.inspections);
+    report_unused(arguments.inspect.given, configurations_of(compared), drawn.inspections);
   else
-    tell_unused(arguments.inspect.given, *drawn.inspections.front());
+    report_unused(arguments.inspect.given, *drawn.inspections.front());
   for (const std::string& failure : drawn.failures) fmt::print(stderr, "{}\n", failure);
   return drawn;
 }
 
 cv::Mat read_baseline(const fs::path& file) {
   cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (image.empty()) {
-    throw InputError(
-        fmt::format("--baseline: {} is not a picture that can be read", file.string()));
-  }
+  if (image.empty())
+    throw InputError(fmt::format("--baseline: cannot decode {} as an image", file.string()));
   return image;
 }
 
-/// Where the picture and the baseline are drawn as they differ.
 fs::path difference_file(const SnapshotArguments& arguments) {
   return fs::path(arguments.output).replace_extension(".diff.png");
 }
 
-int tell_other_size(const cv::Mat& image,
-                    const cv::Mat& baseline,
-                    const SnapshotArguments& arguments) {
-  fmt::print("differs from {}: the baseline is {}x{}, the picture {}x{}; see {}\n",
-             arguments.baseline->string(),
-             baseline.cols,
-             baseline.rows,
-             image.cols,
-             image.rows,
-             arguments.output.string());
-  return kFailed;
-}
-
 int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArguments& arguments) {
-  if (image.size() != baseline.size()) return tell_other_size(image, baseline, arguments);
+  const std::string differs = "differs from " + arguments.baseline->string();
+  const std::string output = arguments.output.string();
+  if (image.size() != baseline.size()) {
+    fmt::print("{}: the baseline is {}x{}, the image {}x{}; see {}\n",
+               differs,
+               baseline.cols,
+               baseline.rows,
+               image.cols,
+               image.rows,
+               output);
+    return kFailed;
+  }
   const ImageComparison comparison = compare_images(image, baseline, arguments.tolerance);
   fmt::print("pixels that differ by more than");
-  for (std::size_t k = 0; k < ImageComparison::kSweep.size(); ++k) {
+  for (std::size_t k = 0; k < ImageComparison::kSweep.size(); ++k)
     fmt::print(" {}: {}{}", ImageComparison::kSweep[k], comparison.beyond[k], k < 3 ? "," : "\n");
-  }
   if (comparison.equal) return kDone;
-  write_image(difference_file(arguments), comparison.difference);
-  fmt::print("differs from {}: {}; see {} and {}\n",
-             arguments.baseline->string(),
-             comparison.reason,
-             arguments.output.string(),
-             difference_file(arguments).string());
+  const fs::path difference = difference_file(arguments);
+  write_image(difference, comparison.difference);
+  fmt::print("{}: {}; see {} and {}\n", differs, comparison.reason, output, difference.string());
   return kFailed;
 }
 
-/// Before the work: what is written must be writable, and must not be what is read.
-void check_files(const SnapshotArguments& arguments) {
-  const std::array read{NamedFile{"--baseline", arguments.baseline},
-                        NamedFile{"--tracks", arguments.inspect.tracks},
-                        NamedFile{"recording", arguments.inspect.recording}};
-  check_outputs(std::array{NamedFile{"--output", arguments.output}}, read);
-  if (arguments.baseline)
-    check_outputs(std::array{NamedFile{"--output's .diff.png", difference_file(arguments)}}, read);
-}
-
-/// Without a script: one view of one recording.
-void check_required(const SnapshotArguments& arguments) {
+/// Checks the arguments of one view.
+void check(const SnapshotArguments& arguments) {
   if (arguments.inspect.recording.empty()) throw InputError("recording is required");
   if (arguments.view.empty()) throw InputError("--view is required");
   if (arguments.output.empty()) throw InputError("--output is required");
+  if (arguments.output.extension() != ".png")
+    throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",
+                                 arguments.output.string()));
+  const std::array inputs{NamedFile{"--baseline", arguments.baseline},
+                          NamedFile{"--tracks", arguments.inspect.tracks},
+                          NamedFile{"recording", arguments.inspect.recording}};
+  check_outputs(std::array{NamedFile{"--output", arguments.output}}, inputs);
+  if (arguments.baseline)
+    check_outputs(std::array{NamedFile{"--output's .diff.png", difference_file(arguments)}},
+                  inputs);
 }
 
 }  // namespace
@@ -114,17 +162,10 @@ void check_required(const SnapshotArguments& arguments) {
 int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own) {
   const auto size =
       arguments.size ? std::optional(image_size(*arguments.size, "--size")) : std::nullopt;
-  if (arguments.script)
-    return script_command(
-        *arguments.script, arguments.inspect, size.value_or(cv::Size(1280, 720)), own);
-  check_required(arguments);
-  if (arguments.output.extension() != ".png") {
-    throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",
-                                 arguments.output.string()));
-  }
-  check_files(arguments);
+  if (arguments.script) return run_script(arguments, size.value_or(cv::Size(1280, 720)), own);
+  check(arguments);
   const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
-  tell_unused_by_view(arguments);
+  report_unused_by_view(arguments);
   const DrawnView drawn = draw(arguments, size, own.table);
   const cv::Mat& image = drawn.image;
   make_folder(folder_of(fs::absolute(arguments.output)));

@@ -3,7 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
@@ -30,31 +30,31 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Dear ImGui needs a frame to see what the mouse hovers, and more to size what it opens: the
-/// window has come to rest when so many frames are all alike. A text field's cursor never rests.
-constexpr int kFramesAlike = 2;
-constexpr int kMostFramesAfterEvent = 30;
+/// Dear ImGui needs one frame to find what the mouse hovers and more to size what it opens. The
+/// window sleeps after this number of equal frames.
+constexpr int kEqualFrames = 2;
+constexpr int kMaxFramesAfterEvent = 30;  // a text field's blinking cursor never settles
 constexpr double kIdle_s = 3600;
-constexpr double kBetweenQuestions_s = 0.1;
 constexpr const char* kTitle = "GPO Inspector";
 
-/// Everything between opening the window and closing it.
+/// The window from opening to closing.
 struct Session {
-  const ViewArguments& arguments;
   OwnMethods& own;
   std::string title = kTitle;
   WindowContext window{title, 1280, 720};
   WindowInput input{window.glfw()};
   Gui gui{window};
-  WorkbenchHost host{gui,
-                     opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
-                     example_recording(),
-                     [] { glfwPostEmptyEvent(); }};
+  WorkbenchHost host;
   std::deque<ScriptLine> script;
   Clock::time_point last = Clock::now();
-  double seconds = 0;  ///< between the last two turns of the loop
+  double seconds = 0;  ///< between the last two iterations of the loop
 
-  Session(const ViewArguments& from, OwnMethods& methods) : arguments(from), own(methods) {
+  Session(const InspectArguments& from, OwnMethods& methods)
+      : own(methods),
+        host(gui,
+             opener_for_window(from.cache_mib, from.recording, from.topics),
+             example_recording(),
+             [] { glfwPostEmptyEvent(); }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
     host.link.add_methods = [this](const std::filesystem::path& file, WorkbenchState& state) {
@@ -67,15 +67,16 @@ struct Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Whether the commands that only a session names may be started; before it is opened.
+  /// Asks whether to start the commands of a session before it is opened.
   void ask_for_commands() {
-    constexpr std::size_t kAllOfIt = 4000;
+    constexpr std::size_t kMaxLength = 4000;
+    constexpr double kInterval_s = 0.1;
     std::vector<std::string> shown;
-    for (const std::string& one : own.waiting) shown.push_back(legible(one, kAllOfIt));
-    const Question question{"This session starts commands of its own",
+    for (const std::string& one : own.waiting) shown.push_back(legible(one, kMaxLength));
+    const Question question{"This session wants to start commands",
                             shown,
-                            "They can do what you can. Start them if you know who wrote the "
-                            "session; else their methods are listed and fail.",
+                            "They can do whatever you can. Start them only if you trust the author "
+                            "of the session. Otherwise their methods are listed and fail.",
                             "Start them",
                             "Do not start them"};
     std::optional<bool> answer;
@@ -85,22 +86,17 @@ struct Session {
       input.dispatch(host.state);
       if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
       window.swap();
-      if (!answer) window.wait(kBetweenQuestions_s);
+      if (!answer) window.wait(kInterval_s);
     }
     *own.allowed = answer.value_or(false);
-    if (!*own.allowed) say_not_started(own);
+    if (!*own.allowed) report_not_started(own);
   }
 
-  void tell_what_methods_say() {
-    for (std::string& line : own.log->take())
-      host.state.messages.lines.push_back({Severity::note, std::move(line)});
-  }
-
-  /// Whether anything was done in it that the next frame is to show.
+  /// Draws a frame. Returns whether it gave commands, which the next frame has to show.
   bool draw() {
     host.size = window.size();
     if (host.size.width < 1 || host.size.height < 1) return false;  // minimized
-    gui.set_screen_scale(window.content_scale());  // Wayland tells it once the window is shown
+    gui.set_screen_scale(window.content_scale());  // Wayland reports it after the window is shown
     window.bind();
     const Commands commands = host.draw(seconds);
     window.swap();
@@ -108,11 +104,11 @@ struct Session {
     return !commands.empty();
   }
 
-  /// Tells the desktop, and who drives the window, what is open and whether it is being computed.
+  /// Shows in the title which recording is open and whether it is being computed.
   void update_title() {
-    const WorkbenchState& state = host.state;
-    std::string now = state.document.recording ? state.document.recording->name + " \u2013 " : "";
-    if (state.document.recording && state.document.recording->camera_source == CameraSource::guess)
+    const auto& recording = host.state.document.recording;
+    std::string now = recording ? recording->name + " \u2013 " : "";
+    if (recording && recording->camera_source == CameraSource::guess)
       now += "the camera is a guess \u2013 ";
     if (host.link.worker.busy) now += "computing \u2013 ";
     now += kTitle;
@@ -121,8 +117,8 @@ struct Session {
     glfwSetWindowTitle(window.glfw(), title.c_str());
   }
 
-  /// Sleeps until something happens or the next frame is due. Time goes on before the keys are
-  /// heeded: what begins to play then has not slept.
+  /// Sleeps until an event or until the next frame is due. Advances the time before keys are
+  /// handled, so that playback which a key starts does not include the sleep.
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
@@ -136,15 +132,8 @@ struct Session {
     advance(host.state, seconds);
   }
 
-  /// What was done in the window, before the frame that shows it; whether there was anything.
-  bool heed_input() {
-    const Commands commands = input.dispatch(host.state);
-    for (const Command& command : commands) apply(host.state, command);
-    return !commands.empty();
-  }
-
-  /// One command at a time, each when what the last one asked for is computed.
-  void go_on_with_script() {
+  /// Runs the next command once the results of the previous one are computed.
+  void continue_script() {
     if (script.empty() || host.busy()) return;
     run_action(host.state, script.front().text);
     script.pop_front();
@@ -152,20 +141,23 @@ struct Session {
   }
 
   void run() {
-    int frames = 0, alike = 0;  // since something happened
+    int frames = 0, equal = 0;  // since the last event
     while (!window.should_close() && !host.state.requests.quit) {
-      if (heed_input()) frames = alike = 0;
+      const Commands commands = input.dispatch(host.state);
+      for (const Command& command : commands) apply(host.state, command);
+      if (!commands.empty()) frames = equal = 0;
       host.synchronize();
-      tell_what_methods_say();
-      go_on_with_script();
+      for (std::string& line : own.log->take())
+        host.state.messages.lines.push_back({Severity::note, std::move(line)});
+      continue_script();
       update_title();
       window.set_fullscreen(host.state.view.fullscreen);
-      const bool asked = draw();
-      alike = asked || host.redrawn() ? 0 : alike + 1;
-      const bool settled = alike >= kFramesAlike || ++frames >= kMostFramesAfterEvent;
-      // Nothing else would wake it after the last key.
+      const bool requested = draw();
+      equal = requested || host.redrawn() ? 0 : equal + 1;
+      const bool settled = equal >= kEqualFrames || ++frames >= kMaxFramesAfterEvent;
+      // No event wakes the window after the last pending key.
       wait(settled && !input.waiting() && !host.state.requests.quit);
-      if (settled) frames = alike = 0;
+      if (settled) frames = equal = 0;
     }
   }
 };
@@ -173,34 +165,35 @@ struct Session {
 }  // namespace
 
 int view_command(const ViewArguments& arguments, OwnMethods& own) {
-  const auto& [recording, topics, cache_mib, calibrate, settings, given, session_file, script] =
-      arguments;
-  if (recording && !std::filesystem::exists(*recording)) {
+  const InspectArguments& inspect = arguments.inspect;
+  const auto recording =
+      inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
+  if (recording && !std::filesystem::exists(*recording))
     throw InputError(recording->string() + ": no such file or folder; expected a recording");
-  }
   const bool shown = recording && (is_session(*recording) || is_results(*recording));
-  if (recording && !shown) resolve_recordings({*recording});  // before a window would wait
-  if (session_file)
-    read_session(*session_file, own.table);  // an error is said before there is a window
-  const auto lines = script ? read_script(*script) : std::vector<ScriptLine>{};
-  Session session(arguments, own);
+  // Errors are reported before a window opens.
+  if (recording && !shown) resolve_recordings({*recording});
+  if (arguments.session) read_session(*arguments.session, own.table);
+  const auto lines = arguments.script ? read_script(*arguments.script) : std::vector<ScriptLine>{};
+  Session session(inspect, own);
+  WorkbenchHost& host = session.host;
   session.script.assign(lines.begin(), lines.end());
-  session.host.link.remembers_files = true;
-  session.host.link.calibrates = calibrate == "auto";
-  session.host.state.files.asks = true;
-  session.host.state.files.recent = recent_files();
-  session.host.state.files.has_last_session = std::filesystem::exists(last_session_file());
-  session.host.state.document.settings = settings;
-  session.host.state.requests.open = session_file ? session_file : recording;
-  const SavedWindow kept = read_saved_window(session.host.state);
+  host.link.remembers_files = true;
+  host.link.calibrates = inspect.calibrate == "auto";
+  host.state.files.asks = true;
+  host.state.files.recent = recent_files();
+  host.state.files.has_last_session = std::filesystem::exists(last_session_file());
+  host.state.document.settings = inspect.settings;
+  host.state.requests.open = arguments.session ? arguments.session : recording;
+  const SavedWindow kept = read_saved_window(host.state);
   const float scale = session.gui.scale();
   session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)
                                        : cv::Size(cvRound(1280 * scale), cvRound(720 * scale)));
   if (!own.waiting.empty()) session.ask_for_commands();
   session.run();
-  save_last_session(session.host.state);
+  save_last_session(host.state);
   const cv::Size size = session.window.place().size();
-  save_window({size.width, size.height}, session.host.state);
+  save_window({size.width, size.height}, host.state);
   return kDone;
 }
 

@@ -3,14 +3,13 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/command_method.h"
-#include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -25,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the methods whose names are not taken yet, and takes these names.
+/// Returns the methods whose names are not taken yet and marks these names as taken.
 std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std::string>& taken) {
   std::erase_if(spelled, [&](const std::string& one) {
     return !taken.insert(one.substr(0, one.find('='))).second;
@@ -33,23 +32,22 @@ std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std
   return spelled;
 }
 
-/// All that is asked about must be seen: nothing beyond the window, nothing behind line ends.
+/// Refuses commands that the question cannot show in full. Throws InputError.
 void check_can_be_shown(const std::vector<std::string>& waiting) {
   constexpr std::size_t kMostCommands = 20, kMostBytes = 2000;
   std::size_t bytes = 0;
   for (const std::string& one : waiting) bytes += legible(one, kMostBytes + 1).size();
   if (waiting.size() > kMostCommands || bytes > kMostBytes)
     throw InputError(
-        fmt::format("method_commands of a session: found {} with {} characters or more, expected "
-                    "at most {} with {}, which a "
-                    "question can show; --allow-commands takes all",
+        fmt::format("method_commands of a session: found {} with {} characters or more, but a "
+                    "question can show at most {} with {}; --allow-commands starts all",
                     waiting.size(),
                     bytes,
                     kMostCommands,
                     kMostBytes));
 }
 
-/// Methods of the user's that shards were computed with, by what they were then.
+/// Returns the identities of the user's methods that computed the shards, by name.
 std::map<std::string, std::string> methods_of_shards(const std::vector<fs::path>& folders) {
   std::map<std::string, std::string> found;
   for (const fs::path& folder : folders) {
@@ -63,20 +61,40 @@ std::map<std::string, std::string> methods_of_shards(const std::vector<fs::path>
   return found;
 }
 
-/// It only has a name: nothing asks it for a window.
+/// Returns a method that has only a name and is never run.
 Method method_of_shard(const std::string& name, const std::string& identity, int number) {
   return own_method(
       name,
       number,
       [name](const Window&, const Sources&, const Watch&) {
-        return failed(name + ": is known from shards alone");
+        return failed(name + ": only known from shards");
       },
       identity);
 }
 
 }  // namespace
 
-void say_not_started(const OwnMethods& own) {
+void MethodLog::add(const std::string& name, const std::string& line) {
+  constexpr int kMaxLines = 200;
+  const std::lock_guard lock(mutex_);
+  if (++count_ > kMaxLines + 1) return;
+  lines_.push_back(count_ <= kMaxLines ? fmt::format("{}: {}", name, line)
+                                       : fmt::format("{}: (further lines are not shown)", name));
+  fmt::print(stderr, "{}\n", lines_.back());
+  if (changed_) changed_();
+}
+
+std::vector<std::string> MethodLog::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(lines_, {});
+}
+
+void MethodLog::on_change(std::function<void()> changed) {
+  const std::lock_guard lock(mutex_);
+  changed_ = std::move(changed);
+}
+
+void report_not_started(const OwnMethods& own) {
   for (const std::string& one : own.waiting) {
     const std::size_t equals = one.find('=');
     own.log->add(one.substr(0, equals),
@@ -90,33 +108,33 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method-command",
                   arguments.spelled.commands,
-                  "A method of your own, NAME='COMMAND': it is given each window as a line of JSON "
+                  "Adds your own method, NAME='COMMAND', which reads each window as a line of JSON "
                   "and answers with one (engine/external_methods/README.md)")
       ->allow_extra_args(false)
       ->type_name("NAME=COMMAND");
   command
-      .add_option(
-          "--method-timeout", arguments.timeout_s, "Such a command is killed after so long [s]")
+      .add_option("--method-timeout",
+                  arguments.timeout_s,
+                  "Time limit of such a command per window, after which it is killed [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 1e5));
   command
       .add_option("--result",
                   arguments.spelled.results,
-                  "Another program's result as a method, NAME=FILE[,POINTS][,frame=camera|body]: a "
-                  "trajectory (TUM, EuRoC, KITTI, ORB-SLAM3, VINS-Mono) or a model of COLMAP "
-                  "(engine/results/README.md)")
+                  "Adds another program's result as a method, "
+                  "NAME=FILE[,POINTS][,frame=camera|body]: a trajectory (TUM, EuRoC, KITTI, "
+                  "ORB-SLAM3, VINS-Mono) or a COLMAP model (engine/results/README.md)")
       ->allow_extra_args(false)
       ->type_name("NAME=FILE");
-  command.add_flag("--allow-commands",
-                   arguments.allow_commands,
-                   "Commands that only a session names are started, without a question");
+  command.add_flag(
+      "--allow-commands", arguments.allow_commands, "Starts commands of a session without asking");
 }
 
 OwnMethods::OwnMethods(const MethodArguments& arguments)
     : allow_commands_(arguments.allow_commands) {
   options_.time_limit =
       std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
-  options_.told = [log = log](const std::string& name, const std::string& line) {
+  options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };
   add(arguments.spelled, options_);
@@ -153,7 +171,7 @@ void OwnMethods::add(const MethodSpecs& spelled, const CommandOptions& options) 
     more.add(std::move(method));
   }
   for (const std::string& text : spelled.results) {
-    Method method = result_method(parse_program_result(text), options.told, number());
+    Method method = result_method(parse_program_result(text), options.on_line, number());
     method.result = text;
     more.add(std::move(method));
   }

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "app/methods/method_log.h"
 #include "engine/external_methods/command_method.h"
-#include "engine/external_methods/method_specs.h"
+#include "engine/external_methods/own_method.h"
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -18,28 +19,46 @@ class App;
 
 namespace gpo {
 
-/// The user's own methods, as the command line tells them.
+/// Messages of the user's own methods: printed on standard error at once and collected for the
+/// window's log. Thread-safe.
+class MethodLog {
+ public:
+  /// Prints and collects a line. After 200 lines, further ones are dropped.
+  void add(const std::string& name, const std::string& line);
+  /// Returns the lines since the last call.
+  std::vector<std::string> take();
+  /// `changed` is called after each line, on the thread that added it.
+  void on_change(std::function<void()> changed);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> lines_;
+  std::function<void()> changed_;
+  int count_ = 0;
+};
+
+/// The user's own methods, as given on the command line.
 struct MethodArguments {
   MethodSpecs spelled;
-  double timeout_s = 30;        ///< of a command, a window
-  bool allow_commands = false;  ///< those of sessions are started, too
+  double timeout_s = 30;        ///< of a command per window
+  bool allow_commands = false;  ///< also starts the commands of sessions
 };
 
 /// The user's own methods: those of the command line, then those of sessions.
 class OwnMethods {
  public:
-  /// Adds those of the command line. Throws InputError.
+  /// Adds the methods of the command line. Throws InputError.
   explicit OwnMethods(const MethodArguments& arguments);
 
-  /// Adds the methods that a session names; nothing if the file is no session. A method whose name
-  /// is known stays as it is. Throws InputError, then nothing is added.
+  /// Adds the methods of a session; does nothing if the file is no session. Known names keep their
+  /// method. Throws InputError and then adds none.
   void add_session(const std::filesystem::path& file);
-  /// Adds the names of those that made shards, which are to be merged.
+  /// Adds the names of the methods that computed the shards.
   void add_shards(const std::vector<std::filesystem::path>& folders);
 
-  MethodTable table;  ///< ours and these
+  MethodTable table;  ///< built-in methods and these
   std::shared_ptr<MethodLog> log = std::make_shared<MethodLog>();
-  /// "NAME=COMMAND" of the last session, which are not started while `allowed` is false.
+  /// "NAME=COMMAND" of the last session, not started while `allowed` is false.
   std::vector<std::string> waiting;
   std::shared_ptr<std::atomic<bool>> allowed;
 
@@ -49,10 +68,10 @@ class OwnMethods {
   bool allow_commands_;
 };
 
-/// Says on standard error that those that wait are not started, and what would start them.
-void say_not_started(const OwnMethods& own);
+/// Logs each waiting command as not started, with the option that would start it.
+void report_not_started(const OwnMethods& own);
 
-/// To be had by every command that initializes.
+/// Adds the options for the user's own methods.
 void add_method_commands(CLI::App& command, MethodArguments& arguments);
 
 }  // namespace gpo

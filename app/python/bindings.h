@@ -2,28 +2,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/pose.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
+#include "engine/window/window.h"
 
+#include <chrono>
+#include <cstdint>
+#include <future>
 #include <memory>
+#include <span>
+#include <stop_token>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include <opencv2/core/mat.hpp>
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 namespace gpo {
 
 using SharedRecording = std::shared_ptr<const Recording>;
-/// Python's Recording; its holders do not know constants.
+/// Python's Recording. (pybind11's holders do not support const.)
 struct OpenRecording {
   SharedRecording shared;
 };
-/// What `run`, `evaluate` and `snapshot` take: one that is open, or where one lies.
+/// The recording that `run`, `evaluate` and `snapshot` take: an open one or a path.
 using RecordingOrPath = std::variant<OpenRecording, std::string>;
+
+/// Base of Python's results. The pointers keep their owners alive.
+struct Solved {
+  std::shared_ptr<const Initialization> initialization;
+  std::shared_ptr<const Window> window;
+  std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< of the window's tracks
+  std::shared_ptr<const InertialAlignment> inertial;     ///< null if no accelerometer was used
+
+  const Initialization& operator*() const { return *initialization; }
+};
 
 SharedRecording opened(const RecordingOrPath& recording);
 
-/// The settings by their names on the command line, with `_`: frames=20, planes="one",
+/// Returns the settings by their command-line names with `_`: frames=20, planes="one",
 /// ransac=False, and preset="paper". Throws InputError.
 Settings settings_of(const pybind11::kwargs& given);
 
@@ -31,5 +53,93 @@ void bind_solved(pybind11::module_& module);
 void bind_recording(pybind11::module_& module);
 void bind_initialize(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
+
+/// Runs `work(stop_token)` on another thread without the interpreter's lock. Ctrl-C stops it and
+/// raises KeyboardInterrupt. Rethrows exceptions of the work.
+template <class Work>
+auto interruptible(Work work) {
+  namespace py = pybind11;
+  std::stop_source stop;
+  auto result =
+      std::async(std::launch::async, [&work, token = stop.get_token()] { return work(token); });
+  for (bool done = false; !done;) {
+    {
+      const py::gil_scoped_release others_may_run;
+      done = result.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready;
+    }
+    if (done || PyErr_CheckSignals() == 0) continue;
+    stop.request_stop();
+    {
+      const py::gil_scoped_release others_may_run;
+      result.wait();
+    }
+    throw py::error_already_set();
+  }
+  return result.get();
+}
+
+/// Returns a read-only NumPy array that views our memory and keeps its owner alive.
+template <class T>
+pybind11::array view_array(const T* data,
+                           std::vector<pybind11::ssize_t> shape,
+                           std::vector<pybind11::ssize_t> strides_bytes,
+                           std::shared_ptr<const void> owner) {
+  namespace py = pybind11;
+  auto* kept = new std::shared_ptr<const void>(std::move(owner));
+  const py::capsule base(kept,
+                         [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+  py::array_t<T> array(std::move(shape), std::move(strides_bytes), data, base);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+/// Returns (N, 3) of one vector in each item.
+template <class T>
+pybind11::array view_vectors(std::span<const T> items,
+                             Eigen::Vector3d T::*vector,
+                             std::shared_ptr<const void> owner) {
+  static const T none{};
+  return view_array(((items.empty() ? none : items.front()).*vector).data(),
+                    {std::ssize(items), 3},
+                    {sizeof(T), sizeof(double)},
+                    std::move(owner));
+}
+
+inline pybind11::array view_vectors(std::span<const Eigen::Vector3d> vectors,
+                                    std::shared_ptr<const void> owner) {
+  return view_array(reinterpret_cast<const double*>(vectors.data()),
+                    {std::ssize(vectors), 3},
+                    {sizeof(Eigen::Vector3d), sizeof(double)},
+                    std::move(owner));
+}
+
+inline pybind11::array view_integers(const std::vector<std::int64_t>& integers,
+                                     std::shared_ptr<const void> owner) {
+  return view_array(
+      integers.data(), {std::ssize(integers)}, {sizeof(std::int64_t)}, std::move(owner));
+}
+
+/// Returns the rotations of poses (N, 3, 3). Eigen's matrices are column-major.
+inline pybind11::array view_rotations(std::span<const Pose> poses,
+                                      std::shared_ptr<const void> owner) {
+  static const Pose none;
+  return view_array((poses.empty() ? none : poses.front()).R_wc.data(),
+                    {std::ssize(poses), 3, 3},
+                    {sizeof(Pose), sizeof(double), 3 * sizeof(double)},
+                    std::move(owner));
+}
+
+/// Returns an 8-bit image as (H, W, channels), or (H, W) for one channel.
+inline pybind11::array view_image(const cv::Mat& image) {
+  const auto row = static_cast<pybind11::ssize_t>(image.step[0]);
+  const auto channels = static_cast<pybind11::ssize_t>(image.channels());
+  std::vector<pybind11::ssize_t> shape{image.rows, image.cols};
+  std::vector<pybind11::ssize_t> strides{row, channels};
+  if (channels > 1) {
+    shape.push_back(channels);
+    strides.push_back(1);
+  }
+  return view_array(image.data, shape, strides, std::make_shared<const cv::Mat>(image));
+}
 
 }  // namespace gpo

@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The front door, from Python: tracks of any front end.
+// Python bindings of engine/initialize.h: tracks of any front end.
 #include "engine/initialize.h"
 
-#include "app/python/arrays.h"
 #include "app/python/bindings.h"
-#include "app/python/interruptible.h"
-#include "app/python/solved.h"
 #include "engine/base/error.h"
 #include "engine/inspection/settings/settings_table.h"
 
@@ -35,7 +32,7 @@ struct TrackedWindow : Solved {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
-/// K alone is a lens that bends nothing.
+/// K alone is a camera without distortion.
 using CameraOrK = std::variant<Camera, Numbers>;
 
 Eigen::Matrix3d matrix_of(const Numbers& rows, const char* name) {
@@ -44,7 +41,7 @@ Eigen::Matrix3d matrix_of(const Numbers& rows, const char* name) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
 }
 
-/// Rows of three, or one.
+/// Returns the rows of (m, 3), or the one of (3,). Throws InputError.
 std::vector<Eigen::Vector3d> vectors_of(const Numbers& rows, const char* name) {
   if (rows.ndim() == 0 || rows.shape(rows.ndim() - 1) != 3)
     throw InputError(fmt::format("gyroscope: expected {} (3,), or (m, 3)", name));
@@ -65,10 +62,9 @@ Camera camera_of(const Eigen::Matrix3d& K,
                  std::vector<double> distortion,
                  const std::string& model) {
   const auto lens = kLenses.find(model);
-  if (lens == kLenses.end()) {
+  if (lens == kLenses.end())
     throw InputError(
         fmt::format("model: {}, expected none, radial-tangential or equidistant", model));
-  }
   return {.width = size.first,
           .height = size.second,
           .fx = K(0, 0),
@@ -96,7 +92,7 @@ Frame frame_of(std::int64_t timestamp_ns,
           .R_wc = R_wc ? std::optional(matrix_of(*R_wc, "R_wc")) : std::nullopt};
 }
 
-/// Throws InputError with these words where the object is of another type.
+/// Throws InputError with the given message if the object has another type.
 template <class T>
 T cast(const py::handle& given, const std::string& otherwise) {
   try {
@@ -111,7 +107,7 @@ T cast(const py::handle& given, const std::string& otherwise) {
 
 Frame frame_of(const py::handle& given, std::size_t number) {
   const std::string expected =
-      fmt::format("frame {}: expected (timestamp_ns, ids, pixels) or with R_wc, numbers", number);
+      fmt::format("frame {}: expected numbers (timestamp_ns, ids, pixels[, R_wc])", number);
   const auto parts = cast<py::sequence>(given, expected);
   if (parts.size() != 3 && parts.size() != 4) throw InputError(expected);
   const auto time_ns = cast<std::int64_t>(parts[0], expected);
@@ -129,19 +125,19 @@ Frame frame_of(const py::handle& given, std::size_t number) {
 template <class T>
 void take(const py::dict& given, const char* key, T& field) {
   if (given.contains(key))
-    field = cast<T>(given[key], fmt::format("gyroscope: {} is of another type", key));
+    field = cast<T>(given[key], fmt::format("gyroscope: {} has another type", key));
 }
 
-/// None or missing: it is unknown.
+/// Returns nullopt if the lever arm is None or missing.
 std::optional<Eigen::Vector3d> lever_of(const std::optional<py::dict>& given) {
   constexpr const char* kKey = "p_gyro_camera_m";
   if (!given || !given->contains(kKey) || (*given)[kKey].is_none()) return std::nullopt;
-  return vectors_of(cast<Numbers>((*given)[kKey], "gyroscope: p_gyro_camera_m is of another type"),
+  return vectors_of(cast<Numbers>((*given)[kKey], "gyroscope: p_gyro_camera_m has another type"),
                     kKey)
       .front();
 }
 
-/// The keys of `Recording.gyroscope`; what is missing is as of a phone's.
+/// Converts a dict with the keys of `Recording.gyroscope`; defaults are those of a phone.
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   if (!given) return std::nullopt;
   Gyroscope gyroscope;
@@ -167,13 +163,14 @@ std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   return gyroscope;
 }
 
-/// The settings that tell how tracks are initialized, not which ones.
+/// Returns the settings of the initialization. Throws InputError for settings of the tracking.
 InitializeOptions options_of_keywords(const py::kwargs& given) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
-    if (name == "preset") throw InputError("preset: of recordings; expected single settings");
+    if (name == "preset")
+      throw InputError("preset: applies to recordings; expected single settings");
     if (find_setting(name).stage == SettingStage::tracks || name == "exclude")
-      throw InputError(name + ": of recordings; the frames given are the window");
+      throw InputError(name + ": applies to recordings; the frames given are the window");
   }
   return settings_of(given).options;
 }
@@ -218,7 +215,7 @@ void bind_camera(py::module_& module) {
   py::class_<Camera>(
       module,
       "Camera",
-      "A calibrated camera. Pixel centers at integers; K of the undistorted picture, too.")
+      "A calibrated camera. Pixel centers at integers, also for K of the undistorted image.")
       .def(py::init([](const Numbers& K,
                        std::pair<int, int> size,
                        std::vector<double> distortion,
@@ -229,7 +226,7 @@ void bind_camera(py::module_& module) {
            py::arg("size") = std::pair(0, 0),
            py::arg("distortion") = std::vector<double>(),
            py::arg("model") = "radial-tangential",
-           "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model none, "
+           "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
            "radial-tangential or equidistant")
       .def_property_readonly("K", &intrinsic_matrix, "(3, 3) [px]")
       .def_property_readonly(
@@ -239,20 +236,22 @@ void bind_camera(py::module_& module) {
       .def_property_readonly(
           "distortion",
           [](const Camera& c) { return py::array(py::cast(c.coefficients)); },
-          "OpenCV's order: k1 k2 p1 p2 (k3 ...); of a fisheye k1 to k4")
+          "in OpenCV's order: k1 k2 p1 p2 (k3 ...), or k1 to k4 of a fisheye")
       .def("undistort",
            &undistorted,
            py::arg("pixels"),
-           "(n, 2), where a camera without lens but the same K sees them; NaN beyond the model");
+           "(n, 2) pixels of a camera with the same K but no distortion; NaN outside the model");
 }
 
 void bind_status(py::module_& module) {
-  py::class_<LiveStatus>(module, "LiveStatus", "What an LiveInitializer knows after a frame.")
+  py::class_<LiveStatus>(module, "LiveStatus", "State of an Initializer after a frame.")
       .def_readonly("ready", &LiveStatus::ready)
-      .def_readonly("metric", &LiveStatus::metric, "the answer is in known meters, too")
-      .def_readonly("reference", &LiveStatus::reference, "the window's first frame, as added")
-      .def_readonly("frames", &LiveStatus::frames, "of the window")
-      .def_readonly("ready_frames", &LiveStatus::ready_frames, "of the shortest ready window")
+      .def_readonly(
+          "metric", &LiveStatus::metric, "whether the metric scale of the answer is known")
+      .def_readonly("reference", &LiveStatus::reference, "index of the window's first frame")
+      .def_readonly("frames", &LiveStatus::frames, "length of the window")
+      .def_readonly(
+          "ready_frames", &LiveStatus::ready_frames, "length of the shortest ready window")
       .def_readonly("solved_frames", &LiveStatus::solved_frames)
       .def_readonly("pending", &LiveStatus::pending)
       .def_readonly("started_anew", &LiveStatus::started_anew)
@@ -262,7 +261,7 @@ void bind_status(py::module_& module) {
           [](const LiveStatus& s) {
             return s.answer ? std::optional(TrackedWindow(s.answer)) : std::nullopt;
           },
-          "Initialized, or None")
+          "Initialized or None")
       .def("__repr__", [](const LiveStatus& s) {
         return fmt::format(
             "<gpo.LiveStatus {} frames: {}>", s.frames, s.ready ? "ready" : s.reason);
@@ -274,8 +273,8 @@ py::class_<LiveInitializer> live_class(py::module_& module) {
   py::class_<LiveInitializer> live(
       module,
       "Initializer",
-      "A window that grows with each frame until it is fit to initialize from. With background "
-      "(the default) windows are solved on a thread of its own and add_frame returns at once.");
+      "A window that grows with each frame until it is ready. With background (the default), "
+      "windows are solved on another thread and add_frame returns at once.");
   live.def(
       py::init([](const CameraOrK& camera,
                   const std::optional<py::dict>& gyroscope,
@@ -305,7 +304,7 @@ void bind_live(py::module_& module) {
           },
           py::arg("timestamp_ns"),
           py::arg("rate_rad_s"),
-          "One sample, (3,) in the gyroscope's own axes; in order of time, best before its frame")
+          "Adds one sample, (3,) in the gyroscope's axes, in order of time, before its frame")
       .def(
           "add_imu",
           [](LiveInitializer& live,
@@ -319,7 +318,7 @@ void bind_live(py::module_& module) {
           py::arg("timestamp_ns"),
           py::arg("rate_rad_s"),
           py::arg("acceleration_m_s2"),
-          "The same with the accelerometer's specific force, (3,) in the same axes")
+          "Adds one sample with the accelerometer's specific force, (3,) in the same axes")
       .def(
           "add_frame",
           [](LiveInitializer& live,
@@ -335,26 +334,25 @@ void bind_live(py::module_& module) {
           py::arg("ids"),
           py::arg("pixels"),
           py::arg("R_wc") = py::none(),
-          "ids (n,), pixels (n, 2) as in the picture, R_wc (3, 3) where you know it")
+          "Adds ids (n,), raw pixels (n, 2) and, if known, R_wc (3, 3)")
       .def_property_readonly("status", &LiveInitializer::status)
       .def("wait",
            &LiveInitializer::wait,
            py::call_guard<py::gil_scoped_release>(),
-           "Until no window is pending");
+           "Waits until no window is pending");
 }
 
 }  // namespace
 
 void bind_initialize(py::module_& module) {
   bind_camera(module);
-  py::class_<TrackedWindow, Solved>(
-      module, "Initialized", "One initialization of tracks that were handed over.")
+  py::class_<TrackedWindow, Solved>(module, "Initialized", "One initialization of given tracks.")
       .def_property_readonly("is_ready",
                              [](const TrackedWindow& w) { return w.shared->is_ready(); })
       .def_property_readonly(
           "rotations",
           [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },
-          "where the rotations came from")
+          "source of the rotations")
       .def("__repr__", [](const TrackedWindow& w) {
         return fmt::format("<gpo.Initialized: {}>",
                            w.initialization->ok ? "ok" : w.initialization->reason);
@@ -366,11 +364,11 @@ void bind_initialize(py::module_& module) {
       py::arg("frames"),
       py::arg("gyroscope") = py::none(),
       py::arg("camera_is_guess") = false,
-      "Tracks of any front end to cameras, points and planes; the same bits as `run` for the "
-      "same tracks. camera: Camera, or K (3, 3) of undistorted pixels. frames: "
-      "(timestamp_ns, ids (n,), pixels (n, 2)) or with R_wc (3, 3), each. gyroscope: a dict "
-      "as `Recording.gyroscope`. Settings as of `run`: method, rotations, planes, ... "
-      "Raises InputError; what cannot be initialized is not ok, with the reason.");
+      "Estimates cameras, points and planes from tracks of any front end, bit for bit like `run` "
+      "from the same tracks. camera: Camera, or K (3, 3) of undistorted pixels. frames: "
+      "(timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)]) each. gyroscope: a dict like "
+      "`Recording.gyroscope`. Settings are those of `run`: method, rotations, planes, ... "
+      "Raises InputError. A failed initialization is not ok and has the reason.");
   bind_status(module);
   bind_live(module);
 }

@@ -1,19 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The Python module `gpo`: the same engine and views as the program's.
+// The Python module `gpo`: the engine and views of the program.
 #include "app/python/bindings.h"
+#include "app/terminal/output.h"
 #include "engine/base/error.h"
 #include "engine/inspection/settings/setting_values.h"
-
-#include <exception>
-
-#include <fmt/format.h>
-#include <opencv2/core/ocl.hpp>
-#include <opencv2/core/utils/logger.hpp>
-
-extern "C" {
-#include <libavutil/log.h>
-}
 
 namespace gpo {
 namespace {
@@ -50,10 +41,7 @@ Settings settings_of(const py::kwargs& given) {
 
 PYBIND11_MODULE(_gpo, module) {
   namespace py = pybind11;
-  // As the program does: what libraries would say is an exception of ours.
-  cv::ocl::setUseOpenCL(false);
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  av_log_set_level(AV_LOG_QUIET);
+  gpo::silence_libraries();
   py::register_exception<gpo::InputError>(module, "InputError", PyExc_ValueError);
   module.attr("__version__") = GPO_VERSION;
   gpo::bind_solved(module);

@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/python/arrays.h"
 #include "app/python/bindings.h"
-#include "app/python/interruptible.h"
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
 
@@ -19,12 +17,12 @@ namespace py = pybind11;
 
 py::array frame_image(const OpenRecording& open, int frame) {
   const SharedRecording& recording = open.shared;
-  if (!recording->images) throw InputError(recording->name + " has no pictures");
+  if (!recording->images) throw InputError(recording->name + " has no images");
   const int count = recording->frame_count();
   if (frame < 0 || frame >= count)
     throw py::index_error(
         fmt::format("frame {} of {}, which has {}", frame, recording->name, count));
-  return image_array(interruptible([&](const auto&) { return recording->images->bgr(frame); }));
+  return view_image(interruptible([&](const auto&) { return recording->images->bgr(frame); }));
 }
 
 py::object gyroscope_arrays(const OpenRecording& open) {
@@ -33,16 +31,10 @@ py::object gyroscope_arrays(const OpenRecording& open) {
   const Gyroscope& gyro = *recording->gyroscope;
   const auto vectors = [&](const std::vector<Eigen::Vector3d>& all) -> py::object {
     if (all.empty()) return py::none();
-    return seen_by_numpy(all.front().data(),
-                         {std::ssize(all), 3},
-                         {sizeof(Eigen::Vector3d), sizeof(double)},
-                         recording);
+    return view_vectors(all, recording);
   };
   py::dict result;
-  result["timestamps_ns"] = seen_by_numpy(gyro.timestamps_ns.data(),
-                                          {std::ssize(gyro.timestamps_ns)},
-                                          {sizeof(std::int64_t)},
-                                          recording);
+  result["timestamps_ns"] = view_integers(gyro.timestamps_ns, recording);
   result["rates_rad_s"] = vectors(gyro.rates_rad_s);
   result["accelerations_m_s2"] = vectors(gyro.accelerations_m_s2);
   result["R_gyro_camera"] = gyro.R_gyro_camera;
@@ -56,7 +48,7 @@ py::object gyroscope_arrays(const OpenRecording& open) {
   return result;
 }
 
-/// Frames without a pose have NaN.
+/// Returns None or the true poses, NaN for frames without a pose.
 py::object truth_of(const OpenRecording& open) {
   const SharedRecording& recording = open.shared;
   if (!recording->truth) return py::none();
@@ -66,8 +58,8 @@ py::object truth_of(const OpenRecording& open) {
     poses->push_back(
         pose.value_or(Pose{Eigen::Matrix3d::Constant(nan), Eigen::Vector3d::Constant(nan)}));
   py::dict result;
-  result["R_wc"] = rotations_of(*poses, poses);
-  result["p_wc"] = centers_of(*poses, poses);
+  result["R_wc"] = view_rotations(*poses, poses);
+  result["p_wc"] = view_vectors<Pose>(*poses, &Pose::p_wc, poses);
   if (recording->plane) {
     result["normal"] = recording->plane->normal;
     result["distance"] = recording->plane->distance;
@@ -85,8 +77,7 @@ SharedRecording opened(const RecordingOrPath& recording) {
 
 void bind_recording(py::module_& module) {
   using Open = OpenRecording;
-  py::class_<Open>(
-      module, "Recording", "A recorded sequence. Arrays look at its memory, read-only.")
+  py::class_<Open>(module, "Recording", "A recorded sequence. Arrays are read-only views.")
       .def_property_readonly("name", [](const Open& r) { return r.shared->name; })
       .def_property_readonly("layout", [](const Open& r) { return r.shared->layout; })
       .def_property_readonly("path", [](const Open& r) { return r.shared->path.string(); })
@@ -94,13 +85,10 @@ void bind_recording(py::module_& module) {
       .def("__len__", [](const Open& r) { return r.shared->frame_count(); })
       .def_property_readonly(
           "timestamps_ns",
-          [](const Open& r) {
-            const auto& all = r.shared->timestamps_ns;
-            return seen_by_numpy(all.data(), {std::ssize(all)}, {sizeof(std::int64_t)}, r.shared);
-          },
+          [](const Open& r) { return view_integers(r.shared->timestamps_ns, r.shared); },
           "(N,) int64 [ns]")
       .def_property_readonly(
-          "camera", [](const Open& r) { return r.shared->camera; }, "Camera, with K and lens")
+          "camera", [](const Open& r) { return r.shared->camera; }, "Camera with K and lens")
       .def_property_readonly(
           "camera_source",
           [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
@@ -128,7 +116,7 @@ void bind_recording(py::module_& module) {
       "open",
       [](const std::string& path) { return OpenRecording{opened(path)}; },
       py::arg("path"),
-      "Opens a recording, or the one of a recipe: what the command line takes. Raises InputError.");
+      "Opens any recording or recipe that the command line accepts. Raises InputError.");
 }
 
 }  // namespace gpo

@@ -1,10 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/images/snapshots.h"
-#include "app/python/arrays.h"
+#include "app/commands/snapshots.h"
 #include "app/python/bindings.h"
-#include "app/python/interruptible.h"
-#include "app/python/solved.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/experiment/experiment.h"
@@ -55,17 +52,18 @@ py::object metrics_of(const Result& result) {
   return py::module_::import("json").attr("loads")(to_json(*result.shared).at("metrics").dump());
 }
 
-/// As `initialize` takes them: (timestamp_ns, ids, pixels) of each frame.
+/// Returns (timestamp_ns, ids, pixels) of each frame, the input of `initialize`.
 py::list frames_of(const Result& result) {
   py::list frames;
   const auto& tracks = result.shared->tracks;
   for (int i = 0; tracks && i < tracks->frame_count(); ++i) {
     std::vector<int> seen;
-    for (int j = 0; j < tracks->track_count(); ++j)
-      if (tracks->seen(i, j)) seen.push_back(j);
     std::vector<std::int64_t> ids;
-    ids.reserve(seen.size());
-    for (const int j : seen) ids.push_back(tracks->ids[j]);
+    for (int j = 0; j < tracks->track_count(); ++j) {
+      if (!tracks->seen(i, j)) continue;
+      seen.push_back(j);
+      ids.push_back(tracks->ids[j]);
+    }
     const Eigen::MatrixX2d pixels = tracks->raw_px[i](Eigen::all, seen).transpose();
     frames.append(py::make_tuple(result.shared->recording->timestamps_ns[tracks->start + i],
                                  py::array_t<std::int64_t>(std::ssize(ids), ids.data()),
@@ -82,8 +80,8 @@ template <class T>
 constexpr bool kIsNumber =
     std::is_same_v<T, std::optional<int>> || std::is_same_v<T, std::optional<double>>;
 
-/// A structured array, one row a window and configuration: numbers as float64 (NaN: unknown), all
-/// else as text.
+/// Returns a structured array with one row per window and configuration: numbers as float64 (NaN if
+/// unknown), other columns as text.
 py::object table_of(const std::vector<Row>& rows) {
   py::list types;
   visit_row(rows.front(), [&]<class T>(const char* name, const T&) {
@@ -105,12 +103,12 @@ py::object table_of(const std::vector<Row>& rows) {
   return py::module_::import("numpy").attr("array")(lines, py::arg("dtype") = types);
 }
 
-/// A folder that is gone when this is.
+/// A temporary folder, removed by the destructor.
 struct Scratch {
   fs::path folder;
   Scratch() {
     std::string name = (fs::temp_directory_path() / "gpo-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be made");
+    if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be created");
     folder = name;
   }
   ~Scratch() {
@@ -130,12 +128,12 @@ py::object evaluated(const std::vector<RecordingOrPath>& recordings,
   std::vector<SharedRecording> all;
   all.reserve(recordings.size());
   for (const RecordingOrPath& recording : recordings) all.push_back(opened(recording));
-  if (all.empty()) throw InputError("evaluate: expected recordings");
+  if (all.empty()) throw InputError("evaluate: needs at least one recording");
   const Experiment experiment = plan_experiment(all,
-                                                {parse_configurations(methods),
-                                                 parse_ranges(lengths, "lengths"),
-                                                 parse_ranges(starts, "starts"),
-                                                 seed});
+                                                {.configurations = parse_configurations(methods),
+                                                 .lengths = parse_ranges(lengths, "lengths"),
+                                                 .starts = parse_ranges(starts, "starts"),
+                                                 .seed = seed});
   const Scratch scratch;
   const auto rows = interruptible([&](const std::stop_token& stop) {
     RunOptions options;
@@ -154,10 +152,13 @@ py::array snapshot(const RecordingOrPath& recording,
                    std::optional<std::pair<int, int>> size,
                    const std::optional<std::string>& methods,
                    const py::kwargs& given) {
-  ViewRequest request{view, frame, {}, {methods, std::nullopt, settings_of(given)}};
-  if (size) request.size = cv::Size(size->first, size->second);
+  ViewRequest request{
+      .view = view,
+      .frame = frame,
+      .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
+      .compared = {.methods = methods, .lengths = {}, .window = settings_of(given)}};
   const SharedRecording open = opened(recording);
-  return image_array(interruptible(
+  return view_image(interruptible(
       [&](const std::stop_token& stop) { return draw_view(open, request, stop).image; }));
 }
 
@@ -165,15 +166,16 @@ py::array snapshot(const RecordingOrPath& recording,
 
 void bind_results(py::module_& module) {
   py::class_<Result, Solved>(
-      module, "Result", "One initialization of a recording's window, with what it was made of.")
+      module, "Result", "One initialization of a recording's window, with its input.")
       .def_property_readonly(
           "method", [](const Result& r) { return r.shared->settings.options.method.key(); })
       .def_property_readonly("frames",
                              &frames_of,
-                             "[(timestamp_ns, ids (n,), pixels (n, 2) as in the picture)]: what "
-                             "`initialize` takes")
-      .def_property_readonly("metrics", &metrics_of, "None without truth; else as in the JSON")
-      .def_property_readonly("json", &json_of, "what `run --json` writes, as a dict")
+                             "[(timestamp_ns, ids (n,), raw pixels (n, 2))], the input of "
+                             "`initialize`")
+      .def_property_readonly(
+          "metrics", &metrics_of, "None without ground truth, else as in the JSON")
+      .def_property_readonly("json", &json_of, "output of `run --json` as a dict")
       .def("__str__", [](const Result& r) { return to_text(*r.shared); })
       .def("__repr__", [](const Result& r) {
         return fmt::format("<gpo.Result {} on {}: {}>",
@@ -184,20 +186,21 @@ void bind_results(py::module_& module) {
   module.def("run",
              &run,
              py::arg("recording"),
-             "One initialization, as `gpo-inspector run`. Settings are those of the command line, "
-             "with _: start, frames, method, rotations, planes, preset, ... Raises InputError; a "
-             "window that cannot be initialized is a Result that is not ok, with the reason.");
-  module.def("evaluate",
-             &evaluated,
-             py::arg("recordings"),
-             py::arg("methods") = "all",
-             py::arg("lengths") = "10:60:10",
-             py::arg("starts") = "0:end:10",
-             py::arg("seed") = 1,
-             py::arg("jobs") = 0,
-             "Methods on many windows, as `gpo-inspector evaluate`: a structured array with the "
-             "columns of results.csv; numbers are float64, NaN where unknown. jobs=0: as many as "
-             "there are processors.");
+             "Initializes once, like `gpo-inspector run`. Settings are those of the command line "
+             "with _: start, frames, method, rotations, planes, preset, ... Raises InputError. If "
+             "the window cannot be initialized, the Result is not ok and has the reason.");
+  module.def(
+      "evaluate",
+      &evaluated,
+      py::arg("recordings"),
+      py::arg("methods") = "all",
+      py::arg("lengths") = "10:60:10",
+      py::arg("starts") = "0:end:10",
+      py::arg("seed") = 1,
+      py::arg("jobs") = 0,
+      "Compares methods on many windows, like `gpo-inspector evaluate`. Returns a structured "
+      "array with the columns of results.csv; numbers are float64, NaN if unknown. jobs=0: "
+      "one per processor.");
   module.def("snapshot",
              &snapshot,
              py::arg("recording"),
@@ -205,8 +208,8 @@ void bind_results(py::module_& module) {
              py::arg("frame") = py::none(),
              py::arg("size") = py::none(),
              py::arg("methods") = py::none(),
-             "(H, W, 3) uint8, BGR: one view without a display, as `gpo-inspector snapshot`; view: "
-             "image, scene, normals, compare, curves or window.");
+             "Draws one view without a display, like `gpo-inspector snapshot`. Returns (H, W, 3) "
+             "uint8, BGR. view: image, scene, normals, compare, curves or window.");
 }
 
 }  // namespace gpo

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings/recordings.h"
 
-#include "app/terminal/interrupt.h"
 #include "app/terminal/output.h"
-#include "app/terminal/progress_bar.h"
+#include "app/terminal/progress.h"
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera_guess.h"
@@ -21,7 +20,6 @@
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -38,8 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it is YAML or JSON with one of these keys. What cannot be read is none of ours: who
-/// reads it next will say what is wrong.
+/// Returns whether the file is YAML or JSON with one of the keys. A file that cannot be read has
+/// none: the error comes from the code that opens it.
 bool has_key(const fs::path& file, std::initializer_list<const char*> keys) {
   if (!is_yaml_name(file) && file.extension() != ".json") return false;
   try {
@@ -57,32 +55,27 @@ bool is_calibration(const fs::path& file) {
   return has_key(file, {"intrinsics", "camera_matrix", "cam0", "K", "distortion_model"});
 }
 
-struct KnownFile {
-  bool (*is)(const fs::path& file);
-  const char* what;
-  const char* instead;
-};
-
-constexpr const char* kItsFolder = "a recording, such as the folder that it lies in";
-constexpr std::array<KnownFile, 7> kKnownFiles = {
-    {{is_session, "a session", "a recording; `view --session` opens it"},
-     {is_results, "results of `evaluate`", "a recording; the window opens it"},
-     {is_image_name, "one picture", "a recording, such as a folder of numbered pictures"},
-     {is_board, "the description of a printed board", kItsFolder},
-     {is_plane, "the true plane of a recording", kItsFolder},
-     {is_mounting, "how a truth was measured", kItsFolder},
-     {is_calibration, "the calibration of a camera", kItsFolder}}};
-
-/// Refuses a file that belongs to a recording, or to this program, but is none: a board.yaml, a
-/// calibration, a session, ... Throws InputError that says what it is and what is to be named
-/// instead. Everything else passes, also what does not exist.
+/// Refuses a file that a recording or this program uses but that is no recording, such as a
+/// board.yaml, a calibration or a session. Throws InputError that says what to choose instead.
 void refuse_known_file(const fs::path& path) {
+  struct KnownFile {
+    bool (*is)(const fs::path& file);
+    const char* found;
+    const char* expected;
+  };
+  constexpr const char* kItsFolder = "a recording, such as the folder that contains it";
+  constexpr KnownFile kKnownFiles[] = {
+      {is_session, "a session", "a recording; `view --session` opens it"},
+      {is_results, "results of `evaluate`", "a recording; the window opens it"},
+      {is_image_name, "one image", "a recording, such as a folder of numbered images"},
+      {is_board, "the description of a printed board", kItsFolder},
+      {is_plane, "the true plane of a recording", kItsFolder},
+      {is_mounting, "the mounting of a ground truth", kItsFolder},
+      {is_calibration, "the calibration of a camera", kItsFolder}};
   if (!is_file(path)) return;
-  for (const KnownFile& known : kKnownFiles) {
-    if (!known.is(path)) continue;
-    throw InputError(
-        fmt::format("{}: found {}, expected {}", path.string(), known.what, known.instead));
-  }
+  for (const auto& [is, found, expected] : kKnownFiles)
+    if (is(path))
+      throw InputError(fmt::format("{}: found {}, expected {}", path.string(), found, expected));
 }
 
 fs::path program_folder() {
@@ -102,57 +95,58 @@ fs::path made_recordings_folder() {
   return user_cache_folder() / "recordings";
 }
 
-constexpr std::size_t kNamesLength = 30;  ///< what leaves the line below 80 columns
-
-/// Those that are about to be made: "orbit, approach", or their number where that is too long.
+/// Returns the recordings that do not exist yet, "orbit, approach", or their number if that is
+/// long.
 std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
   std::vector<std::string> names;
   for (const fs::path& recipe : recipes) {
     const fs::path folder = synthesized_folder(recipe, cache);
     if (!fs::exists(folder)) names.push_back(folder.filename().string());
   }
+  constexpr std::size_t kMaxLength = 30;  // keeps the progress line below 80 columns
   const std::string all = fmt::format("{}", fmt::join(names, ", "));
-  return all.size() <= kNamesLength ? all : fmt::format("{} recordings", names.size());
+  return all.size() <= kMaxLength ? all : fmt::format("{} recordings", names.size());
 }
 
-/// `told` is called with what is made, frames that are, and of how many; what it throws ends it.
-std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes, const Progress& told) {
+/// Synthesizes missing recordings. An exception of `progress` stops the work.
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes,
+                                      const Progress& progress) {
   if (recipes.empty()) return {};
   const fs::path cache = made_recordings_folder();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
   const std::string title = "synthesizing " + names_of_missing(recipes, cache);
   return synthesized_recordings(
-      recipes, cache, threads, [&](int done, int of) { told(title, done, of); });
+      recipes, cache, threads, [&](int done, int of) { progress(title, done, of); });
 }
 
-/// On standard error; Ctrl-C ends it.
+/// The same with a progress bar on standard error; Ctrl-C stops it.
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   if (recipes.empty()) return {};
   const Interrupt interrupt;
-  const auto check = [&] { interrupt.check("of what was being synthesized nothing is left"); };
+  const auto check = [&] { interrupt.check("the synthesis was discarded"); };
   std::optional<ProgressBar> bar;
   auto made = make_recordings(recipes, [&](const std::string& title, int done, int of) {
     if (!bar) bar.emplace(title);
-    bar->show(done, of);
+    (*bar)(done, of);
     check();
   });
   check();
   return made;
 }
 
-/// To be raised whenever another camera is found in the same pictures.
+/// Version of the self-calibration. Raise it whenever the same images give another camera.
 constexpr int kAlgorithm = 2;
 
-/// Returns the file that caches the camera of these pictures.
-fs::path kept_file(const Recording& recording) {
-  const std::string images =
+/// Returns the file that caches the camera of these images.
+fs::path cache_file(const Recording& recording) {
+  const std::string content =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(images));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content));
 }
 
 /// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
-std::optional<Camera> kept_camera(const fs::path& file) {
+std::optional<Camera> cached_camera(const fs::path& file) {
   try {
     if (!fs::exists(file)) return std::nullopt;
     return read_calibration(file).camera;
@@ -161,7 +155,8 @@ std::optional<Camera> kept_camera(const fs::path& file) {
   }
 }
 
-/// A guess may rest on what the camera wrote; any other camera is not to be believed here.
+/// Returns the start of the calibration: a guess may use the metadata of the camera; any other
+/// camera is replaced by an assumed field of view.
 Camera start_of(const Recording& recording) {
   const Camera& camera = recording.camera;
   return recording.camera_source == CameraSource::guess
@@ -178,30 +173,30 @@ SelfCalibration calibrate(const Recording& recording,
   return calibrate_from_plane(*recording.images, start_of(recording), timed, progress, stop);
 }
 
-/// Keeps what was found, and gives it to the recording as it will be read the next time.
-void keep(const SelfCalibration& found, Recording& recording) {
-  const fs::path file = kept_file(recording);
+/// Caches the camera and sets it as read back from the file, so that later runs get equal bits.
+void cache_camera(const SelfCalibration& found, Recording& recording) {
+  const fs::path file = cache_file(recording);
   write_output(file, to_yaml(found, recording.name));
   set_camera(recording,
-             kept_camera(file).value_or(found.lens.camera),
+             cached_camera(file).value_or(found.lens.camera),
              CameraSource::self_calibrated,
-             "kept in " + file.string());
+             "cached in " + file.string());
 }
 
-std::string why_not(const SelfCalibration& found) {
+std::string failure_of(const SelfCalibration& found) {
   return "calibration from the plane failed: " + found.lens.reason;
 }
 
-/// The recording with the camera that is found in its pictures, which is kept in the user's cache;
-/// null where it was stopped. Throws InputError with the reason where none is found.
+/// Returns the recording with the camera estimated from its images, which is cached; null if
+/// stopped. Throws InputError with the reason if the calibration fails.
 std::shared_ptr<const Recording> self_calibrated(const Recording& recording,
                                                  const std::stop_token& stop,
                                                  const CalibrationProgress& progress) {
   const SelfCalibration found = calibrate(recording, progress, stop);
   if (stop.stop_requested()) return nullptr;
-  if (!found.lens.ok) throw InputError(why_not(found));
+  if (!found.lens.ok) throw InputError(failure_of(found));
   Recording calibrated = recording;
-  keep(found, calibrated);
+  cache_camera(found, calibrated);
   return std::make_shared<const Recording>(std::move(calibrated));
 }
 
@@ -233,25 +228,24 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 
 namespace {
 
-/// Gives a recording the camera that was found in the same pictures before, from the user's cache;
-/// where there is none and `calibrates`, finds one now and keeps it there. Where it cannot be
-/// found, a note says why and the guess stays.
+/// Sets the cached camera of these images. If there is none and `calibrates`, estimates one and
+/// caches it; if that fails, keeps the guess and adds a note.
 void use_found_camera(Recording& recording, bool calibrates) {
   if (!recording.images) return;
-  const fs::path file = kept_file(recording);
-  if (const auto camera = kept_camera(file)) {
-    set_camera(recording, *camera, CameraSource::self_calibrated, "kept in " + file.string());
+  const fs::path file = cache_file(recording);
+  if (const auto camera = cached_camera(file)) {
+    set_camera(recording, *camera, CameraSource::self_calibrated, "cached in " + file.string());
     return;
   }
   if (!calibrates) return;
   const SelfCalibration found = self_calibrate(recording);
   if (found.lens.ok)
-    keep(found, recording);
+    cache_camera(found, recording);
   else
-    recording.notes.push_back(why_not(found));
+    recording.notes.push_back(failure_of(found));
 }
 
-/// `folder` is what is read, `path` what the user gave.
+/// Opens the recording in `folder`, which the user named `path` (a recipe has another folder).
 std::shared_ptr<const Recording> open_resolved(const fs::path& path,
                                                const fs::path& folder,
                                                const OpenOptions& options,
@@ -264,17 +258,19 @@ std::shared_ptr<const Recording> open_resolved(const fs::path& path,
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-/// A recipe's recording is made in the background: whoever waits sees how far it is.
+/// Returns the folder of the recording, synthesized first if it is a recipe's.
 fs::path folder_for_window(const fs::path& path,
                            const std::stop_token& stop,
                            const Progress& progress) {
   refuse_known_file(path);
   if (!is_recipe(path)) return path;
-  const auto tell = [&](const std::string& title, int done, int of) {
-    if (stop.stop_requested()) throw Interrupted("nothing is left of what was being synthesized");
-    progress(title, done, of);
-  };
-  return make_recordings({path}, tell).front();
+  return make_recordings({path},
+                         [&](const std::string& title, int done, int of) {
+                           if (stop.stop_requested())
+                             throw Interrupted("the synthesis was discarded");
+                           progress(title, done, of);
+                         })
+      .front();
 }
 
 }  // namespace
@@ -318,7 +314,7 @@ SelfCalibration self_calibrate(const Recording& recording) {
     interrupt.check("nothing was written");
     if (shown != what) bar.emplace(what);
     shown = what;
-    bar->show(done, of);
+    (*bar)(done, of);
   };
   SelfCalibration found = calibrate(recording, progress, interrupt.token());
   bar.reset();

@@ -14,32 +14,32 @@
 
 namespace gpo {
 
-/// Where a command may be given a recording, it may be given a recipe (a file NAME.yaml or
-/// NAME.yml): replaces recipes by the folders of their recordings in the build tree, which are
-/// synthesized when first needed, with a progress bar where standard error is a terminal. Other
-/// paths stay as they are. Throws InputError.
+/// Replaces each recipe (NAME.yaml or NAME.yml) by the folder of its recording, which is
+/// synthesized when first needed, with a progress bar on standard error. Other paths stay. Throws
+/// InputError.
 std::vector<std::filesystem::path> resolve_recordings(
     const std::vector<std::filesystem::path>& paths);
 
-/// Opens a recording, or that of a recipe; its path stays what the user gave. One without a
-/// calibration has the camera that was found from a plane in it before and is kept in the user's
-/// cache; where there is none, it is calibrated now if `calibrates`.
+/// Opens a recording, or the one of a recipe, under the path that the user gave. A recording
+/// without calibration gets the camera that an earlier self-calibration cached; if there is none
+/// and `calibrates`, it is calibrated now. Throws InputError.
 std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
                                             const OpenOptions& options = {},
                                             bool calibrates = false);
 
-/// The same for the window's worker. The topics are those of one recording, of others they are
-/// found. Where there is no calibration, it can find one.
+/// Returns the same for the window's worker, with a calibration on request. The topics apply to
+/// `recording` only.
 Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<std::filesystem::path>& recording = {},
                                const TopicChoices& topics = {});
 
-/// The bundled recording: in the source tree, or beside the program as it was installed
-/// (share/gpo-inspector).
+/// Returns the bundled recording, from the source tree or from the installed
+/// share/gpo-inspector.
 std::filesystem::path example_recording();
 
-/// With a progress bar on standard error; from the recording's guess, or a field of view of 70
-/// degrees where it has another camera, which is not to be believed. Throws Interrupted.
+/// Calibrates the camera from a plane in view, with a progress bar on standard error. Starts from
+/// the recording's guess, or from a field of view of 70 degrees if it has another camera. Throws
+/// Interrupted.
 SelfCalibration self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -9,21 +9,26 @@
 
 namespace gpo {
 
-/// A file by the option that names it.
+/// A file and the option that names it.
 struct NamedFile {
   const char* option;
   std::optional<std::filesystem::path> path;
 };
 
-/// What `--json -` and the like mean.
+/// Returns whether the file is "-".
 bool is_standard_output(const std::filesystem::path& file);
 
-/// Refuses, before any work is done, outputs that cannot be written, two that are the same file,
-/// and one that is also read. Folders need not exist yet. Throws InputError.
-void check_outputs(std::span<const NamedFile> written, std::span<const NamedFile> read = {});
+/// Checks, before any work, that each output can be written, that no two are the same file, and
+/// that none is also an input. Folders need not exist yet. Throws InputError.
+void check_outputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs = {});
 
-/// Writes to a file, whose folder is made where it is missing, or to standard output. Throws
-/// InputError.
+/// Writes to a file, whose folder is created if missing, or to standard output. Throws InputError.
 void write_output(const std::filesystem::path& file, const std::string& content);
+
+/// Turns off the log output of OpenCV and libav, and OpenCL, which the engine does not use.
+void silence_libraries();
+/// Also drops the messages of failed image decoders, which OpenCV prints to std::cerr at every log
+/// level. Replaces the buffer of std::cerr: call it once, and only in a program of our own.
+void quiet_libraries();
 
 }  // namespace gpo

@@ -13,11 +13,11 @@ namespace gpo {
 struct Curve {
   std::string name;                  ///< in the legend
   std::uint32_t rgb = 0;             ///< 0xRRGGBB
-  bool dotted = false;               ///< a bound, not a result
+  bool dotted = false;               ///< for a bound
   std::vector<double> x, y;          ///< same length, x ascending
-  std::vector<double> lower, upper;  ///< the band; as long as y, or empty: none
-  std::vector<int> counts = {};      ///< values behind each point; as long as y, or empty: not told
-  std::optional<int> marker = {};    ///< which of the markers for print; nothing: the next one
+  std::vector<double> lower, upper;  ///< the band, as long as y; empty: none
+  std::vector<int> counts = {};      ///< values behind each point, as long as y; empty if unknown
+  std::optional<int> marker = {};    ///< index of the marker in print; nullopt: the next one
 };
 
 struct Chart {
@@ -27,5 +27,16 @@ struct Chart {
   bool logarithmic = false;  ///< the y axis
   std::vector<Curve> curves;
 };
+
+/// Charts side by side with one legend.
+struct Figure {
+  std::string name;  ///< of its files, without extension
+  std::string title;
+  std::vector<Chart> charts;
+  std::string note = {};  ///< below the legend, about anything but the methods' curves
+};
+
+/// Points with fewer windows have no meaningful quartiles and are drawn hollow.
+constexpr int kFewWindows = 4;
 
 }  // namespace gpo

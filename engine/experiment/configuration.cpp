@@ -3,11 +3,12 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
 #include <array>
-#include <sstream>
+#include <ranges>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +16,7 @@
 namespace gpo {
 namespace {
 
-/// The paper's; beside them each method as it is.
+/// The paper's ablations, in addition to the plain methods.
 constexpr std::array kAblations{"gpo+no-ransac",
                                 "gpo+gyro",
                                 "gpo+averaging",
@@ -26,28 +27,15 @@ constexpr std::array kAblations{"gpo+no-ransac",
 
 using Change = Configuration::Change;
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
-
-/// The settings that configurations name, in the order of their words in a key.
+/// Returns the settings that configurations can name, in the order of their words in a key.
 std::vector<const Setting*> comparable_settings() {
   std::vector<const Setting*> comparable;
   for (const Setting& setting : settings_table())
     if (!setting.words.empty()) comparable.push_back(&setting);
-  // Clang 14 cannot read what the one of std::ranges returns.
+  // std::ranges::stable_partition does not compile with Clang 14.
   std::stable_partition(
       comparable.begin(), comparable.end(), [](const Setting* setting) { return setting->leads; });
   return comparable;
-}
-
-std::vector<std::string> words_of(const Setting& setting) {
-  std::vector<std::string> words;
-  for (const SettingWord& word : setting.words) words.emplace_back(word.word);
-  return words;
 }
 
 const SettingWord& word_of(const Change& change) {
@@ -64,7 +52,7 @@ std::vector<std::string> keys_of(const MethodTable& methods) {
 
 [[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
 
-/// What a word changes of which setting.
+/// Returns the change that a word stands for. Throws SettingError.
 Change change_of(const std::string& word, const std::string& text) {
   std::vector<std::string> known;
   for (const Setting* setting : comparable_settings()) {
@@ -77,25 +65,25 @@ Change change_of(const std::string& word, const std::string& text) {
       "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
 }
 
-/// What a preset decides of the settings that this method reads, and the other preset otherwise.
+/// Returns the settings that the method reads and that differ between the presets.
 std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
     Settings settings = with_preset({}, of);
     settings.options.method = method;
     return as_used(std::move(settings));
   };
-  const Settings wanted = used(preset);
+  const Settings requested = used(preset);
   const Settings other = used(preset == Preset::best ? Preset::paper : Preset::best);
   std::vector<Change> changes;
   for (const Setting* setting : comparable_settings()) {
-    const std::string value = value_text(setting->get(wanted));
+    const std::string value = value_text(setting->get(requested));
     if (is_read(*setting, method) && value != value_text(setting->get(other)))
       changes.push_back({setting->key, value});
   }
   return changes;
 }
 
-/// One word's, or all those of a preset.
+/// Returns the change of a word, or all changes of a preset. Throws SettingError.
 std::vector<Change> changes_of(const std::string& word,
                                const std::string& text,
                                const MethodChoice& method) {
@@ -120,7 +108,6 @@ void check_read(const Configuration& configuration, const std::string& text) {
   }
 }
 
-/// The changes in the order of the settings' words.
 std::vector<Change> in_order(const std::vector<Change>& changes) {
   std::vector<Change> ordered;
   for (const Setting* setting : comparable_settings()) {
@@ -130,18 +117,11 @@ std::vector<Change> in_order(const std::vector<Change>& changes) {
   return ordered;
 }
 
-std::vector<std::string> all_keys(const MethodTable& methods) {
-  std::vector<std::string> keys = keys_of(methods);
-  keys.insert(keys.end(), kAblations.begin(), kAblations.end());
-  return keys;
-}
-
-/// `b` with a touch of `a`, so that the same setting of two methods is told apart.
+/// Mixes `b` with a little of `a`, so that the same setting of two methods has two colors.
 std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   std::uint32_t sum = 0;
-  for (const int shift : {0, 8, 16}) {
+  for (const int shift : {0, 8, 16})
     sum |= (((a >> shift & 0xFF) + 5 * (b >> shift & 0xFF)) / 6) << shift;
-  }
   return sum;
 }
 
@@ -155,15 +135,14 @@ Configuration parse_configuration(const std::string& text, const MethodTable& me
   const std::vector<std::string> parts = split(text, '+');
   const std::string key = parts.empty() ? "" : parts.front();
   if (!methods.contains(key))
-    refuse(fmt::format("unknown method '{}', expected all, or some of {}",
-                       key,
-                       fmt::join(keys_of(methods), ", ")));
+    refuse(fmt::format(
+        "unknown method '{}', expected all or some of {}", key, fmt::join(keys_of(methods), ", ")));
   const MethodChoice method = methods.find(key);
   Configuration configuration{.method = method};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     for (Change& change : changes_of(parts[i], text, method)) {
       if (configuration.names(change.setting))
-        refuse(fmt::format("'{}' sets one thing twice", text));
+        refuse(fmt::format("'{}' sets '{}' twice", text, change.setting));
       configuration.changes.push_back(std::move(change));
     }
   }
@@ -175,20 +154,21 @@ Configuration parse_configuration(const std::string& text, const MethodTable& me
 std::vector<Configuration> parse_configurations(const std::string& text,
                                                 const MethodTable& methods) {
   std::vector<Configuration> configurations;
-  std::vector<Configuration> shortest;
+  std::vector<Configuration> resolved;
   const auto add = [&](const std::string& key) {
     const Configuration configuration = parse_configuration(key, methods);
-    const Configuration comes_to = configuration_of(apply(configuration, {}));
-    if (std::ranges::find(shortest, comes_to) != shortest.end()) return;
-    shortest.push_back(comes_to);
+    const Configuration shortest = configuration_of(apply(configuration, {}));
+    if (std::ranges::find(resolved, shortest) != resolved.end()) return;
+    resolved.push_back(shortest);
     configurations.push_back(configuration);
   };
   for (const std::string& key : split(text, ',')) {
-    if (key == "all") {
-      std::ranges::for_each(all_keys(methods), add);
-    } else {
+    if (key != "all") {
       add(key);
+      continue;
     }
+    std::ranges::for_each(keys_of(methods), add);
+    std::ranges::for_each(kAblations, add);
   }
   if (configurations.empty()) parse_configuration("");
   return configurations;
@@ -197,7 +177,8 @@ std::vector<Configuration> parse_configurations(const std::string& text,
 std::string configuration_syntax() {
   std::string syntax = "METHOD";
   for (const Setting* setting : comparable_settings())
-    syntax += fmt::format("[+{}]", fmt::join(words_of(*setting), "|"));
+    syntax += fmt::format(
+        "[+{}]", fmt::join(setting->words | std::views::transform(&SettingWord::word), "|"));
   return syntax + "[+best|paper]";
 }
 
@@ -231,11 +212,11 @@ Settings apply(const Configuration& configuration, Settings settings) {
 Configuration configuration_of(const Settings& settings, Settings from) {
   from.options.method = settings.options.method;
   const Settings used = as_used(settings);
-  const Settings normal = as_used(std::move(from));
+  const Settings usual = as_used(std::move(from));
   Configuration configuration{.method = settings.options.method};
   for (const Setting* setting : comparable_settings()) {
     const std::string value = value_text(setting->get(used));
-    if (value != value_text(setting->get(normal)))
+    if (value != value_text(setting->get(usual)))
       configuration.changes.push_back({setting->key, value});
   }
   return configuration;

@@ -11,13 +11,12 @@
 
 namespace gpo {
 
-/// A difference between two settings: a method, and the values that it names by their words in
-/// `settings_table`. Written METHOD[+WORD...]: `gpo`, `gpo+no-ransac`, `gpo_joint+huber`. What it
-/// does not name is as in the settings that it is applied to.
+/// A method and the settings that it changes, written METHOD[+WORD...] with the words of
+/// `settings_table`: `gpo`, `gpo+no-ransac`, `gpo_joint+huber`.
 struct Configuration {
   struct Change {
     std::string setting;  ///< key
-    std::string value;    ///< as `setting_text` writes it
+    std::string value;    ///< as in `setting_text`
     bool operator==(const Change&) const = default;
   };
   MethodChoice method = "";
@@ -27,36 +26,33 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// Reads one. Throws SettingError "methods: ..." that names what was found and what is known, also
-/// for an option that the method does not read.
+/// Parses one configuration. Throws SettingError "methods: ..." for unknown words and for options
+/// that the method does not read.
 Configuration parse_configuration(const std::string& text, const MethodTable& methods = {});
 
-/// Reads a list with commas; of those that come to the same by default, the first. `all` stands for
-/// every method and the paper's ablations. Throws SettingError.
+/// Parses a list with commas; `all` stands for every method and the paper's ablations. Drops
+/// configurations that equal an earlier one by default. Throws SettingError.
 std::vector<Configuration> parse_configurations(const std::string& text,
                                                 const MethodTable& methods = {});
 
-/// METHOD[+WORD1|WORD2][+WORD3...], for help: all words, those of one setting together.
+/// Returns METHOD[+WORD1|WORD2][+WORD3...] for help texts, with the words of each setting.
 std::string configuration_syntax();
 
-/// As it is written on the command line and in files.
+/// Returns the text of the command line and of files.
 std::string key_of(const Configuration& configuration);
-/// For people: "GPO without RANSAC".
+/// Returns a title for people: "GPO without RANSAC".
 std::string title_of(const Configuration& configuration);
-/// The method's color, or for an ablation one of its own; 0xRRGGBB.
+/// Returns the method's color, mixed with that of each change; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
-/// The settings with the method and all that the configuration names.
 Settings apply(const Configuration& configuration, Settings settings);
 
-/// How these settings, as they are used, differ from others in what configurations name: the
-/// shortest configuration that comes to them from there. From the defaults: what a result is
-/// called.
+/// Returns the shortest configuration that turns `from` into these settings, as they are used.
 Configuration configuration_of(const Settings& settings, Settings from = {});
 
-/// What all of a list are applied to: the settings, but what any of them names is by default, since
-/// it is what they are compared by. So `gpo,gpo+no-ransac` is one with and one without RANSAC,
-/// whatever the settings say of it, and both are tracked as the settings say.
+/// Returns the common base of a comparison: the settings, but the default of each setting that any
+/// configuration names. `gpo,gpo+no-ransac` so compares with and without RANSAC, whatever the
+/// settings.
 Settings base_of(std::span<const Configuration> list, Settings settings);
 
 }  // namespace gpo

@@ -6,9 +6,9 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
+#include <climits>
 #include <numeric>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -20,10 +20,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of the files of an experiment; other programs' are refused.
-constexpr int kFormat = 2;
+constexpr int kFormat = 2;  // version of an experiment's files
 
-/// From a start so many frames fit; empty where none does.
+/// Returns the lengths up to a number of frames.
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
   std::vector<int> fit;
   std::ranges::copy_if(lengths, std::back_inserter(fit), [&](int n) { return n <= frames; });
@@ -35,7 +34,11 @@ ExperimentRecording plan_recording(const Recording& recording,
                                    const std::vector<Range>& starts) {
   const int frames = recording.frame_count();
   const std::vector<int> fit = fitting(lengths, frames);
-  ExperimentRecording planned{recording.name, recording.path, frames, {}, content_of(recording)};
+  ExperimentRecording planned{.name = recording.name,
+                              .path = recording.path,
+                              .frames = frames,
+                              .starts = {},
+                              .content = content_of(recording)};
   if (fit.empty()) return planned;
   planned.starts = numbers_in(starts, frames - fit.back());
   std::erase_if(planned.starts, [&](int start) { return start + fit.front() > frames; });
@@ -44,48 +47,36 @@ ExperimentRecording plan_recording(const Recording& recording,
 
 void check_names(const std::vector<ExperimentRecording>& recordings) {
   for (auto it = recordings.begin(); it != recordings.end(); ++it) {
-    const auto other = std::find_if(
-        recordings.begin(), it, [&](const ExperimentRecording& r) { return r.name == it->name; });
+    const auto other =
+        std::ranges::find(recordings.begin(), it, it->name, &ExperimentRecording::name);
     if (other == it) continue;
-    throw InputError(
-        fmt::format("{} and {}: two recordings have the name '{}', which the results go by",
-                    other->path.string(),
-                    it->path.string(),
-                    it->name));
+    throw InputError(fmt::format(
+        "{} and {}: two recordings have the name '{}', but results are identified by name",
+        other->path.string(),
+        it->path.string(),
+        it->name));
   }
 }
 
-/// Whether both hold the recordings of the same names, in one order.
 bool same_names(const Experiment& a, const Experiment& b) {
   return std::ranges::equal(
       a.recordings, b.recordings, {}, &ExperimentRecording::name, &ExperimentRecording::name);
 }
 
-/// A positive number of few enough digits.
-std::optional<int> parse_count(std::string_view text) {
+std::optional<int> parse_count(std::string_view text, int least, int most) {
   const auto number = parse_integer(text);
-  return number && *number > 0 && std::in_range<int>(*number) ? std::optional<int>(*number)
-                                                              : std::nullopt;
-}
-
-constexpr int kMost = 1'000'000;  // frames
-
-/// A number of frames, or nothing.
-std::optional<int> count_in(const std::string& text) {
-  const auto number = parse_integer(text);
-  if (!number || *number < 0 || *number > kMost) return std::nullopt;
+  if (!number || *number < least || *number > most) return std::nullopt;
   return static_cast<int>(*number);
 }
 
 std::optional<Range> parse_range(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ':');) parts.push_back(part);
+  const std::vector<std::string> parts = split(text, ':');
+  const auto frames = [](const std::string& part) { return parse_count(part, 0, 1'000'000); };
   if (parts.empty() || parts.size() > 3 || text.ends_with(':')) return std::nullopt;
-  const auto first = count_in(parts[0]);
+  const auto first = frames(parts[0]);
   const bool to_end = parts.size() > 1 && parts[1] == "end";
-  const auto last = parts.size() > 1 ? count_in(parts[1]) : first;
-  const auto step = parts.size() > 2 ? count_in(parts[2]) : 1;
+  const auto last = parts.size() > 1 ? frames(parts[1]) : first;
+  const auto step = parts.size() > 2 ? frames(parts[2]) : 1;
   if (!first || !step || *step < 1) return std::nullopt;
   if (to_end) return Range{*first, std::nullopt, *step};
   if (!last || *last < *first) return std::nullopt;
@@ -117,7 +108,7 @@ ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
     const auto parts = differing_parts(one.content, other.content);
     for (const std::string& part : parts)
       found.content.push_back(fmt::format("{} of {}", part, one.name));
-    // `end` is where the longest window still fits: other lengths or frames, other starts.
+    // `end` depends on lengths and frames: if these differ, so do the starts.
     other_starts = other_starts || (parts.empty() && one.starts != other.starts);
   }
   if (other_starts && a.lengths == b.lengths) found.plan.emplace_back("starts");
@@ -139,26 +130,22 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
     const std::string& identity = one.method.row().identity;
     if (!identity.empty()) experiment.commands[one.method.key()] = identity;
   }
-  int most_frames = 0;
-  for (const auto& recording : recordings) {
-    most_frames = std::max(most_frames, recording->frame_count());
-  }
-  experiment.lengths = numbers_in(request.lengths, most_frames);
-  if (experiment.lengths.empty() || experiment.lengths.front() < 2) {
+  int max_frames = 0;
+  for (const auto& recording : recordings)
+    max_frames = std::max(max_frames, recording->frame_count());
+  experiment.lengths = numbers_in(request.lengths, max_frames);
+  if (experiment.lengths.empty() || experiment.lengths.front() < 2)
     throw SettingError("lengths", "a window has at least 2 frames");
-  }
-  for (const auto& recording : recordings) {
+  for (const auto& recording : recordings)
     experiment.recordings.push_back(plan_recording(*recording, experiment.lengths, request.starts));
-  }
   check_names(experiment.recordings);
-  if (tasks_of(experiment).empty()) {
+  if (tasks_of(experiment).empty())
     throw SettingError(
         "lengths",
-        fmt::format("from these starts no window fits, {}",
-                    most_frames == 0
+        fmt::format("no window fits from these starts, {}",
+                    max_frames == 0
                         ? "there is no recording"
-                        : fmt::format("the longest recording has {} frames", most_frames)));
-  }
+                        : fmt::format("the longest recording has {} frames", max_frames)));
   return experiment;
 }
 
@@ -179,40 +166,43 @@ std::vector<ExperimentTask> tasks_of(const Experiment& experiment) {
   std::vector<ExperimentTask> tasks;
   for (std::size_t r = 0; r < experiment.recordings.size(); ++r) {
     const ExperimentRecording& recording = experiment.recordings[r];
-    for (const int start : recording.starts) {
+    for (const int start : recording.starts)
       tasks.push_back({r, start, fitting(experiment.lengths, recording.frames - start)});
-    }
   }
+  return tasks;
+}
+
+std::vector<ExperimentTask> windows_where(
+    std::vector<ExperimentTask> tasks,
+    const std::function<bool(const ExperimentTask& task, int frames)>& keep) {
+  for (ExperimentTask& task : tasks)
+    std::erase_if(task.lengths, [&](int frames) { return !keep(task, frames); });
+  std::erase_if(tasks, [](const ExperimentTask& task) { return task.lengths.empty(); });
   return tasks;
 }
 
 Shard parse_shard(const std::string& text) {
   const std::string_view whole = text;
   const std::size_t slash = std::min(whole.find('/'), whole.size());
-  const auto index = parse_count(whole.substr(0, slash));
-  const auto count = parse_count(whole.substr(std::min(slash + 1, whole.size())));
-  if (!index || !count || *index > *count) {
+  const auto index = parse_count(whole.substr(0, slash), 1, INT_MAX);
+  const auto count = parse_count(whole.substr(std::min(slash + 1, whole.size())), 1, INT_MAX);
+  if (!index || !count || *index > *count)
     throw SettingError("shard",
                        fmt::format("'{}', expected K/N with K from 1 to N, e.g. 2/8", text));
-  }
   return {*index, *count};
 }
 
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& shard) {
-  std::vector<ExperimentTask> tasks = tasks_of(experiment);
+  const std::vector<ExperimentTask> tasks = tasks_of(experiment);
   const int windows = window_count(tasks);
   const int even = windows / shard.count, more = windows % shard.count, before = shard.index - 1;
   const int first = before * even + std::min(before, more);
   const int end = first + even + (before < more ? 1 : 0);
   int window = 0;
-  for (ExperimentTask& task : tasks) {
-    std::erase_if(task.lengths, [&](int) {
-      const int here = window++;
-      return here < first || here >= end;
-    });
-  }
-  std::erase_if(tasks, [](const ExperimentTask& task) { return task.lengths.empty(); });
-  return tasks;
+  return windows_where(tasks, [&](const ExperimentTask&, int) {
+    const int here = window++;
+    return here >= first && here < end;
+  });
 }
 
 int window_count(std::span<const ExperimentTask> tasks) {
@@ -228,17 +218,15 @@ int timed_length(const std::vector<int>& lengths) {
 
 ordered_json to_json(const Experiment& experiment) {
   ordered_json recordings = ordered_json::array();
-  for (const ExperimentRecording& recording : experiment.recordings) {
+  for (const ExperimentRecording& recording : experiment.recordings)
     recordings.push_back({{"name", recording.name},
                           {"path", recording.path.string()},
                           {"frames", recording.frames},
                           {"starts", recording.starts},
                           {"content", recording.content}});
-  }
   ordered_json configurations = ordered_json::array();
-  for (const Configuration& configuration : experiment.configurations) {
+  for (const Configuration& configuration : experiment.configurations)
     configurations.push_back(key_of(configuration));
-  }
   ordered_json json = {{"format", kFormat},
                        {"program", experiment.program},
                        {"recordings", std::move(recordings)},
@@ -255,24 +243,21 @@ std::map<std::string, std::string> commands_in(const ordered_json& json) {
 }
 
 Experiment experiment_from_json(const ordered_json& json, const MethodTable& methods) {
-  if (json.at("format") != kFormat) {
+  if (json.at("format") != kFormat)
     throw InputError(
-        fmt::format("key `format`: found {}, of another version of the program, expected {}",
+        fmt::format("key `format`: found {} (another version of the program), expected {}",
                     json.at("format").dump(),
                     kFormat));
-  }
   Experiment experiment;
-  for (const ordered_json& recording : json.at("recordings")) {
-    experiment.recordings.push_back({recording.at("name").get<std::string>(),
-                                     recording.at("path").get<std::string>(),
-                                     recording.at("frames").get<int>(),
-                                     recording.at("starts").get<std::vector<int>>(),
-                                     recording.at("content").get<RecordingContent>()});
-  }
+  for (const ordered_json& recording : json.at("recordings"))
+    experiment.recordings.push_back({.name = recording.at("name").get<std::string>(),
+                                     .path = recording.at("path").get<std::string>(),
+                                     .frames = recording.at("frames").get<int>(),
+                                     .starts = recording.at("starts").get<std::vector<int>>(),
+                                     .content = recording.at("content").get<RecordingContent>()});
   experiment.lengths = json.at("lengths").get<std::vector<int>>();
-  for (const ordered_json& key : json.at("configurations")) {
+  for (const ordered_json& key : json.at("configurations"))
     experiment.configurations.push_back(parse_configuration(key.get<std::string>(), methods));
-  }
   experiment.seed = json.at("seed").get<std::uint64_t>();
   experiment.program = json.at("program").get<std::string>();
   experiment.commands = commands_in(json);
@@ -281,16 +266,14 @@ Experiment experiment_from_json(const ordered_json& json, const MethodTable& met
 
 std::vector<Range> parse_ranges(const std::string& text, const std::string& name) {
   std::vector<Range> ranges;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
+  for (const std::string& part : split(text, ',')) {
     const auto range = parse_range(part);
-    if (!range) {
+    if (!range)
       throw SettingError(
-          name, fmt::format("'{}', expected FIRST:LAST:STEP in whole numbers, e.g. 5:60:5", text));
-    }
+          name, fmt::format("'{}', expected FIRST:LAST:STEP in integers, e.g. 5:60:5", text));
     ranges.push_back(*range);
   }
-  if (ranges.empty()) throw SettingError(name, "is empty, e.g. 5:60:5");
+  if (ranges.empty()) throw SettingError(name, "is empty, expected e.g. 5:60:5");
   return ranges;
 }
 
@@ -298,9 +281,8 @@ std::vector<int> numbers_in(const std::vector<Range>& ranges, int end) {
   std::set<int> numbers;
   for (const Range& range : ranges) {
     const int last = range.last.value_or(end);
-    for (std::int64_t n = range.first; n <= last; n += range.step) {
+    for (std::int64_t n = range.first; n <= last; n += range.step)
       numbers.insert(static_cast<int>(n));
-    }
   }
   return {numbers.begin(), numbers.end()};
 }

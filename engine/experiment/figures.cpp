@@ -19,31 +19,36 @@ struct Axis {
   const char* column;
   const char* title;
   const char* label;
-  double factor;  ///< from the column's unit to the label's
-  bool logarithmic;
+  double factor = 1;  ///< from the column's unit to the label's
+  bool logarithmic = false;
 };
 
 constexpr std::array kAxes{
-    Axis{"ate_m", "Absolute trajectory error", "ATE [mm]", 1e3, false},
-    Axis{"pne_deg", "Plane normal error", "PNE [deg]", 1, true},
-    Axis{"pde_m", "Plane distance error", "PDE [mm]", 1e3, false},
+    Axis{.column = "ate_m",
+         .title = "Absolute trajectory error",
+         .label = "ATE [mm]",
+         .factor = 1e3},
+    Axis{.column = "pne_deg",
+         .title = "Plane normal error",
+         .label = "PNE [deg]",
+         .logarithmic = true},
+    Axis{.column = "pde_m", .title = "Plane distance error", .label = "PDE [mm]", .factor = 1e3},
 };
-/// Where an accelerometer told them.
 constexpr std::array kInertialAxes{
-    Axis{"scale_error_percent", "Scale error", "scale error [%]", 1, false},
-    Axis{"gravity_error_deg", "Gravity error", "gravity error [deg]", 1, false},
+    Axis{.column = "scale_error_percent", .title = "Scale error", .label = "scale error [%]"},
+    Axis{.column = "gravity_error_deg", .title = "Gravity error", .label = "gravity error [deg]"},
 };
-constexpr Axis kRmsAxis{"rms_px", "Reprojection error", "RMS [px]", 1, false};
+constexpr Axis kRmsAxis{.column = "rms_px", .title = "Reprojection error", .label = "RMS [px]"};
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
 
-/// A method has its own in all figures, with whatever settings.
+/// Returns the marker of a method, the same in all figures and with all settings.
 int marker_of(const Configuration& configuration) {
-  const auto ours = methods();
+  const auto built_in = methods();
   if (configuration.method.own())
-    return static_cast<int>(ours.size()) + configuration.method.row().number;
-  const auto found = std::ranges::find(ours, configuration.method.key(), &Method::key);
-  return static_cast<int>(found - ours.begin());
+    return static_cast<int>(built_in.size()) + configuration.method.row().number;
+  const auto found = std::ranges::find(built_in, configuration.method.key(), &Method::key);
+  return static_cast<int>(found - built_in.begin());
 }
 
 Curve curve_of(const std::vector<Cell>& cells,
@@ -78,7 +83,11 @@ Curve bound_curve(const std::vector<Cell>& cells, const Configuration& configura
 }
 
 Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axis& axis) {
-  Chart chart{axis.title, "window [frames]", axis.label, axis.logarithmic, {}};
+  Chart chart{.title = axis.title,
+              .x_label = "window [frames]",
+              .y_label = axis.label,
+              .logarithmic = axis.logarithmic,
+              .curves = {}};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
     if (curve.x.empty()) continue;
@@ -87,13 +96,12 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
     curve.marker = marker_of(configuration);
     chart.curves.push_back(std::move(curve));
   }
-  if (axis.column == std::string("pne_deg")) {
+  if (axis.column == std::string("pne_deg"))
     chart.curves.push_back(bound_curve(cells, plan.configurations.front()));
-  }
   return chart;
 }
 
-/// How many windows each point of the curves stands for, and who has no curve.
+/// Returns the number of windows of each point and the configurations without a curve.
 std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan) {
   std::string text = "none";
   if (!cells.empty()) {
@@ -101,7 +109,7 @@ std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan)
     text = least.windows == most.windows ? std::to_string(most.windows)
                                          : fmt::format("{} to {}", least.windows, most.windows);
   }
-  text += " a length";
+  text += " per length";
   for (const Configuration& configuration : plan.configurations) {
     const std::string key = key_of(configuration);
     const bool has = std::ranges::find(cells, key, &Cell::configuration) != cells.end();
@@ -110,13 +118,31 @@ std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan)
   return text;
 }
 
-/// What the dotted curve is.
+/// Explains the dotted curve.
 std::string note_of(const FigurePlan& plan) {
   return fmt::format(
-      "Dotted: the least error (Cram\u00e9r-Rao) that the inliers of {}, their noise and known "
-      "rotations allow; with other tracks, inliers or noise the bound is another, and a curve may "
-      "be below this one.",
+      "Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, their noise and known "
+      "rotations. Other tracks, inliers or noise have another bound, so a curve may be below this "
+      "one.",
       title_of(plan.configurations.front()));
+}
+
+std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan) {
+  return summarize(on_common_windows(rows_of(rows, plan.configurations)));
+}
+
+/// Returns the errors of metric scale and gravity, without charts if they are unknown. The scale is
+/// over the windows that claim to know it.
+Figure metric_figure(std::span<const Row> rows, const FigurePlan& plan) {
+  const std::vector<Cell> cells = common_cells(rows, plan);
+  Figure figure{
+      plan.name + "_meters", plan.title + ": gravity and metric scale by the accelerometer", {}};
+  for (const Axis& axis : kInertialAxes) {
+    const bool known = std::ranges::any_of(
+        cells, [&](const Cell& cell) { return cell.values.at(axis.column).count > 0; });
+    if (known) figure.charts.push_back(chart_of(cells, plan, axis));
+  }
+  return figure;
 }
 
 bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
@@ -127,74 +153,58 @@ bool is_of(const Configuration& c, MethodFamily family) {
   return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
 }
 
-/// The method as it is, or with nothing but that setting changed.
+/// Returns whether it is the method, with at most this setting changed.
 bool varies(const Configuration& c, const char* method, const char* setting) {
   const bool only = c.changes.size() == 1 && c.names(setting);
   return c.method == method && (c.changes.empty() || only);
 }
 
-/// A figure of the paper, and which configurations are in it. Of two of them its title is true, if
-/// one is what it names.
+/// A figure of the paper and its configurations.
 struct PaperFigure {
   const char* name;
   const char* title;
   bool (*shows)(const Configuration& configuration);
-  bool names_gpo;  ///< beside others
+  bool needs_gpo = false;  ///< its title compares GPO with others
 };
 
 constexpr std::array kPaperFigures{
-    PaperFigure{"aggregation",
-                "GPO and aggregation-based methods",
-                [](const Configuration& c) { return is_of(c, MethodFamily::aggregation); },
-                true},
-    PaperFigure{"optimization",
-                "GPO and optimization-based methods",
-                [](const Configuration& c) { return is_of(c, MethodFamily::optimization); },
-                true},
-    PaperFigure{"gpo_ransac",
-                "GPO with and without RANSAC",
-                [](const Configuration& c) { return varies(c, "gpo", "ransac"); },
-                false},
-    PaperFigure{"rotation_sources",
-                "GPO by the source of its rotations",
-                [](const Configuration& c) { return varies(c, "gpo", "rotations"); },
-                false},
-    PaperFigure{"ba_ransac",
-                "BA with and without RANSAC",
-                [](const Configuration& c) { return varies(c, "ba", "ransac"); },
-                false},
+    PaperFigure{.name = "aggregation",
+                .title = "GPO and aggregation-based methods",
+                .shows = [](const Configuration& c) { return is_of(c, MethodFamily::aggregation); },
+                .needs_gpo = true},
+    PaperFigure{
+        .name = "optimization",
+        .title = "GPO and optimization-based methods",
+        .shows = [](const Configuration& c) { return is_of(c, MethodFamily::optimization); },
+        .needs_gpo = true},
+    PaperFigure{.name = "gpo_ransac",
+                .title = "GPO with and without RANSAC",
+                .shows = [](const Configuration& c) { return varies(c, "gpo", "ransac"); }},
+    PaperFigure{.name = "rotation_sources",
+                .title = "GPO by the source of its rotations",
+                .shows = [](const Configuration& c) { return varies(c, "gpo", "rotations"); }},
+    PaperFigure{.name = "ba_ransac",
+                .title = "BA with and without RANSAC",
+                .shows = [](const Configuration& c) { return varies(c, "ba", "ransac"); }},
 };
 
 }  // namespace
 
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
-  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
+  const std::vector<Cell> cells = common_cells(rows, plan);
   Figure figure{
-      plan.name,
-      fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
-                  plan.title,
-                  windows_text(cells, plan)),
-      {}};
+      .name = plan.name,
+      .title = fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
+                           plan.title,
+                           windows_text(cells, plan)),
+      .charts = {},
+      .note = note_of(plan)};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
-  figure.note = note_of(plan);
-  return figure;
-}
-
-Figure figure_of_meters(std::span<const Row> rows, const FigurePlan& plan) {
-  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
-  Figure figure{
-      plan.name + "_meters", plan.title + ": gravity and meters by the accelerometer", {}};
-  for (const Axis& axis : kInertialAxes) {
-    const bool known = std::ranges::any_of(
-        cells, [&](const Cell& cell) { return cell.values.at(axis.column).count > 0; });
-    if (known) figure.charts.push_back(chart_of(cells, plan, axis));
-  }
   return figure;
 }
 
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan) {
-  const std::vector<Cell> cells = summarize(on_common_windows(rows_of(rows, plan.configurations)));
-  return {plan.name, plan.title, {chart_of(cells, plan, kRmsAxis)}};
+  return {plan.name, plan.title, {chart_of(common_cells(rows, plan), plan, kRmsAxis)}};
 }
 
 std::vector<Figure> figures(std::span<const Row> rows,
@@ -202,8 +212,8 @@ std::vector<Figure> figures(std::span<const Row> rows,
   std::vector<Figure> all;
   for (const FigurePlan& plan : figure_plans(configurations)) {
     all.push_back(figure_over_length(rows, plan));
-    Figure meters = figure_of_meters(rows, plan);
-    if (!meters.charts.empty()) all.push_back(std::move(meters));
+    Figure metric = metric_figure(rows, plan);
+    if (!metric.charts.empty()) all.push_back(std::move(metric));
   }
   return all;
 }
@@ -215,7 +225,7 @@ std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configura
     FigurePlan plan{figure.name, figure.title, {}};
     std::ranges::copy_if(configurations, std::back_inserter(plan.configurations), figure.shows);
     if (plan.configurations.size() < 2) continue;
-    if (figure.names_gpo && std::ranges::none_of(plan.configurations, is_gpo)) continue;
+    if (figure.needs_gpo && std::ranges::none_of(plan.configurations, is_gpo)) continue;
     shown.insert(shown.end(), plan.configurations.begin(), plan.configurations.end());
     plans.push_back(std::move(plan));
   }

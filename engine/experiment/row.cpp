@@ -10,8 +10,10 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/pipeline/method_defaults.h"
 
+#include <algorithm>
+#include <fstream>
+#include <functional>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,6 +22,14 @@ namespace gpo {
 namespace {
 
 using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* kBegin = "recording,configuration,";  // of results.csv
+
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
 
 template <class Value>
 ordered_json json_of(const Value& value) {
@@ -43,6 +53,22 @@ Number number_of(const std::string& text, const char* expected) {
   throw InputError(fmt::format("found '{}', expected {}", text, expected));
 }
 
+/// Reads a cell of results.csv; empty is the default. Throws SettingError.
+void read_setting_cell(Settings& settings,
+                       const Setting& setting,
+                       const std::string& cell,
+                       const MethodTable& methods) {
+  if (cell.empty()) {
+    setting.set(settings, setting.get(Settings{}));
+  } else if (setting.kind != SettingKind::on_off) {
+    set_value(settings, setting, value_from(setting, cell, methods), methods);
+  } else if (cell == "true" || cell == "false") {
+    setting.set(settings, cell == "true");
+  } else {
+    throw SettingError(setting.key, fmt::format("found '{}', expected true or false", cell));
+  }
+}
+
 template <class Value>
 void read_value(const std::string& text, const MethodTable& methods, Value& value) {
   if constexpr (OfASetting<Value>) {
@@ -54,7 +80,7 @@ void read_value(const std::string& text, const MethodTable& methods, Value& valu
     value = text;
   } else {
     value = number_of<Value>(
-        text, std::is_floating_point_v<Value> ? "a number" : "a whole number in its range");
+        text, std::is_floating_point_v<Value> ? "a number" : "an integer in its range");
   }
 }
 
@@ -92,6 +118,42 @@ void add_timing(Row& row, const Timing& timing) {
   row.total_ms = timing.total;
 }
 
+/// Reads a row from the cells by column, nullopt for a missing column. Throws InputError that names
+/// the column.
+Row row_from(const MethodTable& methods,
+             const std::function<std::optional<std::string>(const char* name)>& cell_of) {
+  Row row;
+  visit_row(row, [&](const char* name, auto& value) {
+    const auto cell = cell_of(name);
+    if (!cell) return;
+    try {
+      read_value(*cell, methods, value);
+    } catch (const SettingError&) {
+      throw;  // its message names the column
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", name, error.what()));
+    }
+  });
+  return row;
+}
+
+Row row_of_line(const std::vector<std::string>& cells,
+                const std::vector<std::string>& names,
+                const MethodTable& methods) {
+  Row row = row_from(methods, [&](const char* name) -> std::optional<std::string> {
+    const auto column = std::ranges::find(names, name);
+    if (column == names.end()) return std::nullopt;
+    return cells[column - names.begin()];
+  });
+  if (row.status != "ok" && row.status != "failed")
+    throw InputError(fmt::format("status: found '{}', expected ok or failed", row.status));
+  const std::string key = key_of(parse_configuration(row.configuration, methods));
+  if (key != row.configuration)
+    throw InputError(
+        fmt::format("configuration: found '{}', expected '{}'", row.configuration, key));
+  return row;
+}
+
 }  // namespace
 
 std::string setting_cell(const Settings& settings, const Setting& setting) {
@@ -100,21 +162,6 @@ std::string setting_cell(const Settings& settings, const Setting& setting) {
     return "";
   if (setting.kind != SettingKind::on_off) return value_text(value);
   return std::get<bool>(value) ? "true" : "false";
-}
-
-void read_setting_cell(Settings& settings,
-                       const Setting& setting,
-                       const std::string& cell,
-                       const MethodTable& methods) {
-  if (cell.empty()) {
-    setting.set(settings, setting.get(Settings{}));
-  } else if (setting.kind != SettingKind::on_off) {
-    set_value(settings, setting, value_from(setting, cell, methods), methods);
-  } else if (cell == "true" || cell == "false") {
-    setting.set(settings, cell == "true");
-  } else {
-    throw SettingError(setting.key, fmt::format("found '{}', expected true or false", cell));
-  }
 }
 
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason) {
@@ -168,29 +215,50 @@ ordered_json to_json(const Row& row) {
   return json;
 }
 
-Row row_from(const MethodTable& methods,
-             const std::function<std::optional<std::string>(const char* name)>& cell_of) {
-  Row row;
-  visit_row(row, [&](const char* name, auto& value) {
-    const auto cell = cell_of(name);
-    if (!cell) return;
-    try {
-      read_value(*cell, methods, value);
-    } catch (const SettingError&) {
-      throw;  // names itself
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", name, error.what()));
-    }
-  });
-  return row;
-}
-
 Row row_from_json(const ordered_json& json, const MethodTable& methods) {
   return row_from(methods, [&](const char* name) -> std::optional<std::string> {
     const ordered_json& value = json.at(name);
     if (value.is_null()) return "";
     return value.is_string() ? value.get<std::string>() : value.dump();
   });
+}
+
+bool is_results(const fs::path& file) {
+  std::error_code none;
+  if (file.extension() != ".csv" || !fs::is_regular_file(file, none)) return false;
+  std::string begin(std::char_traits<char>::length(kBegin), ' ');
+  std::ifstream(file).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kBegin;
+}
+
+std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) {
+  constexpr std::size_t kMaxRows = 500'000;
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+  read_quoted_csv(file, [&](int line, const std::vector<std::string>& cells) {
+    const auto fail = [&](const std::string& message) {
+      throw InputError(fmt::format("{}:{}: {}", file.string(), line, message));
+    };
+    if (names.empty()) {
+      names = cells;
+      for (const char* needed : {"recording", "configuration", "start", "frames", "status"})
+        if (std::ranges::find(names, needed) == names.end())
+          fail(fmt::format("no column is called {}", needed));
+      return;
+    }
+    if (rows.size() == kMaxRows)
+      fail(fmt::format("found more than {} rows, expected fewer", kMaxRows));
+    if (cells.size() == 1 && cells[0].empty()) return;
+    if (cells.size() != names.size())
+      fail(fmt::format("found {} cells, expected {} as in the header", cells.size(), names.size()));
+    try {
+      rows.push_back(row_of_line(cells, names, methods));
+    } catch (const InputError& error) {
+      fail(error.what());
+    }
+  });
+  if (rows.empty()) throw InputError(fmt::format("{}: found no rows of results", file.string()));
+  return rows;
 }
 
 }  // namespace gpo

@@ -5,73 +5,63 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 
-#include <functional>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 
-/// Of the fields of a row: whether one may be empty.
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
-
-/// One configuration on one window: a line of results.csv. What is unknown is empty.
+/// One configuration on one window: a line of results.csv. Unknown values are empty.
 struct Row {
   std::string recording;      ///< name
   std::string configuration;  ///< key
-  Settings settings;          ///< as used: RANSAC, inliers, rotations are what the defaults came to
+  Settings settings;          ///< as used, with defaults resolved
   std::string status;         ///< ok | failed
   std::string reason;         ///< of a failure
   std::optional<int> tracks, inliers;
   std::optional<double> rms_px;
   std::optional<int> iterations, unknowns, residuals;
-  std::optional<double> initial_cost, final_cost;  ///< half the summed squares [px^2]
+  std::optional<double> initial_cost, final_cost;  ///< half the sum of squares [px^2]
   std::string termination;
   std::string alignment;  ///< ok | degenerate; empty without ground truth
   std::optional<double> scale, ate_m, pne_deg, pne_aligned_deg, pde_m, pne_bound_deg;
-  std::optional<double> scale_error_percent, gravity_error_deg;  ///< of an accelerometer's
+  std::optional<double> scale_error_percent, gravity_error_deg;  ///< with an accelerometer
   std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
-  std::optional<int> jobs;  ///< windows that were computed at once when these were measured
-  std::string processor;    ///< on which
+  std::optional<int> jobs;  ///< windows computed at once while these times were measured
+  std::string processor;    ///< of these times
 
   bool ok() const { return status == "ok"; }
 };
 
-/// A setting of a row as a column of its own; empty where the row's method does not read it.
+/// The column of a setting; its cell is empty if the row's method does not read it.
 template <class S>
 struct SettingColumn {
   S& settings;
   const Setting& setting;
 };
 template <class S>
-SettingColumn(S&, const Setting&) -> SettingColumn<S>;  // clang 14 makes none for aggregates
+SettingColumn(S&, const Setting&) -> SettingColumn<S>;  // clang 14 needs it for aggregates
 
 template <class T>
 concept OfASetting = requires(T column) {
   column.setting;
 };
 
-/// Its cell in results.csv: as scripts write the value, but true and false for on and off.
+/// Returns the setting's cell in results.csv: as in scripts, but true and false for on and off.
 std::string setting_cell(const Settings& settings, const Setting& setting);
-/// Reads it; empty is the default. Throws SettingError.
-void read_setting_cell(Settings& settings,
-                       const Setting& setting,
-                       const std::string& cell,
-                       const MethodTable& methods = {});
 
-/// The one declaration of the columns, in their order: `visit(name, value&)`. Times, and on what
-/// they were measured, are the last, because all others are the same in every run.
+/// The only declaration of the columns, in their order: `visit(name, value&)`. Times and their
+/// conditions come last because only they differ between runs.
 template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
   visit("configuration", row.configuration);
   for (const Setting& setting : settings_table()) {
-    // Tracks are excluded by hand, in one window: experiments do not.
+    // Tracks are only excluded by hand, never in experiments.
     if (setting.kind == SettingKind::ids) continue;
     SettingColumn column{row.settings, setting};
     visit(setting.key.c_str(), column);
@@ -106,21 +96,23 @@ void visit_row(R& row, Visitor&& visit) {
   visit("processor", row.processor);
 }
 
-/// What an inspection came to, under the configuration that its settings come to.
+/// Returns the row of an inspection, labeled with the configuration of its settings.
 Row make_row(const Inspection& inspection);
-/// A window that the settings cannot be tried on, e.g. without a gyroscope.
+/// Returns a failed row for settings that do not apply to a window, e.g. without a gyroscope.
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
-/// Header and lines of results.csv. Numbers have all the digits they need to be read back.
+/// Returns results.csv. Numbers have enough digits to be read back exactly.
 std::string to_csv(std::span<const Row> rows);
 
-/// From its cells, by the names of the columns; a column without one is unknown. Throws InputError
-/// that names the column.
-Row row_from(const MethodTable& methods,
-             const std::function<std::optional<std::string>(const char* name)>& cell_of);
-
 nlohmann::ordered_json to_json(const Row& row);
-/// Throws nlohmann::json::exception or InputError for anything but what `to_json` wrote.
+/// Reads the output of `to_json`. Throws nlohmann::json::exception or InputError.
 Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
+
+/// Returns whether a file is a results.csv of `evaluate`, by its first line.
+bool is_results(const std::filesystem::path& file);
+
+/// Reads a results.csv. Missing columns are unknown in every row; other columns are ignored. Throws
+/// InputError with file and line.
+std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods = {});
 
 }  // namespace gpo

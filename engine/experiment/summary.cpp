@@ -2,27 +2,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
+#include "engine/experiment/figures.h"
+#include "engine/files/json_text.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace gpo {
 namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array kSummaryColumns{"rms_px",
+                                     "ate_m",
+                                     "pne_deg",
+                                     "pne_aligned_deg",
+                                     "pde_m",
+                                     "pne_bound_deg",
+                                     "scale_error_percent",
+                                     "gravity_error_deg",
+                                     "track_ms",
+                                     "ransac_ms",
+                                     "rotations_ms",
+                                     "initialize_ms",
+                                     "optimize_ms",
+                                     "total_ms"};
 
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames
 WindowKey window_of(const Row& row) {
   return {row.recording, row.settings.start, row.settings.frames};
 }
 
-/// In the order of their first rows.
+/// Returns the configurations in the order of their first rows.
 std::vector<std::string> configurations_in(std::span<const Row> rows) {
   std::vector<std::string> keys;
-  for (const Row& row : rows) {
+  for (const Row& row : rows)
     if (std::ranges::find(keys, row.configuration) == keys.end()) keys.push_back(row.configuration);
-  }
   return keys;
 }
 
@@ -35,13 +57,200 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
     if (!row.ok()) continue;
     ++cell.ok;
     visit_row(row, [&](const std::string& name, const auto& value) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<double>>) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<double>>)
         if (value) values[name].push_back(std::abs(*value));
-      }
     });
   }
   for (const char* name : kSummaryColumns) cell.values[name] = distribution(values[name]);
   return cell;
+}
+
+std::set<int> lengths_in(std::span<const Row> rows) {
+  std::set<int> lengths;
+  for (const Row& row : rows) lengths.insert(row.settings.frames);
+  return lengths;
+}
+
+constexpr int kSignificant = -1;  // three significant digits
+
+/// A column of numbers in a table.
+struct NumberColumn {
+  const char* title;
+  std::vector<const char*> columns;  ///< of results.csv, whose medians are added
+  double factor = 1;
+  bool per_frame = false;
+  int digits = kSignificant;  ///< after the decimal point
+};
+
+/// Formats three significant digits without an exponent: "0.0612", "3.98", "1235".
+std::string significant(double value) {
+  const double size = std::abs(value);
+  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
+  return fmt::format("{:.{}f}", value, std::clamp(2 - before, 0, 9));
+}
+
+std::string number(const Cell& cell, const NumberColumn& column) {
+  double sum = 0;
+  for (const char* name : column.columns) {
+    const auto& median = cell.values.at(name).median;
+    if (!median) return "-";
+    sum += *median;
+  }
+  const double value = column.factor * sum / (column.per_frame ? cell.frames : 1);
+  return column.digits == kSignificant ? significant(value)
+                                       : fmt::format("{:.{}f}", value, column.digits);
+}
+
+std::string windows_of(const Cell& cell) { return fmt::format("{}/{}", cell.ok, cell.windows); }
+
+Table time_table(const std::vector<Cell>& cells, int frames, const MethodTable& methods) {
+  const std::vector<NumberColumn> columns{
+      {.title = "Front end [ms/frame]",
+       .columns = {"track_ms", "ransac_ms"},
+       .per_frame = true,
+       .digits = 2},
+      {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
+      {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
+      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
+      {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
+  Table table;
+  table.header = {"Method", "Windows solved"};
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : cells) {
+    if (cell.frames != frames) continue;
+    const Configuration configuration = parse_configuration(cell.configuration, methods);
+    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
+    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
+    table.lines.push_back(std::move(line));
+  }
+  return table;
+}
+
+std::set<int> lengths_to_show(const std::set<int>& all) {
+  constexpr std::array kPreferred{10, 30, 60};
+  if (std::ranges::includes(all, kPreferred)) return {kPreferred.begin(), kPreferred.end()};
+  const std::vector<int> lengths(all.begin(), all.end());
+  return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
+}
+
+/// Describes how windows of a length were timed: "one window at a time, one thread, on an AMD
+/// EPYC".
+std::string measured_text(std::span<const Row> rows, int frames) {
+  std::set<int> jobs;
+  std::set<std::string> processors;
+  for (const Row& row : rows) {
+    if (row.settings.frames != frames) continue;
+    jobs.insert(row.jobs.value_or(0));
+    if (!row.processor.empty()) processors.insert(row.processor);
+  }
+  std::string text = "one window at a time, one thread";
+  if (jobs.contains(0)) {
+    text = "unknown number of windows at a time";
+  } else if (*jobs.rbegin() > 1) {
+    text = fmt::format(
+        "up to {} windows at a time, which is slower than one at a time (--timing-jobs 1)",
+        *jobs.rbegin());
+  }
+  if (!processors.empty()) text += fmt::format(", on {}", fmt::join(processors, " and "));
+  return text;
+}
+
+/// Returns the columns of errors, those of an accelerometer only if it was used.
+std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
+  std::vector<NumberColumn> columns{{.title = "PNE [deg]", .columns = {"pne_deg"}, .digits = 3},
+                                    {.title = "ATE [mm]", .columns = {"ate_m"}, .factor = 1e3},
+                                    {.title = "PDE [mm]", .columns = {"pde_m"}, .factor = 1e3}};
+  const bool inertial = std::ranges::any_of(
+      cells, [](const Cell& cell) { return cell.values.at("gravity_error_deg").count > 0; });
+  if (!inertial) return columns;
+  columns.push_back({.title = "scale error [%]", .columns = {"scale_error_percent"}});
+  columns.push_back({.title = "gravity error [deg]", .columns = {"gravity_error_deg"}});
+  return columns;
+}
+
+/// `solved(cell)` returns the texts below `header`, the numbers of windows.
+template <class Solved>
+Table errors_table(std::span<const Row> rows,
+                   const std::vector<std::string>& header,
+                   const Solved& solved) {
+  const std::set<int> shown = lengths_to_show(lengths_in(rows));
+  const std::vector<Cell> cells = summarize(rows);
+  const std::vector<NumberColumn> columns = error_columns(cells);
+  Table table;
+  table.caption = "Medians over the solved windows";
+  table.header = {"method", "frames"};
+  table.header.insert(table.header.end(), header.begin(), header.end());
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : cells) {
+    if (!shown.contains(cell.frames)) continue;
+    std::vector<std::string> line{cell.configuration, std::to_string(cell.frames)};
+    for (const std::string& text : solved(cell)) line.push_back(text);
+    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
+    table.lines.push_back(std::move(line));
+  }
+  return table;
+}
+
+/// Returns the width of each column.
+std::vector<std::size_t> widths_of(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (const std::string& title : table.header) widths.push_back(title.size());
+  for (const auto& line : table.lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  return widths;
+}
+
+ordered_json cells_json(std::span<const Row> rows) {
+  ordered_json cells = ordered_json::array();
+  for (const Cell& cell : summarize(rows)) {
+    ordered_json json = {{"configuration", cell.configuration},
+                         {"frames", cell.frames},
+                         {"windows", cell.windows},
+                         {"ok", cell.ok},
+                         {"failed", cell.windows - cell.ok}};
+    for (const char* name : kSummaryColumns) {
+      const Distribution& d = cell.values.at(name);
+      json[name] = {{"count", d.count},
+                    {"lower", optional_json(d.lower)},
+                    {"median", optional_json(d.median)},
+                    {"upper", optional_json(d.upper)}};
+    }
+    cells.push_back(std::move(json));
+  }
+  return cells;
+}
+
+ordered_json recordings_json(const Experiment& experiment, std::span<const Row> rows) {
+  ordered_json recordings = ordered_json::array();
+  for (const ExperimentRecording& recording : experiment.recordings) {
+    std::vector<Row> own;
+    std::ranges::copy_if(rows, std::back_inserter(own), [&](const Row& row) {
+      return row.recording == recording.name;
+    });
+    recordings.push_back({{"recording", recording.name}, {"cells", cells_json(own)}});
+  }
+  return recordings;
+}
+
+ordered_json figures_json(const Experiment& experiment, std::span<const Row> rows) {
+  ordered_json figures = ordered_json::array();
+  for (const FigurePlan& plan : figure_plans(experiment.configurations))
+    figures.push_back(
+        {{"figure", plan.name},
+         {"title", plan.title},
+         {"cells", cells_json(on_common_windows(rows_of(rows, plan.configurations)))}});
+  return figures;
+}
+
+/// Returns the numbers of windows computed at once and the processors.
+ordered_json timing_json(std::span<const Row> rows) {
+  std::set<int> jobs;
+  std::set<std::string> processors;
+  for (const Row& row : rows) {
+    if (row.jobs) jobs.insert(*row.jobs);
+    if (!row.processor.empty()) processors.insert(row.processor);
+  }
+  return {{"jobs", jobs}, {"processors", processors}};
 }
 
 }  // namespace
@@ -56,19 +265,16 @@ Distribution distribution(std::vector<double> values) {
 }
 
 std::vector<Cell> summarize(std::span<const Row> rows) {
-  std::set<int> lengths;
-  for (const Row& row : rows) lengths.insert(row.settings.frames);
   std::vector<Cell> cells;
-  for (const std::string& configuration : configurations_in(rows)) {
-    for (const int frames : lengths) cells.push_back(cell_of(rows, configuration, frames));
-  }
+  for (const std::string& configuration : configurations_in(rows))
+    for (const int frames : lengths_in(rows)) cells.push_back(cell_of(rows, configuration, frames));
   std::erase_if(cells, [](const Cell& cell) { return cell.windows == 0; });
   return cells;
 }
 
 std::vector<Row> on_common_windows(std::span<const Row> rows) {
   std::map<int, std::set<std::string>> solvers;  // configurations by length
-  std::map<WindowKey, std::size_t> solved;       // by how many
+  std::map<WindowKey, std::size_t> solved;       // number of configurations
   for (const Row& row : rows) {
     if (!row.ok()) continue;
     solvers[row.settings.frames].insert(row.configuration);
@@ -89,6 +295,68 @@ std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuratio
     return keys.contains(row.configuration);
   });
   return chosen;
+}
+
+Table running_time_table(std::span<const Row> rows) {
+  const std::set<int> lengths = lengths_in(rows);
+  const int frames = timed_length({lengths.begin(), lengths.end()});
+  MethodTable methods;
+  for (const Row& row : rows) methods.add(row.settings.options.method);
+  Table table = time_table(summarize(rows), frames, methods);
+  table.caption =
+      fmt::format("Running time of different initialization methods with {} frames", frames);
+  if (frames != kPaperFrames) table.caption += fmt::format(" (no windows of {})", kPaperFrames);
+  table.caption += ": medians over the solved windows, " + measured_text(rows, frames);
+  return table;
+}
+
+Table overview_table(std::span<const Row> rows) {
+  return errors_table(
+      rows, {"solved"}, [](const Cell& cell) { return std::vector{windows_of(cell)}; });
+}
+
+Table overview_numbers(std::span<const Row> rows) {
+  Table table = errors_table(rows, {"solved", "of"}, [](const Cell& cell) {
+    return std::vector{std::to_string(cell.ok), std::to_string(cell.windows)};
+  });
+  for (auto& line : table.lines) std::ranges::replace(line, "-", "");
+  return table;
+}
+
+std::string to_markdown(const Table& table) {
+  std::string text =
+      fmt::format("{}.\n\n| {} |\n| ---", table.caption, fmt::join(table.header, " | "));
+  for (std::size_t i = 1; i < table.header.size(); ++i) text += " | ---:";
+  text += " |\n";
+  for (const auto& line : table.lines) text += fmt::format("| {} |\n", fmt::join(line, " | "));
+  return text;
+}
+
+std::string to_csv(const Table& table) {
+  std::string text = fmt::format("{}\n", fmt::join(table.header, ","));
+  for (const auto& line : table.lines) text += fmt::format("{}\n", fmt::join(line, ","));
+  return text;
+}
+
+std::string to_text(const Table& table) {
+  const std::vector<std::size_t> widths = widths_of(table);
+  const auto padded = [&](const std::vector<std::string>& line) {
+    std::string text = fmt::format("{:<{}}", line.front(), widths.front());
+    for (std::size_t i = 1; i < line.size(); ++i)
+      text += fmt::format("  {:>{}}", line[i], widths[i]);
+    return text + "\n";
+  };
+  std::string text = padded(table.header);
+  for (const auto& line : table.lines) text += padded(line);
+  return text;
+}
+
+ordered_json to_json(const Experiment& experiment, std::span<const Row> rows) {
+  return {{"experiment", to_json(experiment)},
+          {"timing", timing_json(rows)},
+          {"all_windows", cells_json(rows)},
+          {"by_recording", recordings_json(experiment, rows)},
+          {"windows_that_all_solved", figures_json(experiment, rows)}};
 }
 
 }  // namespace gpo

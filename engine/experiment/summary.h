@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
 #include <array>
@@ -12,30 +12,16 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace gpo {
 
 /// Median and quartiles, linear between the order statistics (Hyndman and Fan's type 7).
 struct Distribution {
-  int count = 0;  ///< of the values; the others are nothing where it is 0
-  std::optional<double> lower, median, upper;
+  int count = 0;
+  std::optional<double> lower, median, upper;  ///< nullopt if there are no values
 };
 Distribution distribution(std::vector<double> values);
-
-/// The columns of results.csv that are summarized: by their size, whatever the sign of an error.
-inline constexpr std::array<const char*, 14> kSummaryColumns{"rms_px",
-                                                             "ate_m",
-                                                             "pne_deg",
-                                                             "pne_aligned_deg",
-                                                             "pde_m",
-                                                             "pne_bound_deg",
-                                                             "scale_error_percent",
-                                                             "gravity_error_deg",
-                                                             "track_ms",
-                                                             "ransac_ms",
-                                                             "rotations_ms",
-                                                             "initialize_ms",
-                                                             "optimize_ms",
-                                                             "total_ms"};
 
 /// A configuration on the windows of one length.
 struct Cell {
@@ -43,19 +29,45 @@ struct Cell {
   int frames = 0;
   int windows = 0;  ///< tried
   int ok = 0;       ///< solved
-  std::map<std::string, Distribution> values =
-      {};  ///< by column, over the solved windows where known
+  /// The absolute values over the solved windows, by column of results.csv.
+  std::map<std::string, Distribution> values = {};
 };
 
-/// One cell a length and configuration, in that order; those without windows are left out.
+/// Returns the cells by configuration, then length, without those that have no windows.
 std::vector<Cell> summarize(std::span<const Row> rows);
 
-/// The rows whose window every configuration solved, so that methods are compared on the same
-/// windows. A configuration that solved no window of a length has no say in that length: its rows
-/// are left out.
+/// Returns the rows whose window all configurations solved, so that methods are compared on the
+/// same windows. A configuration that solved no window of a length is ignored for that length.
 std::vector<Row> on_common_windows(std::span<const Row> rows);
 
-/// The rows of the configurations, in the rows' order.
+/// Returns the rows of the configurations in their order.
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations);
+
+/// A table for people.
+struct Table {
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> lines;
+};
+
+/// Returns the paper's table of running times: medians over the solved windows of `timed_length`.
+/// The caption says under which conditions they were measured.
+Table running_time_table(std::span<const Row> rows);
+
+/// Returns the number of solved windows and the median errors of each configuration at 10, 30 and
+/// 60 frames, or else at the shortest, a middle and the longest length.
+Table overview_table(std::span<const Row> rows);
+/// Returns the same for programs: each cell is a number or empty.
+Table overview_numbers(std::span<const Row> rows);
+
+std::string to_markdown(const Table& table);
+/// Returns the table without its caption.
+std::string to_csv(const Table& table);
+/// Returns aligned columns for a terminal, without the caption.
+std::string to_text(const Table& table);
+
+/// Returns summary.json: the experiment, the conditions of its times, and the cells of all windows,
+/// of each recording, and of each figure's common windows.
+nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row> rows);
 
 }  // namespace gpo

@@ -24,15 +24,7 @@ fs::path window_file(const fs::path& folder, const std::string& name, int start,
   return folder / "windows" / fmt::format("{}-{}-{}.json", name, start, frames);
 }
 
-bool belongs(const std::vector<Row>& rows, const Experiment& experiment) {
-  if (rows.size() != experiment.configurations.size()) return false;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].configuration != key_of(experiment.configurations[i])) return false;
-  }
-  return true;
-}
-
-/// What a window's file says that it is of, against what it should be of.
+/// Returns the names of what differs between a window's file and the experiment.
 std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ExperimentRecording& recording,
                                           const ordered_json& window) {
@@ -46,16 +38,17 @@ std::vector<std::string> differences_from(const Experiment& experiment,
   return differs;
 }
 
-/// "desk from frame 10 (12 windows), ...", at most a line of them.
+/// Returns "desk from frame 10, ...", shortened to one line.
 std::string list_of(const std::vector<std::string>& missing) {
-  constexpr std::size_t kMostNamed = 8;
-  const auto named = std::min(missing.size(), kMostNamed);
+  constexpr std::size_t kMaxNamed = 8;
+  const auto named = std::min(missing.size(), kMaxNamed);
   std::string list = fmt::format("{}", fmt::join(missing.begin(), missing.begin() + named, ", "));
   if (missing.size() > named) list += fmt::format(" and {} more", missing.size() - named);
   return list;
 }
 
-/// From the first folder that has it. Throws InputError where only one of something else is there.
+/// Returns the rows from the first folder that has the window. Throws InputError if only windows of
+/// another experiment exist.
 std::optional<std::vector<Row>> find_window(const Experiment& experiment,
                                             std::span<const fs::path> folders,
                                             const ExperimentTask& task,
@@ -66,7 +59,7 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
     if (window.rows) return std::move(window.rows);
     if (window.differs.empty() || !other.empty()) continue;
     const std::string& name = experiment.recordings[task.recording].name;
-    other = fmt::format("{}: is of another experiment than experiment.json ({})",
+    other = fmt::format("{}: belongs to another experiment than experiment.json ({})",
                         window_file(folder, name, task.start, frames).string(),
                         differ_text(window.differs));
   }
@@ -89,13 +82,11 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
   } else {
     found = differences(read_experiment(folder, methods_of(experiment)), experiment);
   }
-  if (!found.plan.empty()) {
-    throw InputError(
-        fmt::format("{}: is of another experiment ({}), expected the same or another --output",
-                    definition_file(folder).string(),
-                    differ_text(found.plan)));
-  }
-  // First of all files, because by it the folder is known as ours.
+  if (!found.plan.empty())
+    throw InputError(fmt::format("{}: belongs to another experiment ({}); choose another --output",
+                                 definition_file(folder).string(),
+                                 differ_text(found.plan)));
+  // Written first, because it marks the folder as an experiment's.
   if (fresh || !found.content.empty())
     write_file(definition_file(folder), json_text(to_json(experiment), 2));
   make_folder(folder / "windows");
@@ -105,18 +96,19 @@ std::vector<std::string> begin_experiment(const fs::path& folder, const Experime
 Experiment read_experiment(const fs::path& folder, const MethodTable& methods) {
   const fs::path file = definition_file(folder);
   const ordered_json json = read_json(file);
-  if (json.is_discarded()) {
+  const auto fail = [&](const std::string& why) {
     throw InputError(
-        fmt::format("{}: is not the definition of an experiment (no JSON)", file.string()));
-  }
+        fmt::format("{}: is not the definition of an experiment ({})", file.string(), why));
+  };
+  if (json.is_discarded()) fail("no JSON");
   try {
     return experiment_from_json(json, methods);
   } catch (const ordered_json::exception& error) {
-    throw InputError(fmt::format(
-        "{}: is not the definition of an experiment ({})", file.string(), error.what()));
+    fail(error.what());
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
+  return {};
 }
 
 void save_window(const fs::path& folder, const Experiment& experiment, std::span<const Row> rows) {
@@ -146,7 +138,9 @@ WindowFile load_window(const fs::path& folder,
     std::vector<Row> rows;
     const MethodTable methods = methods_of(experiment);
     for (const ordered_json& row : json.at("rows")) rows.push_back(row_from_json(row, methods));
-    if (belongs(rows, experiment)) return {std::move(rows), {}};
+    const bool complete =
+        std::ranges::equal(rows, experiment.configurations, {}, &Row::configuration, &key_of);
+    if (complete) return {std::move(rows), {}};
   } catch (const ordered_json::exception&) {
   } catch (const InputError&) {
   }
@@ -188,7 +182,7 @@ Experiment merge_experiments(std::span<const fs::path> folders,
     names.insert(names.end(), found.content.begin(), found.content.end());
     if (names.empty()) continue;
     throw SettingError("merge",
-                       fmt::format("{} and {} are of different experiments ({})",
+                       fmt::format("{} and {} belong to different experiments ({})",
                                    folders.front().string(),
                                    folder.string(),
                                    differ_text(names)));
@@ -196,9 +190,8 @@ Experiment merge_experiments(std::span<const fs::path> folders,
   const std::vector<Row> rows = collect_rows(experiment, folders);
   begin_experiment(output, experiment);
   const std::size_t configurations = experiment.configurations.size();
-  for (std::size_t i = 0; i < rows.size(); i += configurations) {
+  for (std::size_t i = 0; i < rows.size(); i += configurations)
     save_window(output, experiment, std::span(rows).subspan(i, configurations));
-  }
   return experiment;
 }
 

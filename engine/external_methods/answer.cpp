@@ -3,12 +3,20 @@
 #include "engine/external_methods/answer.h"
 
 #include "engine/base/error.h"
+#include "engine/geometry/camera_resection.h"
 #include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/statistics.h"
+#include "engine/geometry/triangulation.h"
+#include "engine/methods/common/window_checks.h"
+#include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -20,21 +28,20 @@ using Json = nlohmann::json;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kLargest = 1e12;
-/// A matrix this far from a rotation is meant to be one, written with few digits.
-constexpr double kMostSkew = 1e-3;
-/// This near, it is one.
+constexpr double kMaxNumber = 1e12;
+/// Distance from a rotation matrix that is accepted as rounding to few digits.
+constexpr double kMaxSkew = 1e-3;
 constexpr double kRounding = 1e-12;
 
 [[noreturn]] void refuse(const std::string& key, const std::string& expected) {
   throw InputError(fmt::format("{}: expected {}", key, expected));
 }
 
-/// Deeper than any answer, and far from where a parser runs out of stack.
+/// Limits the depth so that the parser does not run out of stack.
 Json parsed(std::string_view line) {
-  constexpr int kDeepest = 8;
+  constexpr int kMaxDepth = 8;
   const auto keep = [](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kDeepest) throw InputError("nested too deep, expected a JSON object");
+    if (depth > kMaxDepth) throw InputError("nested too deep, expected a JSON object");
     return true;
   };
   try {
@@ -63,22 +70,21 @@ void check_keys(const Json& json,
 double number(const Json& json, const std::string& key, const std::string& expected) {
   if (!json.is_number()) refuse(key, expected);
   const auto value = json.get<double>();
-  if (!(std::abs(value) <= kLargest)) refuse(key, expected);
+  if (!(std::abs(value) <= kMaxNumber)) refuse(key, expected);
   return value;
 }
 
-/// So many numbers in a row, or in rows.
-void numbers(const Json& json,
-             const std::string& key,
-             const std::string& expected,
-             std::vector<double>& into) {
+/// Appends the numbers of a list or of nested lists, at most 9.
+void append_numbers(const Json& json,
+                    const std::string& key,
+                    const std::string& expected,
+                    std::vector<double>& into) {
   if (!json.is_array()) refuse(key, expected);
   for (const Json& one : json) {
-    if (one.is_array() && into.size() <= 9) {
-      numbers(one, key, expected, into);
-    } else {
+    if (one.is_array() && into.size() <= 9)
+      append_numbers(one, key, expected, into);
+    else
       into.push_back(number(one, key, expected));
-    }
     if (into.size() > 9) refuse(key, expected);
   }
 }
@@ -89,37 +95,39 @@ const Json& member(const Json& json, const std::string& where, const char* key) 
   return *found;
 }
 
-Vector3d vector_in(const Json& json, const std::string& where, const char* key) {
-  constexpr const char* kExpected = "3 numbers";
+std::vector<double> numbers(const Json& json,
+                            const std::string& where,
+                            const char* key,
+                            std::size_t count) {
   const std::string name = where + "." + key;
+  const std::string expected = fmt::format("{} numbers", count);
   std::vector<double> values;
-  numbers(member(json, where, key), name, kExpected, values);
-  if (values.size() != 3) refuse(name, kExpected);
-  return {values[0], values[1], values[2]};
+  append_numbers(member(json, where, key), name, expected, values);
+  if (values.size() != count) refuse(name, expected);
+  return values;
+}
+
+Vector3d vector_in(const Json& json, const std::string& where, const char* key) {
+  return Vector3d::Map(numbers(json, where, key, 3).data());
 }
 
 Matrix3d rotation_in(const Json& json, const std::string& where, const char* key) {
-  constexpr const char* kExpected = "9 numbers";
-  const std::string name = where + "." + key;
-  std::vector<double> values;
-  numbers(member(json, where, key), name, kExpected, values);
-  if (values.size() != 9) refuse(name, kExpected);
+  const std::vector<double> values = numbers(json, where, key, 9);
   const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
-  const auto rotation = rotation_meant(R, kMostSkew);
-  if (!rotation) refuse(name, "a rotation matrix, row by row");
+  const auto rotation = rotation_meant(R, kMaxSkew);
+  if (!rotation) refuse(where + "." + key, "a rotation matrix, row by row");
   return *rotation;
 }
 
 int index_in(const Json& json, const std::string& where, const char* key, int count) {
   const Json& value = member(json, where, key);
-  if (!value.is_number_integer() || value < 0 || value >= count) {
+  if (!value.is_number_integer() || value < 0 || value >= count)
     refuse(where + "." + key,
            count > 0 ? fmt::format("a number from 0 to {}", count - 1) : "none: there are none");
-  }
   return value.get<int>();
 }
 
-/// Where normal . X + distance = 0.
+/// Reads normal . X + distance = 0.
 Plane plane_in(const Json& json, const std::string& where) {
   const Vector3d normal = vector_in(json, where, "normal");
   const std::string key = where + ".distance";
@@ -142,7 +150,7 @@ const Json& array_in(const Json& json, const char* key) {
 std::vector<std::optional<Pose>> cameras_in(const Json& json, int frames) {
   const Json& list = array_in(json, "cameras");
   if (std::ssize(list) != frames)
-    refuse("cameras", fmt::format("{}, one a frame, found {}", frames, list.size()));
+    refuse("cameras", fmt::format("{}, one per frame, found {}", frames, list.size()));
   std::vector<std::optional<Pose>> cameras(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string where = fmt::format("cameras[{}]", i);
@@ -182,34 +190,168 @@ std::vector<MapPoint> points_in(const Json& json, int tracks) {
   return points;
 }
 
+/// Transforms everything into the axes of the reference camera.
+Answer seen_from_reference(Answer answer) {
+  const Pose reference = *answer.cameras.front();
+  const Pose from_world = inverse(reference);
+  for (auto& camera : answer.cameras)
+    if (camera) camera = from_world * *camera;
+  answer.cameras.front() = Pose{};
+  const auto transform = [&](Plane& plane) {
+    plane = facing_origin(plane_in_camera(plane, reference));
+  };
+  if (answer.plane) transform(*answer.plane);
+  for (PlaneEstimate& one : answer.planes) transform(one.plane);
+  for (MapPoint& point : answer.points) point.position = to_camera(reference, point.position);
+  std::erase_if(answer.points, [](const MapPoint& point) { return !(point.position.z() > 0); });
+  return answer;
+}
+
+std::optional<Plane> plane_of_inliers(const Window& window, const std::vector<MapPoint>& points) {
+  Eigen::Matrix3Xd positions(3, std::ssize(points));
+  int count = 0;
+  for (const MapPoint& point : points)
+    if (window.is_inlier_track(point.track)) positions.col(count++) = point.position;
+  return fit_plane(positions.leftCols(count));
+}
+
+/// Returns the intersections of the inliers' rays from the reference camera with the plane.
+std::vector<MapPoint> on_plane(const Window& window, const Plane& plane) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<MapPoint> points;
+  for (const int j : window.inlier_tracks(0)) {
+    const auto point =
+        intersect(plane, Pose{}, K_inverse * window.points_px[0].col(j).homogeneous());
+    if (point) points.push_back({j, *point});
+  }
+  return points;
+}
+
+/// Scales the plane to distance 1. Returns false if numbers overflow.
+bool rescale(Answer& answer) {
+  const double unit = answer.plane->distance;
+  bool finite = true;
+  const auto scale = [&](Vector3d& vector) {
+    vector /= unit;
+    finite = finite && vector.allFinite();
+  };
+  for (auto& camera : answer.cameras)
+    if (camera) scale(camera->p_wc);
+  for (MapPoint& point : answer.points) scale(point.position);
+  for (PlaneEstimate& one : answer.planes) one.plane.distance /= unit;
+  answer.plane->distance = 1;
+  return finite && std::isfinite(1 / unit);
+}
+
+/// Returns the planes with the leading one (from `plane`) first.
+std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer) {
+  std::vector<PlaneEstimate> planes = answer.planes;
+  if (window.planes.empty() || planes.empty()) return {};
+  std::erase_if(planes, [&](const PlaneEstimate& one) { return one.number == window.leader; });
+  planes.insert(planes.begin(), {window.leader, *answer.plane});
+  return planes;
+}
+
+/// Returns the error of the observations in front of their cameras.
+double rms_of(const Window& window, const Initialization& result) {
+  std::vector<double> errors = reprojection_errors_px(window, result.cameras, result.points);
+  std::erase_if(errors, [](double error) { return !std::isfinite(error); });
+  return root_mean_square(errors);
+}
+
 }  // namespace
 
-Answer read_answer(std::string_view line, const Asked& asked) {
+Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
   const Json json = parsed(line);
   if (!json.is_object()) refuse("answer", "an object");
   const auto given = [&](const char* key) { return json.contains(key) && !json[key].is_null(); };
   check_keys(
       json, "answer", {"id", "failed", "cameras", "plane", "planes", "points", "milliseconds"});
-  if (given("id") && json["id"] != asked.id)
-    refuse("id", fmt::format("{}, as in the question", asked.id));
+  if (given("id") && json["id"] != expected.id)
+    refuse("id", fmt::format("{}, as in the question", expected.id));
   Answer answer;
   if (given("failed")) {
     if (!json["failed"].is_string()) refuse("failed", "a text");
-    constexpr std::size_t kLongestReason = 500;
-    answer.failed = legible(json["failed"].get<std::string>(), kLongestReason);
+    constexpr std::size_t kMaxReason = 500;
+    answer.failed = legible(json["failed"].get<std::string>(), kMaxReason);
     return answer;
   }
-  if (!given("cameras")) throw InputError("cameras: is missing, and so is failed");
-  answer.cameras = cameras_in(json, asked.frames);
+  if (!given("cameras")) throw InputError("cameras: is missing, as is failed");
+  answer.cameras = cameras_in(json, expected.frames);
   if (given("plane")) {
     check_keys(json["plane"], "plane", {"normal", "distance"});
     answer.plane = plane_in(json["plane"], "plane");
   }
-  answer.planes = planes_in(json, asked.planes);
-  answer.points = points_in(json, asked.tracks);
+  answer.planes = planes_in(json, expected.planes);
+  answer.points = points_in(json, expected.tracks);
   if (given("milliseconds"))
     answer.milliseconds = number(json["milliseconds"], "milliseconds", "a number");
   return answer;
+}
+
+Initialization initialization_of(const Window& window, const Answer& given) {
+  if (given.failed) return failed(*given.failed);
+  Answer answer = seen_from_reference(given);
+  const auto leading = std::ranges::find(answer.planes, window.leader, &PlaneEstimate::number);
+  if (!answer.plane && leading != answer.planes.end()) answer.plane = leading->plane;
+  const bool over_plane = answer.plane && answer.points.empty();
+  if (!answer.plane) {
+    if (answer.points.empty()) answer.points = triangulated(window, answer.cameras);
+    answer.plane = plane_of_inliers(window, answer.points);
+    if (!answer.plane) return failed("the answer has no plane, and none fits its points");
+  }
+  if (!rescale(answer))
+    return failed("the answer's numbers overflow when scaled to the distance of its plane");
+  const auto points = over_plane ? on_plane(window, *answer.plane) : answer.points;
+  Initialization result;
+  result.plane = *answer.plane;
+  result.planes = planes_of(window, answer);
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const auto camera = answer.cameras[i] ? answer.cameras[i] : resected(window, points, i);
+    if (!camera)
+      return failed(fmt::format("the answer has no camera of frame {}, which sees too few points",
+                                window.start + i));
+    result.cameras.push_back(*camera);
+  }
+  if (over_plane) return checked_result(window, std::move(result));
+  result.points = points;
+  result.rms_px = rms_of(window, result);
+  return trusted(window, std::move(result));
+}
+
+std::vector<MapPoint> triangulated(const Window& window,
+                                   std::span<const std::optional<Pose>> given) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<MapPoint> points;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.inlier[0][j]) continue;
+    std::vector<Pose> cameras;
+    Eigen::Matrix3Xd rays(3, window.frame_count());
+    for (int i = 0; i < window.frame_count(); ++i) {
+      if (!given[i] || !window.inlier[i][j]) continue;
+      rays.col(std::ssize(cameras)) = K_inverse * window.points_px[i].col(j).homogeneous();
+      cameras.push_back(*given[i]);
+    }
+    if (cameras.size() < 2) continue;
+    const auto point = triangulate(cameras, rays.leftCols(std::ssize(cameras)));
+    if (point) points.push_back({j, *point});
+  }
+  return points;
+}
+
+std::optional<Pose> resected(const Window& window, const std::vector<MapPoint>& points, int frame) {
+  Eigen::Matrix3Xd positions(3, std::ssize(points));
+  Eigen::Matrix2Xd pixels(2, std::ssize(points));
+  int count = 0;
+  for (const MapPoint& point : points) {
+    if (!window.points_px[frame].col(point.track).allFinite()) continue;
+    positions.col(count) = point.position;
+    pixels.col(count++) = window.points_px[frame].col(point.track);
+  }
+  constexpr int kMinPoints = 6;  // PnP needs four, but with fewer than these it is a guess
+  if (count < kMinPoints) return std::nullopt;
+  const auto found = resect_camera(positions.leftCols(count), pixels.leftCols(count), window.K);
+  return found ? std::optional(found->pose) : std::nullopt;
 }
 
 }  // namespace gpo

@@ -4,9 +4,10 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
-#include "engine/external_methods/answered.h"
+#include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 
 #include <algorithm>
@@ -23,21 +24,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestLine = 300;
+constexpr std::size_t kMaxLine = 300;
 
-/// The last line that is not empty.
+/// Returns the last line that is not empty.
 std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of(" \n\r\t");
-  if (end == std::string::npos) return "";
-  const std::size_t begin = text.rfind('\n', end);
-  return legible(text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin),
-                 kLongestLine);
+  const std::string_view whole = trimmed(text);
+  return legible(whole.substr(whole.rfind('\n') + 1), kMaxLine);
 }
 
 struct Worker {
   explicit Worker(const std::string& command) : process(command) {}
   ChildProcess process;
-  int asked = 0;  ///< windows
+  int questions = 0;
 };
 
 /// A command and its processes.
@@ -49,21 +47,21 @@ class Program {
   Initialization initialize(const Window& window, const Sources& sources, const Watch& watch) {
     if (options_.allowed && !*options_.allowed)
       return failed(command_.name +
-                    ": not started: the command is a session's; --allow-commands starts it");
+                    ": not started: only a session names the command; --allow-commands starts it");
     try {
-      return answered(window, sources, watch);
+      return ask(window, sources, watch);
     } catch (const std::exception& error) {
       return failed(fmt::format("{}: {}", command_.name, message_of(error)));
     }
   }
 
  private:
-  Initialization answered(const Window& window, const Sources& sources, const Watch& watch);
+  Initialization ask(const Window& window, const Sources& sources, const Watch& watch);
   std::unique_ptr<Worker> take();
   void give_back(std::unique_ptr<Worker> worker);
-  ProcessReply ask(Worker& worker, nlohmann::ordered_json& question, const Watch& watch) const;
-  void tell(const std::string& said) const;
-  std::string why_none(Worker& worker, const ProcessReply& reply) const;
+  ProcessReply send(Worker& worker, nlohmann::ordered_json& question, const Watch& watch) const;
+  void log(const std::string& lines) const;
+  std::string failure_of(Worker& worker, const ProcessReply& reply) const;
 
   const MethodCommand command_;
   const CommandOptions options_;
@@ -71,7 +69,7 @@ class Program {
   std::vector<std::unique_ptr<Worker>> idle_;
 };
 
-/// One that waits for a window, else a new one.
+/// Returns an idle worker or a new one.
 std::unique_ptr<Worker> Program::take() {
   while (true) {
     std::unique_ptr<Worker> worker;
@@ -91,42 +89,37 @@ void Program::give_back(std::unique_ptr<Worker> worker) {
   idle_.push_back(std::move(worker));
 }
 
-ProcessReply Program::ask(Worker& worker,
-                          nlohmann::ordered_json& question,
-                          const Watch& watch) const {
-  question["id"] = ++worker.asked;
-  ReplyLimits limits;
-  limits.time = options_.time_limit;
-  ProcessReply reply = worker.process.ask(json_text(question, -1), limits, watch.stop);
-  tell(reply.said);
+ProcessReply Program::send(Worker& worker,
+                           nlohmann::ordered_json& question,
+                           const Watch& watch) const {
+  question["id"] = ++worker.questions;
+  ProcessReply reply =
+      worker.process.ask(json_text(question, -1), {.time = options_.time_limit}, watch.stop);
+  log(reply.error_output);
   return reply;
 }
 
-void Program::tell(const std::string& said) const {
-  if (!options_.told) return;
-  constexpr int kMostLines = 20;
-  std::istringstream lines(said);
+void Program::log(const std::string& lines) const {
+  if (!options_.on_line) return;
+  constexpr int kMaxLines = 20;
   int count = 0;
-  for (std::string line; std::getline(lines, line) && count <= kMostLines; ++count)
-    options_.told(command_.name, count < kMostLines ? legible(line, kLongestLine) : "...");
+  for (const std::string& line : split(lines, '\n'))
+    if (count <= kMaxLines)
+      options_.on_line(command_.name, count++ < kMaxLines ? legible(line, kMaxLine) : "...");
 }
 
-std::string Program::why_none(Worker& worker, const ProcessReply& reply) const {
-  const int number = worker.asked;
+std::string Program::failure_of(Worker& worker, const ProcessReply& reply) const {
+  const int number = worker.questions;
   constexpr std::size_t kMiB = std::size_t{1} << 20;
-  switch (reply.reply) {
-    case Reply::late:
-      return fmt::format("no answer {} within {:g} s{}",
-                         number,
-                         std::chrono::duration<double>(options_.time_limit).count(),
-                         reply.answer.empty() ? "" : ", only the beginning of it");
-    case Reply::too_long:
-      return fmt::format(
-          "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
-    default:
-      break;
-  }
-  const std::string last = last_line(reply.said);
+  if (reply.reply == Reply::late)
+    return fmt::format("no answer {} within {:g} s{}",
+                       number,
+                       std::chrono::duration<double>(options_.time_limit).count(),
+                       reply.answer.empty() ? "" : ", only its beginning");
+  if (reply.reply == Reply::too_long)
+    return fmt::format(
+        "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
+  const std::string last = last_line(reply.error_output);
   return fmt::format("{} {} answer {}{}{}",
                      worker.process.end(),
                      reply.answer.empty() ? "before" : "in the middle of",
@@ -135,43 +128,41 @@ std::string Program::why_none(Worker& worker, const ProcessReply& reply) const {
                      last);
 }
 
-Initialization Program::answered(const Window& window, const Sources& sources, const Watch& watch) {
+Initialization Program::ask(const Window& window, const Sources& sources, const Watch& watch) {
   nlohmann::ordered_json question = {{"id", 0}};
   question.update(window_json(window, sources));
   const auto begin = Clock::now();
   std::unique_ptr<Worker> worker = take();
-  ProcessReply reply = ask(*worker, question, watch);
-  // Programs that answer once and end are started anew for each window.
-  if (reply.reply == Reply::ended && reply.answer.empty() && worker->asked > 1) {
+  ProcessReply reply = send(*worker, question, watch);
+  // A program that answers once and ends is restarted for each window.
+  if (reply.reply == Reply::ended && reply.answer.empty() && worker->questions > 1) {
     worker = std::make_unique<Worker>(command_.command);
-    reply = ask(*worker, question, watch);
+    reply = send(*worker, question, watch);
   }
   if (reply.reply == Reply::stopped) return stopped_early();
-  if (reply.reply != Reply::answered) {
-    const std::string why = why_none(*worker, reply);
-    return failed(fmt::format("{}: {}", command_.name, why));
-  }
+  if (reply.reply != Reply::answered)
+    return failed(fmt::format("{}: {}", command_.name, failure_of(*worker, reply)));
   const double elapsed_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-  const Asked asked{worker->asked,
-                    window.frame_count(),
-                    window.track_count(),
-                    static_cast<int>(window.planes.size())};
+  const ExpectedAnswer expected{.id = worker->questions,
+                                .frames = window.frame_count(),
+                                .tracks = window.track_count(),
+                                .planes = static_cast<int>(window.planes.size())};
   Initialization result;
   try {
-    const Answer answer = read_answer(reply.answer, asked);
+    const Answer answer = read_answer(reply.answer, expected);
     give_back(std::move(worker));
     result = initialization_of(window, answer);
     result.solver.milliseconds =
         std::clamp(answer.milliseconds.value_or(elapsed_ms), 0.0, elapsed_ms);
   } catch (const InputError& error) {
-    // What its next line would be an answer to is not known: it is not asked again.
-    return failed(fmt::format("{}: answer {}: {}", command_.name, asked.id, error.what()));
+    // The process is not reused, because its next line may answer any question.
+    return failed(fmt::format("{}: answer {}: {}", command_.name, expected.id, error.what()));
   }
   if (!result.ok) result.reason = fmt::format("{}: {}", command_.name, result.reason);
   return result;
 }
 
-/// The command, and what is in those of its words that are files.
+/// Returns the command and the checksums of the files among its words.
 std::string identity_of(const std::string& command) {
   std::string identity = command;
   std::istringstream words(command);
@@ -185,7 +176,7 @@ std::string identity_of(const std::string& command) {
 
 using Ordered = nlohmann::ordered_json;
 
-/// Null where it is not a number.
+/// Returns null if any element is not finite.
 Ordered vector_json(const Eigen::VectorXd& vector) {
   if (!vector.allFinite()) return nullptr;
   return std::vector<double>(vector.begin(), vector.end());
@@ -216,7 +207,7 @@ Ordered plane_json(const WindowPlane& plane) {
           {"homographies", list_json(plane.H_i1, matrix_json)}};
 }
 
-/// The samples within the window, and one more to either side.
+/// Returns the samples within the window and one more on either side.
 Ordered gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
   const auto& times = gyroscope.timestamps_ns;
   const auto after =

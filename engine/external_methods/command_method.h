@@ -16,32 +16,32 @@
 
 namespace gpo {
 
-/// A user's own method: a command of the shell that is asked a window a line and answers with a
-/// line each (README.md beside this file).
+/// A user's own method: a shell command that reads each window as a line and answers with a line
+/// (see README.md).
 struct MethodCommand {
-  std::string name;     ///< its key and its title
+  std::string name;     ///< key and title
   std::string command;  ///< for /bin/sh
 };
 
-/// "NAME=COMMAND". Throws InputError.
+/// Parses "NAME=COMMAND". Throws InputError.
 MethodCommand parse_method_command(const std::string& text);
 
 struct CommandOptions {
-  std::chrono::milliseconds time_limit{30'000};  ///< of a window, with the start of the process
-  /// Told each line that a command writes on its standard error, on the thread that asks; bounded a
-  /// window.
-  std::function<void(const std::string& name, const std::string& line)> told = {};
-  /// Nothing is started while it is false; null: the user has spelled the command.
+  std::chrono::milliseconds time_limit{30'000};  ///< per window, including the start of the process
+  /// Called for each line on a command's standard error, up to a limit per window, on the calling
+  /// thread of the method.
+  std::function<void(const std::string& name, const std::string& line)> on_line = {};
+  /// While false, no process is started; null: the user gave the command.
   std::shared_ptr<const std::atomic<bool>> allowed = {};
 };
 
-/// The method, which starts processes when it is asked, as many as threads ask it at once, and
-/// keeps them for further windows until the last copy of it is gone. Whatever a command does is a
-/// failure of that window, with a reason in one line. `number`: of the user's own, for its color.
+/// Returns the method. It starts one process per calling thread and keeps the processes until its
+/// last copy is destroyed. Errors of a command are failures of that window with a reason in one
+/// line. `number`: among the user's methods, for its color.
 Method command_method(const MethodCommand& command, const CommandOptions& options, int number);
 
-/// All that a user's own method is told of a window, as `method_window.schema.json` has it but for
-/// `id`. What is not known is not there; what is not seen is null.
+/// Returns the input of a user's own method, as in `method_window.schema.json` but without `id`.
+/// Unknown values are missing; unseen pixels are null.
 nlohmann::ordered_json window_json(const Window& window, const Sources& sources);
 
 }  // namespace gpo

@@ -10,17 +10,18 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 
 namespace {
 
-constexpr std::size_t kMostRows = 8'000'000;
-constexpr std::size_t kMostRemarks = 100;  // above the first row that are kept to look for names
+constexpr std::size_t kMaxRows = 8'000'000;
+constexpr std::size_t kMaxComments = 100;  // above the first row, as candidates for the header
 constexpr std::size_t kLongestShown = 40;
 constexpr std::string_view kBlanks = " \t";
 
-/// Takes the next cell off the front of what is left of a row.
+/// Removes the next cell from the front of `rest`. Returns it.
 std::string_view take_cell(std::string_view& rest, Separator separator) {
   const bool commas = separator == Separator::comma;
   const std::size_t end = commas ? rest.find(',') : rest.find_first_of(kBlanks);
@@ -40,20 +41,16 @@ int cell_count(std::string_view row, Separator separator) {
   return count;
 }
 
-std::vector<std::string> split(std::string_view row, Separator separator) {
+std::vector<std::string> cells_of(std::string_view row, Separator separator) {
   std::vector<std::string> cells;
-  for (int left = cell_count(row, separator); left > 0; --left) {
+  for (int left = cell_count(row, separator); left > 0; --left)
     cells.emplace_back(take_cell(row, separator));
-  }
   return cells;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) {
-    text += (text.empty() ? "" : ",") + (name.empty() ? std::string("...") : name);
-  }
-  return text;
+std::string joined(std::vector<std::string> names) {
+  std::ranges::replace(names, "", "...");
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 std::string in_quotes(std::string_view text) {
@@ -67,7 +64,7 @@ std::string plain_name(const std::string& name) {
   return lower_case(trimmed(before_unit));
 }
 
-/// Rates are called w, g(yro), o(mega) or r(otation rate), with the axis at the end.
+/// Names of angular rates start like w, gyro, omega or rotation rate and end with the axis.
 bool same_name(const std::string& header, const std::string& expected) {
   const std::string name = plain_name(header);
   if (expected.empty()) return true;
@@ -79,21 +76,19 @@ bool same_name(const std::string& header, const std::string& expected) {
 }
 
 void check_header(const CsvTable& table, int line, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < names.size() && i < table.header.size(); ++i) {
-    if (!same_name(table.header[i], names[i])) {
+  for (std::size_t i = 0; i < names.size() && i < table.header.size(); ++i)
+    if (!same_name(table.header[i], names[i]))
       csv_fail(table,
                line,
-               "column " + std::to_string(i + 1) + " named " + in_quotes(table.header[i]),
-               in_quotes(names[i]) + " (columns " + joined(names) + ")");
-    }
-  }
+               fmt::format("column {} named {}", i + 1, in_quotes(table.header[i])),
+               fmt::format("{} (columns {})", in_quotes(names[i]), joined(names)));
 }
 
 void check_count(const CsvTable& table,
                  const CsvRow& row,
                  const std::vector<std::string>& names,
                  CsvColumns columns,
-                 bool cut) {
+                 bool truncated) {
   const int count = cell_count(row.text, table.separator);
   const int named = static_cast<int>(names.size());
   const int first = table.rows.empty() ? count : table.columns;
@@ -101,12 +96,14 @@ void check_count(const CsvTable& table,
   if (enough && count == first) return;
   csv_fail(table,
            row.line,
-           std::to_string(count) + " columns" + (cut ? " (the file seems cut)" : ""),
-           std::string(columns == CsvColumns::at_least && !enough ? "at least " : "") +
-               std::to_string(enough ? first : named) + " (" + joined(names) + ")");
+           fmt::format("{} columns{}", count, truncated ? " (the file seems truncated)" : ""),
+           fmt::format("{}{} ({})",
+                       columns == CsvColumns::at_least && !enough ? "at least " : "",
+                       enough ? first : named,
+                       joined(names)));
 }
 
-/// A line above the first row, which may name the columns.
+/// A line above the first row that may name the columns.
 struct HeaderCandidate {
   std::string_view text;
   int line = 0;
@@ -117,37 +114,31 @@ void take_header(CsvTable& table,
                  const std::vector<HeaderCandidate>& candidates,
                  const std::vector<std::string>& names) {
   for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
-    auto cells = split(candidate->text, table.separator);
+    auto cells = cells_of(candidate->text, table.separator);
     const bool as_many = static_cast<int>(cells.size()) == table.columns;
-    // A remark may have as many words as there are columns.
+    // A comment may by chance have as many words as there are columns.
     if (candidate->comment && !(as_many && same_name(cells[0], names[0]))) continue;
     table.header = std::move(cells);
-    if (!as_many) {
+    if (!as_many)
       csv_fail(table,
                candidate->line,
-               std::to_string(table.header.size()) + " names of columns",
-               std::to_string(table.columns) + ", as many as the rows have");
-    }
+               fmt::format("{} names of columns", table.header.size()),
+               fmt::format("{} as in the rows", table.columns));
     return check_header(table, candidate->line, names);
   }
 }
 
-/// Decimal places that make nanoseconds of a unit, and how headers call it.
-struct NamedUnit {
-  int decimals;
-  std::vector<std::string_view> names;
-};
-
-const std::vector<NamedUnit>& named_units() {
+/// Returns the decimal places from the header's unit to nanoseconds; nullopt if it names no unit.
+std::optional<int> decimals_of_header(const CsvTable& table) {
+  struct NamedUnit {
+    int decimals;
+    std::vector<std::string_view> names;
+  };
   static const std::vector<NamedUnit> kUnits = {
       {9, {"s", "sec", "secs", "second", "seconds"}},
       {6, {"ms", "msec", "millis", "millisec", "millisecond", "milliseconds"}},
       {3, {"us", "usec", "micros", "microsec", "microsecond", "microseconds"}},
       {0, {"ns", "nsec", "nanos", "nanosec", "nanosecond", "nanoseconds"}}};
-  return kUnits;
-}
-
-std::optional<int> decimals_of_header(const CsvTable& table) {
   if (table.header.empty()) return std::nullopt;
   std::string token;
   for (const char c : lower_case(table.header[0]) + " ") {
@@ -155,9 +146,8 @@ std::optional<int> decimals_of_header(const CsvTable& table) {
       token += c;
       continue;
     }
-    for (const NamedUnit& unit : named_units()) {
+    for (const NamedUnit& unit : kUnits)
       if (std::ranges::find(unit.names, token) != unit.names.end()) return unit.decimals;
-    }
     token.clear();
   }
   return std::nullopt;
@@ -177,10 +167,10 @@ double median_step(const CsvTable& table) {
   return steps[steps.size() / 2];
 }
 
-/// What a camera's or a sensor's rate can be tells thousands of the unit apart.
+/// Returns the same from the values: plausible rates of a camera or sensor distinguish the units.
 int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
   constexpr double kSurelyNanoseconds = 1e16;
-  constexpr double kShortestFrame = 2;  // in thousandths of the unit
+  constexpr double kShortestFrame = 2;  // [unit/1000]
   constexpr double kShortestSample = 0.2;
   if (otherwise == TimeUnit::seconds) return 9;
   if (otherwise == TimeUnit::nanoseconds) return 0;
@@ -201,15 +191,19 @@ void csv_fail(const CsvTable& table,
               int line,
               const std::string& found,
               const std::string& expected) {
-  throw InputError(table.file.string() + ":" + std::to_string(line) + ": found " + found +
-                   ", expected " + expected);
+  throw InputError(
+      fmt::format("{}:{}: found {}, expected {}", table.file.string(), line, found, expected));
 }
 
 CsvTable read_csv(const std::filesystem::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
-  CsvTable table{file, separator, std::make_shared<const std::string>(read_file(file)), {}, {}};
+  CsvTable table{.file = file,
+                 .separator = separator,
+                 .text = std::make_shared<const std::string>(read_file(file)),
+                 .header = {},
+                 .rows = {}};
   TextLines lines(*table.text);
   std::vector<HeaderCandidate> above;
   bool named = false;
@@ -224,22 +218,20 @@ CsvTable read_csv(const std::filesystem::path& file,
         !comment && !named && table.rows.empty() && !parse_decimal(take_cell(rest, separator), 0);
     if (comment || names_columns) {
       named = named || names_columns;
-      if (above.size() == kMostRemarks) above.erase(above.begin());
+      if (above.size() == kMaxComments) above.erase(above.begin());
       above.push_back({line, number, comment});
       continue;
     }
     const CsvRow row{number, line};
     check_count(table, row, names, columns, !lines.ended());
     if (table.rows.empty()) table.columns = cell_count(line, separator);
-    if (table.rows.size() == kMostRows) {
-      csv_fail(table, number, "one more row", fmt::format("at most {}", kMostRows));
-    }
+    if (table.rows.size() == kMaxRows)
+      csv_fail(table, number, "one more row", fmt::format("at most {}", kMaxRows));
     table.rows.push_back(row);
     if (table.rows.size() == 1) take_header(table, above, names);
   }
-  if (table.rows.empty()) {
+  if (table.rows.empty())
     throw InputError(file.string() + ": found no rows, expected " + joined(names));
-  }
   return table;
 }
 
@@ -272,63 +264,61 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
     const std::string_view cell = csv_cell(table, row, 0);
     const auto time = parse_decimal(cell, decimals);
     if (!time) csv_fail(table, row.line, in_quotes(cell), "a time stamp");
-    if (!times.empty() && *time <= times.back()) {
+    if (!times.empty() && *time <= times.back())
       csv_fail(table,
                row.line,
-               "time stamp " + std::string(cell.substr(0, kLongestShown)) +
-                   (*time == times.back() ? ", a repetition of" : ", earlier than") +
-                   " the one before it",
+               fmt::format("time stamp {}, {} the one before it",
+                           cell.substr(0, kLongestShown),
+                           *time == times.back() ? "equal to" : "earlier than"),
                "ascending time stamps");
-    }
     times.push_back(*time);
   }
   return times;
 }
 
-QuotedCsv::QuotedCsv(const std::filesystem::path& file) : file_(file), text_(read_file(file)) {}
-
-QuotedCsv::Row QuotedCsv::next() {
-  Row row{line_, {}};
-  while (true) {
-    row.cells.push_back(cell());
-    const char after = at_end() ? '\n' : text_[at_++];
-    if (after == ',') continue;
-    if (after == '\n') break;
-    throw InputError(fmt::format(
-        "{}:{}: found '{}' after a quoted cell, expected a comma", file_.string(), line_, after));
-  }
-  ++line_;
-  return row;
-}
-
-std::string QuotedCsv::cell() {
-  if (!at_end() && text_[at_] == '"') return quoted_cell();
-  const std::size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
-  std::string plain = text_.substr(at_, end - at_);
-  at_ = end;
-  if (!plain.empty() && plain.back() == '\r') plain.pop_back();
-  return plain;
-}
-
-/// From its first quote to its last; a quote within is written twice.
-std::string QuotedCsv::quoted_cell() {
-  std::string cell;
-  const int first_line = line_;
-  while (true) {
-    const std::size_t quote = text_.find('"', at_ + 1);
-    if (quote == std::string::npos) {
-      throw InputError(
-          fmt::format("{}:{}: found a quote that does not end", file_.string(), first_line));
+void read_quoted_csv(
+    const std::filesystem::path& file,
+    const std::function<void(int line, const std::vector<std::string>& cells)>& visit) {
+  const std::string text = read_file(file);
+  const auto fail = [&](int line, const std::string& found) {
+    throw InputError(fmt::format("{}:{}: found {}", file.string(), line, found));
+  };
+  std::size_t at = 0;
+  int line = 1;
+  const auto quoted_cell = [&] {
+    std::string cell;
+    for (const int first_line = line;;) {
+      const std::size_t quote = text.find('"', at + 1);
+      if (quote == std::string::npos) fail(first_line, "a quote that does not end");
+      const std::string_view part = std::string_view(text).substr(at + 1, quote - at - 1);
+      line += static_cast<int>(std::ranges::count(part, '\n'));
+      cell += part;
+      at = quote + 1;
+      if (at >= text.size() || text[at] != '"') break;
+      cell += '"';  // doubled within a cell
     }
-    const std::string_view part = std::string_view(text_).substr(at_ + 1, quote - at_ - 1);
-    line_ += static_cast<int>(std::ranges::count(part, '\n'));
-    cell += part;
-    at_ = quote + 1;
-    if (at_end() || text_[at_] != '"') break;
-    cell += '"';
+    if (at < text.size() && text[at] == '\r') ++at;
+    return cell;
+  };
+  const auto plain_cell = [&] {
+    const std::size_t end = std::min(text.find_first_of(",\n", at), text.size());
+    std::string cell = text.substr(at, end - at);
+    at = end;
+    if (cell.ends_with('\r')) cell.pop_back();
+    return cell;
+  };
+  while (at < text.size()) {
+    const int first_line = line;
+    std::vector<std::string> cells;
+    for (char after = ','; after == ',';) {
+      cells.push_back(at < text.size() && text[at] == '"' ? quoted_cell() : plain_cell());
+      after = at < text.size() ? text[at++] : '\n';
+      if (after != ',' && after != '\n')
+        fail(line, fmt::format("'{}' after a quoted cell, expected a comma", after));
+    }
+    ++line;
+    visit(first_line, cells);
   }
-  if (!at_end() && text_[at_] == '\r') ++at_;
-  return cell;
 }
 
 std::string csv_quoted(const std::string& text) {

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -20,13 +21,22 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// A sign that from_chars does not know; "+-1" stays wrong.
+/// from_chars does not accept a plus sign. "+-1" stays invalid.
 std::string_view without_plus(std::string_view text) {
   const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   return plus ? text.substr(1) : text;
 }
 
-/// The integer of the first `count` digits (missing ones are zeros), rounded by the next one.
+template <class Number>
+std::optional<Number> parse_whole(std::string_view text) {
+  text = without_plus(text);
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+/// Returns the integer of the first `count` digits, padded with zeros or rounded by the next digit.
 std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int64_t count) {
   if (count < 0) return 0;
   std::string kept = digits.substr(0, static_cast<std::size_t>(count));
@@ -34,7 +44,7 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
   if (count > 40) return std::nullopt;
   kept.append(static_cast<std::size_t>(count) - kept.size(), '0');
   const auto value = kept.empty() ? std::optional<std::int64_t>(0) : parse_integer(kept);
-  if (!value || *value >= INT64_MAX / 2) return std::nullopt;  // differences fit too
+  if (!value || *value >= INT64_MAX / 2) return std::nullopt;  // differences must not overflow
   return *value + (up ? 1 : 0);
 }
 
@@ -60,11 +70,10 @@ std::string read_file(const std::filesystem::path& file, std::size_t most_bytes)
     content.resize(std::min(before + chunk, most_bytes + 1));
     stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
     content.resize(before + static_cast<std::size_t>(stream.gcount()));
-    if (content.size() > most_bytes) {
+    if (content.size() > most_bytes)
       refuse(fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
-    }
   }
-  if (stream.bad()) refuse("an error of the disk", "a file that can be read");
+  if (stream.bad()) refuse("a read error", "a file that can be read");
   return content;
 }
 
@@ -77,10 +86,15 @@ std::string_view trimmed(std::string_view text) {
 
 std::string lower_case(std::string_view text) {
   std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
 }
 
 std::string_view take_word(std::string_view& rest) {
@@ -106,19 +120,12 @@ std::optional<std::string_view> TextLines::next() {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-  text = without_plus(text);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  const auto value = parse_whole<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) {
-  text = without_plus(text);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole ? std::optional(value) : std::nullopt;
+  return parse_whole<std::int64_t>(text);
 }
 
 std::optional<std::pair<int, int>> parse_size(std::string_view text) {

@@ -23,16 +23,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// How soon a stop is heeded.
-constexpr milliseconds kTurn{20};
-/// For a process to end that has closed its output.
-constexpr milliseconds kGrace{500};
+constexpr milliseconds kPollTime{20};  // delay of a stop
+constexpr milliseconds kGrace{500};    // for a process to end after it closed its output
 
 void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-/// What is written into one end comes out of the other; no child inherits either.
+/// A pipe that no child inherits.
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};
@@ -44,14 +42,13 @@ struct Pipe {
   Descriptor reads, writes;
 };
 
-/// Reads and writes of it return at once.
 void make_nonblocking(const Descriptor& descriptor) {
   const int flags = fcntl(descriptor.number(), F_GETFL);
   fcntl(descriptor.number(), F_SETFL, flags | O_NONBLOCK);
 }
 
-/// What posix_spawn wants to know: the three streams, no other descriptor, a group of its own so
-/// that Ctrl-C does not reach it and all that it starts can be killed, signals as a shell has them.
+/// The parameters of posix_spawn: three streams and no other descriptor, its own process group (so
+/// that Ctrl-C does not reach it and its children can be killed), and default signal handlers.
 class SpawnPlan {
  public:
   SpawnPlan(const Pipe& in, const Pipe& out, const Pipe& err) {
@@ -92,7 +89,7 @@ class SpawnPlan {
   posix_spawnattr_t attributes_;
 };
 
-/// write(2) whose reader may have gone: EPIPE, and no signal for the whole program.
+/// Like write(2), but a closed reader gives EPIPE without SIGPIPE for the whole program.
 ssize_t write_quietly(int descriptor, std::string_view bytes) {
   sigset_t broken_pipe, before, pending;
   sigemptyset(&broken_pipe);
@@ -112,17 +109,17 @@ ssize_t write_quietly(int descriptor, std::string_view bytes) {
 
 bool is_try_again() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
-/// How a process ended, which stays to be waited for; nothing where it lives.
+/// Returns how a process ended, without reaping it; empty if it is alive.
 std::string ending_of(pid_t pid) {
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
       info.si_pid == 0)
     return "";
-  // By 128 + N a shell says that what it waited for was killed by signal N.
-  const bool told_by_shell = info.si_code == CLD_EXITED && info.si_status > 128;
-  const int signal = told_by_shell ? info.si_status - 128 : info.si_status;
+  // A shell returns 128 + N if its child was killed by signal N.
+  const bool from_shell = info.si_code == CLD_EXITED && info.si_status > 128;
+  const int signal = from_shell ? info.si_status - 128 : info.si_status;
   const char* name = sigdescr_np(signal);
-  if (info.si_code == CLD_EXITED && !(told_by_shell && name != nullptr))
+  if (info.si_code == CLD_EXITED && !(from_shell && name != nullptr))
     return fmt::format("ended with exit code {}", info.si_status);
   return fmt::format("was killed by signal {} ({})", signal, name == nullptr ? "?" : name);
 }
@@ -146,7 +143,7 @@ ProcessReply ChildProcess::ask(std::string_view question,
   ProcessReply reply;
   const auto ended = [&](Reply how) {
     in_step_ = in_step_ && how == Reply::answered && question.empty();
-    read_said(reply, limits.said_bytes);
+    read_errors(reply, limits.error_bytes);
     reply.reply = how;
     return std::move(reply);
   };
@@ -156,12 +153,12 @@ ProcessReply ChildProcess::ask(std::string_view question,
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (left.count() <= 0) return ended(Reply::late);
     if (!out_.is_open()) return ended(Reply::ended);
-    // poll overlooks negative descriptors: what is closed, or has nothing to be written.
+    // poll ignores negative descriptors, i.e. closed ones and an input with no more to write.
     std::array<pollfd, 3> streams{pollfd{question.empty() ? -1 : in_.number(), POLLOUT, 0},
                                   pollfd{out_.number(), POLLIN, 0},
                                   pollfd{err_.number(), POLLIN, 0}};
-    poll(streams.data(), streams.size(), static_cast<int>(std::min(left, kTurn).count()));
-    if (streams[2].revents != 0) read_said(reply, limits.said_bytes);
+    poll(streams.data(), streams.size(), static_cast<int>(std::min(left, kPollTime).count()));
+    if (streams[2].revents != 0) read_errors(reply, limits.error_bytes);
     if (streams[0].revents != 0 && !write_some(question)) in_.close();
     if (streams[1].revents == 0) continue;
     if (read_answer(reply, limits)) return ended(Reply::answered);
@@ -169,14 +166,14 @@ ProcessReply ChildProcess::ask(std::string_view question,
   }
 }
 
-/// False where nobody will read the rest.
+/// Returns false if the process reads no more.
 bool ChildProcess::write_some(std::string_view& question) {
   const ssize_t written = write_quietly(in_.number(), question);
   if (written > 0) question.remove_prefix(static_cast<std::size_t>(written));
   return written >= 0 || is_try_again();
 }
 
-/// Whether the answer's line has ended. Closes the stream at its end.
+/// Returns whether the answer's line is complete. Closes the stream at its end.
 bool ChildProcess::read_answer(ProcessReply& reply, const ReplyLimits& limits) {
   std::array<char, 65'536> buffer;
   while (reply.answer.size() <= limits.answer_bytes) {
@@ -196,16 +193,16 @@ bool ChildProcess::read_answer(ProcessReply& reply, const ReplyLimits& limits) {
   return false;
 }
 
-/// What is there now: a process that never falls silent must not keep us.
-void ChildProcess::read_said(ProcessReply& reply, std::size_t most_bytes) {
-  constexpr int kMostReads = 64;
+/// Reads the available output, with a limit because a process may write without end.
+void ChildProcess::read_errors(ProcessReply& reply, std::size_t max_bytes) {
+  constexpr int kMaxReads = 64;
   std::array<char, 16'384> buffer;
-  for (int i = 0; i < kMostReads && err_.is_open(); ++i) {
+  for (int i = 0; i < kMaxReads && err_.is_open(); ++i) {
     const ssize_t count = read(err_.number(), buffer.data(), buffer.size());
     if (count < 0 && is_try_again()) return;
     if (count <= 0) return err_.close();
-    const std::size_t room = most_bytes - std::min(most_bytes, reply.said.size());
-    reply.said.append(buffer.data(), std::min(room, static_cast<std::size_t>(count)));
+    const std::size_t room = max_bytes - std::min(max_bytes, reply.error_output.size());
+    reply.error_output.append(buffer.data(), std::min(room, static_cast<std::size_t>(count)));
   }
 }
 
@@ -224,7 +221,7 @@ std::string ChildProcess::end() {
       how = ending_of(pid_);
     }
   }
-  // Not waited for yet, the process keeps its number, and nobody else is killed.
+  // The process is not reaped yet, so its number cannot belong to another one.
   kill(-pid_, SIGKILL);
   while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }

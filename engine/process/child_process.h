@@ -14,7 +14,7 @@
 
 namespace gpo {
 
-/// A file descriptor that is closed at the end.
+/// A file descriptor that closes itself.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -36,59 +36,59 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// How a question to a process ended.
+/// The outcome of a question to a process.
 enum class Reply {
-  answered,  ///< with a line
-  ended,     ///< it closed its standard output first
+  answered,
+  ended,     ///< the process closed its standard output first
   late,      ///< the time limit passed
-  too_long,  ///< the line does not end within its limit
-  stopped    ///< whoever asked does not want to know any more
+  too_long,  ///< the line exceeds its limit
+  stopped    ///< by the caller's stop token
 };
 
 struct ReplyLimits {
   std::chrono::milliseconds time{30'000};
   std::size_t answer_bytes = std::size_t{8} << 20;
-  std::size_t said_bytes = std::size_t{16} << 10;  ///< of standard error; what is beyond is dropped
+  std::size_t error_bytes = std::size_t{16} << 10;  ///< of standard error; the rest is dropped
 };
 
 struct ProcessReply {
   Reply reply = Reply::ended;
-  std::string answer;  ///< without the line end; of `ended`: what came of it
-  std::string said;    ///< on standard error meanwhile
+  std::string answer;        ///< without the line break; incomplete unless answered
+  std::string error_output;  ///< standard error meanwhile
 };
 
-/// A command of the shell, in a process group of its own, which is asked by a line on its standard
-/// input and answers by one on its standard output. Whatever it does, memory is bounded by the
-/// limits. Not to be asked by two threads at once; several in parallel do not disturb each other.
+/// A shell command in its own process group that reads a line on standard input and answers with a
+/// line on standard output. The limits bound the memory in any case. Not thread-safe, but several
+/// processes may run in parallel.
 class ChildProcess {
  public:
-  /// Throws std::system_error where the system refuses.
+  /// Throws std::system_error if the system refuses.
   explicit ChildProcess(const std::string& command);
   /// Kills the group.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// `question` with its line end. After any reply but `answered` it is of no more use.
+  /// `question` includes its line break. After any reply but `answered`, the process is useless.
   ProcessReply ask(std::string_view question,
                    const ReplyLimits& limits,
                    const std::stop_token& stop = {});
 
-  /// Whether it lives and has said nothing that it was not asked for: else the next line that it
-  /// writes might be the answer to an earlier question.
+  /// Returns whether it is alive and has written no unrequested output; its next line might
+  /// otherwise answer an earlier question.
   bool is_in_step() const;
 
-  /// Kills the group; how the process had ended before, for people: "ended with exit code 1", "was
-  /// killed by signal 9 (Killed)", "closed its standard output" where it lives.
+  /// Kills the group. Returns how the process ended before: "ended with exit code 1", "was killed
+  /// by signal 9 (Killed)", or "closed its standard output" if it was alive.
   std::string end();
 
  private:
   bool write_some(std::string_view& question);
   bool read_answer(ProcessReply& reply, const ReplyLimits& limits);
-  void read_said(ProcessReply& reply, std::size_t most_bytes);
+  void read_errors(ProcessReply& reply, std::size_t max_bytes);
 
-  pid_t pid_ = -1;             ///< and the group's; -1: ended, and nothing is left of it
-  Descriptor in_, out_, err_;  ///< its standard streams, our ends
+  pid_t pid_ = -1;             ///< also of the group; -1: ended and reaped
+  Descriptor in_, out_, err_;  ///< our ends of its standard streams
   bool in_step_ = true;
 };
 

@@ -3,7 +3,7 @@
 #include "engine/results/result_method.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/answered.h"
+#include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"

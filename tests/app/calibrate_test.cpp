@@ -86,7 +86,7 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
 }
 
-TEST(CalibrateCommand, SaysWhichBoardItTakes) {
+TEST(CalibrateCommand, ReportsWhichBoardItUses) {
   const fs::path folder = test::fresh_folder();
   fs::create_directories(folder / "in");
   for (int i = 0; i < 2; ++i) {
@@ -99,8 +99,8 @@ TEST(CalibrateCommand, SaysWhichBoardItTakes) {
                    "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome beside = program(calibrate + "--square 0.03 --pattern charuco");
   EXPECT_EQ(beside.err,
-            fmt::format("--square, --pattern: not used, the board is that of {}/in/board.yaml; "
-                        "--board describes another one\n",
+            fmt::format("--square, --pattern: not used, {}/in/board.yaml describes the board; "
+                        "add --board to describe another one\n",
                         folder.string()));
   EXPECT_EQ(program(calibrate).err, "");
   EXPECT_EQ(program(calibrate + "--board 9x6 --square 0.03").err, "");

@@ -121,7 +121,7 @@ TEST(Evaluate, InterruptedSaysHowToGoOn) {
             " & pid=$!; while [ ! -d " + (folder / "windows").string() +
             " ]; do sleep 0.005; done; kill -INT $pid; wait $pid");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped; the same command goes on from there"));
+  EXPECT_THAT(outcome.err, HasSubstr("stopped; run the same command again to continue"));
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
 }
 
@@ -287,7 +287,7 @@ TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
   const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err,
-              HasSubstr("experiment.json: is of another experiment (`lengths` differs)"));
+              HasSubstr("experiment.json: belongs to another experiment (`lengths` differs)"));
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 

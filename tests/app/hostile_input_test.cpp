@@ -3,7 +3,7 @@
 // Broken files on the command line: one line that says what is wrong, exit code 2, nothing
 // written, and less than 1 GiB of memory. What parsers make of every other byte is up to
 // tests/fuzz.
-#include "app/terminal/quiet_libraries.h"
+#include "app/terminal/output.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/images/made_video.h"
 

@@ -60,7 +60,7 @@ TEST(Info, JsonIsNotWrittenOverARecording) {
   test::write_file(recipe, "seed: 1\n");
   const Outcome outcome = program("info --json " + recipe.string() + " " + desk().string());
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("mine.yaml is there already and is no .json file"));
+  EXPECT_THAT(outcome.err, HasSubstr("mine.yaml already exists and is not a .json file"));
   EXPECT_EQ(read_file(recipe), "seed: 1\n");
   EXPECT_THAT(program("info --json").err, HasSubstr("recording"));
 }
@@ -97,13 +97,13 @@ INSTANTIATE_TEST_SUITE_P(
                                    R"({"camera_matrix": {"rows": 3}})",
                                    "the calibration of a camera, expected"},
         std::array<std::string, 3>{
-            "groundtruth.yaml", "T_truth_camera: []\n", "how a truth was measured, expected"},
+            "groundtruth.yaml", "T_truth_camera: []\n", "the mounting of a ground truth, expected"},
         std::array<std::string, 3>{"s.json",
                                    R"({"kind": "gpo-inspector session", "version": 1})",
                                    "a session, expected a recording; `view --session` opens it"},
         std::array<std::string, 3>{
             "results.csv", kResultsHead, "results of `evaluate`, expected a recording"},
-        std::array<std::string, 3>{"a.png", "x", "one picture, expected a recording"}));
+        std::array<std::string, 3>{"a.png", "x", "one image, expected a recording"}));
 
 TEST(Help, IsPointedToWhereTheUsageIsWrong) {
   const Outcome unknown = program("inspect sequences/desk");

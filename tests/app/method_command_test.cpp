@@ -222,7 +222,7 @@ TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
   write_file(session, saved.dump());
   const Outcome outcome = spawned("snapshot --script " + script.string());
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("which a question can show"));
+  EXPECT_THAT(outcome.err, HasSubstr("a question can show at most"));
 }
 
 TEST(MethodCommand, ShardsAreMergedWithoutIt) {

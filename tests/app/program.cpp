@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/app/program.h"
 
-#include "app/main_with_errors.h"
+#include "app/commands/commands.h"
 #include "tests/engine/peak_memory.h"
 
 #include <algorithm>

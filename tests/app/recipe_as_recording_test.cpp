@@ -83,8 +83,7 @@ TEST(Synthesize, InterruptedSaysThatItLeavesNothing) {
   const Outcome outcome = interrupted("synthesize " + recipe.string() + " --output " + output,
                                       output + ".unfinished/mav0/imu0/data.csv");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("gpo-inspector: stopped; nothing is left of " + output + "\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("gpo-inspector: stopped; " + output + " was not written\n"));
   EXPECT_FALSE(fs::exists(output));
   EXPECT_FALSE(fs::exists(output + ".unfinished"));
 }
@@ -95,7 +94,7 @@ TEST(Synthesize, InterruptedOnTheWayToAResultSaysThatItLeavesNothing) {
   const Outcome outcome = interrupted("run " + recipe.string(),
                                       GPO_RECORDINGS_DIR "/interruptedrun-*/*/mav0/imu0/data.csv");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.err, "gpo-inspector: stopped; of what was being synthesized nothing is left\n");
+  EXPECT_EQ(outcome.err, "gpo-inspector: stopped; the synthesis was discarded\n");
   for (const fs::path& folder : recordings_of("interruptedrun"))
     EXPECT_FALSE(fs::exists(folder / "interruptedrun")) << folder;
 }

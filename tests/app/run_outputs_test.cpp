@@ -21,7 +21,7 @@ TEST(RunOutputs, UnwritableOutputIsToldBeforeTheWork) {
   const Outcome outcome = program("run " + desk().string() + " --json README.md/such/r.json");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err,
-              HasSubstr("README.md/such/r.json: cannot be written, no folder can be made in "));
+              HasSubstr("README.md/such/r.json: cannot be written, no folder can be created in "));
   EXPECT_EQ(outcome.out, "");
 }
 

@@ -38,7 +38,7 @@ TEST(Run, ScanWritesALineAStart) {
   const Outcome outcome = program("run " + desk().string() + " --frames 20 --scan-step 13 --scan " +
                                   (folder / "scan.csv").string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("4 starts, 13 frames apart, of windows of 20 frames: "));
+  EXPECT_THAT(outcome.out, HasSubstr("4 starts, 13 frames apart, windows of 20 frames: "));
   EXPECT_THAT(outcome.out, HasSubstr("best start: "));
   std::istringstream csv(read_file(folder / "scan.csv"));
   std::string line;

@@ -92,8 +92,8 @@ TEST(Snapshot, SaysWhatIsNotUsed) {
   const std::string three = "--frames 12 --methods gpo,gpo+no-ransac,gpo_joint ";
   EXPECT_EQ(snapshot("compare", file, three + "--loss huber --tracking anchored").err, "");
   EXPECT_EQ(snapshot("compare", file, three + "--ransac --method ba").err,
-            "--method is not used. The compared methods say it themselves\n"
-            "--ransac is not used. The compared methods say it themselves\n");
+            "--method is not used. The compared methods set it themselves\n"
+            "--ransac is not used. The compared methods set it themselves\n");
 }
 
 TEST(Snapshot, CurvesNeedGroundTruth) {
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"--view image --frame -1", "--frame: -1"},
                       BadInput{"--view image --tolerance 300", "--tolerance"},
                       BadInput{"--view compare --methods gpo,nonsense",
-                               "unknown method 'nonsense', expected all, or some of gpo"},
+                               "unknown method 'nonsense', expected all or some of gpo"},
                       BadInput{"--view curves --methods gpo+nonsense",
                                "unknown setting 'nonsense', expected one of ransac"},
                       BadInput{"--view curves --lengths 1", "--lengths"},

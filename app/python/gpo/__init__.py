@@ -1,6 +1,6 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Monocular initialization on planar scenes: GPO, its baselines, and what they are inspected with.
+"""Monocular initialization on planar scenes: GPO, its baselines, and tools to inspect them.
 
     import gpo
     result = gpo.run("sequences/desk", frames=30)

@@ -71,7 +71,7 @@ class Recording:
     def __len__(self) -> int: ...
     def frame(self, frame: int) -> NDArray[np.uint8]: ...
 
-# (timestamp_ns, ids (n,), pixels (n, 2)), or with R_wc (3, 3)
+# (timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)])
 Frame = Union[Tuple[int, ArrayLike, ArrayLike], Tuple[int, ArrayLike, ArrayLike, Optional[ArrayLike]]]
 
 class Initialization:

@@ -18,26 +18,29 @@ namespace {
 using test::error_of;
 using ::testing::HasSubstr;
 
-TEST(Configuration, IsAMethodWithTheSettingsThatDiffer) {
-  const Configuration plain = parse_configuration("gpo");
-  EXPECT_EQ(plain, (Configuration{.method = "gpo"}));
-  const Configuration both = parse_configuration("gpo+averaging+no-ransac");
-  EXPECT_EQ(apply(both, {}).options.ransac, false);
-  EXPECT_EQ(apply(both, {}).options.rotations, RotationSource::averaging);
-  EXPECT_EQ(key_of(both), "gpo+no-ransac+averaging");
-  EXPECT_EQ(parse_configuration(key_of(both)), both);
-  const Configuration anchored = parse_configuration("ba+anchored+truth");
-  EXPECT_EQ(key_of(anchored), "ba+truth+anchored");
-  EXPECT_EQ(title_of(anchored), "BA with true rotations with anchored tracks");
-  EXPECT_EQ(apply(anchored, {}).tracking, Tracking::anchored);
-  const Configuration consistent = parse_configuration("gpo+consistent+truth+anchored");
-  EXPECT_EQ(key_of(consistent), "gpo+truth+anchored+consistent");
-  EXPECT_EQ(parse_configuration(key_of(consistent)), consistent);
-  EXPECT_EQ(title_of(parse_configuration("gpo+consistent")), "GPO with consistent inliers");
-  EXPECT_EQ(apply(consistent, {}).options.inliers, Inliers::consistent);
+std::string refusal_of(const std::string& text) {
+  return error_of([&] { parse_configurations(text); });
 }
 
-TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
+TEST(Configuration, SortsTheChangesInItsKey) {
+  EXPECT_EQ(parse_configuration("gpo"), (Configuration{.method = "gpo"}));
+  for (const auto& [text, key] :
+       {std::pair("gpo+averaging+no-ransac", "gpo+no-ransac+averaging"),
+        std::pair("ba+anchored+truth", "ba+truth+anchored"),
+        std::pair("gpo+consistent+truth+anchored", "gpo+truth+anchored+consistent")}) {
+    const Configuration configuration = parse_configuration(text);
+    EXPECT_EQ(key_of(configuration), key);
+    EXPECT_EQ(parse_configuration(key), configuration);
+  }
+  const Settings both = apply(parse_configuration("gpo+averaging+no-ransac"), {});
+  EXPECT_EQ(both.options.ransac, false);
+  EXPECT_EQ(both.options.rotations, RotationSource::averaging);
+  const Settings consistent = apply(parse_configuration("gpo+consistent+anchored"), {});
+  EXPECT_EQ(consistent.tracking, Tracking::anchored);
+  EXPECT_EQ(consistent.options.inliers, Inliers::consistent);
+}
+
+TEST(Configuration, ChangesOptionsThatTheMethodReads) {
   const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
   const Settings settings = apply(squared, {});
   EXPECT_EQ(settings.options.method_options.loss, Loss::squared);
@@ -45,21 +48,19 @@ TEST(Configuration, NamesWhatAMethodReadsOfItsOptions) {
   EXPECT_TRUE(settings.options.method_options.time_offset);
   EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
   EXPECT_EQ(configuration_of(settings), squared);
-  EXPECT_EQ(title_of(parse_configuration("gpo+ceres")), "GPO by Ceres");
-  EXPECT_THAT(error_of([] { parse_configuration("ba+huber"); }),
-              HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
+  EXPECT_THAT(refusal_of("ba+huber"), HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
 }
 
-TEST(Configuration, NamesGravityWhereAMethodTakesIt) {
+TEST(Configuration, ChangesGravityIfTheMethodSupportsIt) {
   const Configuration joint = parse_configuration("gpo_joint+joint-gravity");
   EXPECT_EQ(apply(joint, {}).options.gravity, Gravity::joint);
   EXPECT_EQ(configuration_of(apply(joint, {})), joint);
   EXPECT_EQ(apply(parse_configuration("ba+no-gravity"), {}).options.gravity, Gravity::off);
-  EXPECT_THAT(error_of([] { parse_configuration("ba+joint-gravity"); }),
+  EXPECT_THAT(refusal_of("ba+joint-gravity"),
               HasSubstr("'ba+joint-gravity': ba does not take 'joint' for 'gravity'"));
 }
 
-TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
+TEST(Configuration, OfSettingsIsTheShortest) {
   const auto shortest = [](const char* text) {
     return key_of(configuration_of(apply(parse_configuration(text), {})));
   };
@@ -73,7 +74,7 @@ TEST(Configuration, OfSettingsIsTheShortestThatComesToThem) {
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
 }
 
-TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
+TEST(Configuration, OfSettingsIsRelativeToOthers) {
   Settings from;
   from.tracking = Tracking::anchored;
   from.options.ransac = false;
@@ -83,18 +84,19 @@ TEST(Configuration, OfSettingsIsWhatLeadsToThemFromOthers) {
   }
 }
 
-TEST(Configuration, LeavesWhatItDoesNotNameAsItIs) {
-  Settings anchored;
-  anchored.tracking = Tracking::anchored;
-  anchored.options.method_options.loss = Loss::huber;
-  const Settings applied = apply(parse_configuration("gpo_joint+averaging"), anchored);
-  EXPECT_EQ(applied.tracking, Tracking::anchored);
-  EXPECT_EQ(applied.options.method_options.loss, Loss::huber);
-  EXPECT_EQ(apply(parse_configuration("gpo+frame-to-frame"), anchored).tracking,
+TEST(Configuration, KeepsSettingsThatItDoesNotName) {
+  Settings base{.start = 3, .frames = 7, .tracking = Tracking::anchored, .options = {.seed = 9}};
+  base.options.method_options.loss = Loss::huber;
+  Settings expected = base;
+  expected.options.method = "gpo";
+  expected.options.ransac = false;
+  expected.options.rotations = RotationSource::truth;
+  EXPECT_EQ(apply(parse_configuration("gpo+no-ransac+truth"), base), expected);
+  EXPECT_EQ(apply(parse_configuration("gpo+frame-to-frame"), base).tracking,
             Tracking::frame_to_frame);
 }
 
-TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettings) {
+TEST(Configuration, BaseOfAListHasDefaultsForNamedSettingsOnly) {
   Settings settings;
   settings.tracking = Tracking::frame_to_frame;
   settings.options.ransac = false;
@@ -105,15 +107,7 @@ TEST(Configuration, AListDiffersInWhatItNamesFromTheDefaultsAndElseFromTheSettin
   EXPECT_EQ(key_of(configuration_of(apply(list[2], base))), "pba+frame-to-frame");
 }
 
-TEST(Configuration, ChangesOnlyItsOwnSettings) {
-  const Settings base{.start = 3, .frames = 7, .options = {.method = "gpo", .seed = 9}};
-  Settings expected = base;
-  expected.options.ransac = false;
-  expected.options.rotations = RotationSource::truth;
-  EXPECT_EQ(apply(parse_configuration("gpo+no-ransac+truth"), base), expected);
-}
-
-TEST(Configuration, AllIsEveryMethodAndTheAblations) {
+TEST(Configuration, AllStandsForEveryMethodAndTheAblations) {
   std::set<std::string> keys;
   for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
   for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
@@ -123,19 +117,25 @@ TEST(Configuration, AllIsEveryMethodAndTheAblations) {
                                "gpo+five-point",
                                "gpo+direct",
                                "gpo+truth",
-                               "ba+ransac"}) {
+                               "ba+ransac"})
     EXPECT_TRUE(keys.contains(ablation)) << ablation;
-  }
 }
 
-TEST(Configuration, IsInAListOnce) {
+TEST(Configuration, AppearsInAListOnce) {
   EXPECT_EQ(parse_configurations("gpo,gpo+averaging,gpo+ransac").size(), 2U);
   EXPECT_EQ(parse_configurations("gpo,all"), parse_configurations("all"));
 }
 
-TEST(Configuration, HasATitleAndAColorOfItsOwn) {
-  EXPECT_EQ(title_of(parse_configuration("gpo+no-ransac")), "GPO without RANSAC");
-  EXPECT_EQ(title_of(parse_configuration("gpo+averaging")), "GPO with averaged rotations");
+TEST(Configuration, HasItsOwnTitleAndColor) {
+  for (const auto& [key, title] :
+       {std::pair("gpo+no-ransac", "GPO without RANSAC"),
+        std::pair("gpo+averaging", "GPO with averaged rotations"),
+        std::pair("gpo+consistent", "GPO with consistent inliers"),
+        std::pair("gpo+ceres", "GPO by Ceres"),
+        std::pair("ba+truth+anchored", "BA with true rotations with anchored tracks")})
+    EXPECT_EQ(title_of(parse_configuration(key)), title);
+  for (const char* source : ChoiceKeys<RotationSource>::keys)
+    EXPECT_FALSE(title_of(parse_configuration(std::string("gpo+") + source)).empty());
   std::set<std::string> titles;
   std::set<std::uint32_t> colors;
   const auto all = parse_configurations("all");
@@ -147,38 +147,30 @@ TEST(Configuration, HasATitleAndAColorOfItsOwn) {
   EXPECT_EQ(colors.size(), all.size());
 }
 
-TEST(Configuration, APresetIsAllThatItDecides) {
+TEST(Configuration, PresetSetsAllThatItDecides) {
   const Settings paper = apply(parse_configuration("gpo+paper"), {});
   EXPECT_EQ(preset_of(with_setting(
                 with_setting(with_setting(paper, "loss", "squared"), "shutter", "global"),
                 "planes",
                 "one")),
             Preset::paper)
-      << "but for what gpo does not read";
+      << "except for settings that gpo does not read";
   Settings frame_to_frame;
   frame_to_frame.tracking = Tracking::frame_to_frame;
   const Settings best = apply(parse_configuration("gpo_joint+best"), frame_to_frame);
   EXPECT_EQ(best.tracking, Tracking::anchored);
-  EXPECT_THAT(error_of([] { parse_configuration("gpo+paper+anchored"); }), HasSubstr("twice"));
+  EXPECT_THAT(refusal_of("gpo+paper+anchored"), HasSubstr("twice"));
 }
 
-TEST(Configuration, EveryRotationSourceHasATitle) {
-  for (const char* source : ChoiceKeys<RotationSource>::keys) {
-    EXPECT_FALSE(title_of(parse_configuration(std::string("gpo+") + source)).empty());
-  }
-}
-
-TEST(Configuration, NamesTheOptionAndWhatIsKnown) {
-  const auto error = [](const std::string& text) {
-    return error_of([&] { parse_configurations(text); });
-  };
-  EXPECT_THAT(error("gpo,gpoo"), HasSubstr("methods: unknown method 'gpoo', expected all, or"));
-  EXPECT_THAT(error(""), HasSubstr("methods: unknown method ''"));
-  EXPECT_THAT(error("gpo+gyr"),
-              HasSubstr("'gpo+gyr': unknown setting 'gyr', expected one of ransac"));
-  EXPECT_THAT(error("gpo+truth+gyro"), HasSubstr("sets one thing twice"));
-  EXPECT_THAT(error("gpo+anchored+anchored"), HasSubstr("sets one thing twice"));
-  EXPECT_THAT(error("gpo+per-frame+consistent"), HasSubstr("sets one thing twice"));
+TEST(Configuration, RejectsUnknownAndRepeatedWords) {
+  for (const auto& [text, message] :
+       {std::pair("gpo,gpoo", "methods: unknown method 'gpoo', expected all or"),
+        std::pair("", "methods: unknown method ''"),
+        std::pair("gpo+gyr", "'gpo+gyr': unknown setting 'gyr', expected one of ransac"),
+        std::pair("gpo+truth+gyro", "sets 'rotations' twice"),
+        std::pair("gpo+anchored+anchored", "sets 'tracking' twice"),
+        std::pair("gpo+per-frame+consistent", "sets 'inliers' twice")})
+    EXPECT_THAT(refusal_of(text), HasSubstr(message));
 }
 
 }  // namespace

@@ -24,10 +24,10 @@ std::shared_ptr<const Recording> recording(const std::string& name, int frames) 
 }
 
 ExperimentRequest request(const std::string& lengths, const std::string& starts) {
-  return {parse_configurations("gpo,gpo+no-ransac"),
-          parse_ranges(lengths, "lengths"),
-          parse_ranges(starts, "starts"),
-          5};
+  return {.configurations = parse_configurations("gpo,gpo+no-ransac"),
+          .lengths = parse_ranges(lengths, "lengths"),
+          .starts = parse_ranges(starts, "starts"),
+          .seed = 5};
 }
 
 TEST(Experiment, AllLengthsShareTheStarts) {
@@ -42,7 +42,7 @@ TEST(Experiment, AllLengthsShareTheStarts) {
   EXPECT_TRUE(notes_of(planned).empty());
 }
 
-TEST(Experiment, AShortRecordingLacksTheLongWindows) {
+TEST(Experiment, ShortRecordingHasNoLongWindows) {
   const std::vector recordings{recording("short", 12)};
   const Experiment planned = plan_experiment(recordings, request("5:20:5", "0:end:2"));
   EXPECT_THAT(planned.recordings[0].starts, ElementsAre(0, 2));  // of 10 frames
@@ -54,7 +54,7 @@ TEST(Experiment, AShortRecordingLacksTheLongWindows) {
   EXPECT_THAT(tasks_of(late)[1].lengths, ElementsAre(5));
 }
 
-TEST(Experiment, RefusesWhatCannotBePlanned) {
+TEST(Experiment, RejectsEqualNamesAndWindowsThatDoNotFit) {
   const std::vector same{recording("a", 9), recording("b", 9), recording("a", 8)};
   EXPECT_THAT(error_of([&] { plan_experiment(same, request("5", "0")); }),
               HasSubstr("two recordings have the name 'a'"));
@@ -65,7 +65,7 @@ TEST(Experiment, RefusesWhatCannotBePlanned) {
               HasSubstr("lengths: a window has at least 2 frames"));
 }
 
-TEST(Experiment, ComesBackFromJson) {
+TEST(Experiment, SurvivesJson) {
   const std::vector recordings{recording("a", 90), recording("b", 65)};
   const Experiment planned = plan_experiment(recordings, request("5:60:5", "0:end:10"));
   EXPECT_EQ(experiment_from_json(to_json(planned)), planned);
@@ -76,7 +76,7 @@ std::vector<std::string> plan_differences(const Experiment& a, const Experiment&
   return differences(a, b).plan;
 }
 
-TEST(Experiment, IsTheSameWhereverItsRecordingsLie) {
+TEST(Experiment, IgnoresThePathsOfRecordings) {
   const Experiment here =
       plan_experiment(std::vector{recording("a", 90)}, request("5:60:5", "0:end:10"));
   Experiment there = here;
@@ -84,13 +84,13 @@ TEST(Experiment, IsTheSameWhereverItsRecordingsLie) {
   EXPECT_TRUE(plan_differences(here, there).empty());
 }
 
-TEST(Experiment, NamesWhatDiffers) {
+TEST(Experiment, NamesDifferences) {
   const std::vector recordings{recording("a", 90), recording("b", 70)};
   const auto planned = [&](const char* lengths, const char* starts) {
     return plan_experiment(recordings, request(lengths, starts));
   };
   const Experiment base = planned("5:60:5", "0:end:10");
-  // Other lengths, and so another last start.
+  // Other lengths imply another last start.
   EXPECT_THAT(plan_differences(base, planned("5:50:5", "0:end:10")), ElementsAre("lengths"));
   EXPECT_THAT(plan_differences(base, planned("5:60:5", "0:end:5")), ElementsAre("starts"));
   Experiment other = base;
@@ -103,19 +103,56 @@ TEST(Experiment, NamesWhatDiffers) {
   EXPECT_THAT(plan_differences(base, other), ElementsAre("recordings"));
   other = base;
   other.recordings[1].content["fx"] = "601";
-  other.recordings[1].starts = {0};  // may follow from the other content
+  other.recordings[1].starts = {0};  // may follow from the content
   other.program = "0.0.9";
   EXPECT_TRUE(differences(base, other).plan.empty());
   EXPECT_THAT(differences(base, other).content, ElementsAre("version of the program", "fx of b"));
 }
 
-TEST(Experiment, TimesTheWindowsOfThirtyFramesOrTheNextBelow) {
+TEST(Experiment, TimesWindowsOfThirtyFramesOrTheNextShorterLength) {
   EXPECT_EQ(timed_length({10, 30, 60}), 30);
   EXPECT_EQ(timed_length({10, 20, 60}), 20);
   EXPECT_EQ(timed_length({40, 60}), 40);
 }
 
-TEST(Shards, AreEvenToAWindow) {
+std::vector<int> numbers(const std::string& text, int end = 47) {
+  return numbers_in(parse_ranges(text, "starts"), end);
+}
+
+TEST(Ranges, IncludeBothEnds) {
+  EXPECT_THAT(numbers("5:20:5"), ElementsAre(5, 10, 15, 20));
+  EXPECT_THAT(numbers("5:19:5"), ElementsAre(5, 10, 15));
+  EXPECT_THAT(numbers("3:5"), ElementsAre(3, 4, 5));
+  EXPECT_THAT(numbers("7"), ElementsAre(7));
+  EXPECT_THAT(numbers("30,10:20:10,20"), ElementsAre(10, 20, 30));
+}
+
+TEST(Ranges, EndDependsOnTheRecording) {
+  EXPECT_THAT(numbers("0:end:20"), ElementsAre(0, 20, 40));
+  EXPECT_THAT(numbers("0:end:20", 40), ElementsAre(0, 20, 40));
+  EXPECT_THAT(numbers("5:end:5", 4), ElementsAre());
+}
+
+TEST(Ranges, RejectInvalidTextWithTheOption) {
+  for (const char* text : {"a",
+                           "5:x:5",
+                           "5:60:0",
+                           "5:60:-5",
+                           "60:5:5",
+                           "1:2:3:4",
+                           "5:",
+                           "-1:3",
+                           "1.5",
+                           "5,,6",
+                           "end",
+                           "1:9999999"}) {
+    const std::string error = error_of([&] { parse_ranges(text, "lengths"); });
+    EXPECT_THAT(error, HasSubstr(std::string("lengths: '") + text + "'")) << text;
+  }
+  EXPECT_THAT(error_of([] { parse_ranges("", "lengths"); }), HasSubstr("lengths"));
+}
+
+TEST(Shards, DifferByAtMostOneWindow) {
   const std::vector recordings{recording("a", 60)};
   const Experiment one_start = plan_experiment(recordings, request("5:60:5", "0"));
   for (const int count : {1, 5, 8, 12, 20}) {
@@ -133,7 +170,7 @@ TEST(Shards, AreEvenToAWindow) {
   EXPECT_THAT(tasks_of(one_start, {2, 8})[0].lengths, ElementsAre(15, 20));
 }
 
-TEST(Shards, KeepTheWindowsOfAStartTogether) {
+TEST(Shards, KeepWindowsOfAStartTogether) {
   const std::vector recordings{recording("a", 90)};
   const Experiment planned = plan_experiment(recordings, request("5:60:5", "0:end:10"));
   for (int k = 1; k <= 4; ++k) {
@@ -144,7 +181,7 @@ TEST(Shards, KeepTheWindowsOfAStartTogether) {
   }
 }
 
-TEST(Shards, AreDisjointAndTogetherAll) {
+TEST(Shards, AreDisjointAndComplete) {
   const std::vector recordings{recording("a", 90), recording("b", 85)};
   const Experiment planned = plan_experiment(recordings, request("5:60:5", "0:end:10"));
   using Window = std::tuple<std::size_t, int, int>;
@@ -158,7 +195,7 @@ TEST(Shards, AreDisjointAndTogetherAll) {
   EXPECT_EQ(seen, all);
 }
 
-TEST(Shards, AreWrittenKOfN) {
+TEST(Shards, AreParsedFromKOfN) {
   EXPECT_EQ(parse_shard("2/8").index, 2);
   EXPECT_EQ(parse_shard("2/8").count, 8);
   for (const char* text : {"",

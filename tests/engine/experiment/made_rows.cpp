@@ -35,9 +35,8 @@ std::string csv_without_times(std::vector<Row> rows) {
                        &row.rotations_ms,
                        &row.initialize_ms,
                        &row.optimize_ms,
-                       &row.total_ms}) {
+                       &row.total_ms})
       time->reset();
-    }
     row.jobs.reset();
     row.processor.clear();
   }

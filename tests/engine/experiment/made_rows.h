@@ -10,13 +10,13 @@
 
 namespace gpo::test {
 
-/// A solved window with the errors given, or where there are none a failed one.
+/// Returns a solved window with this error, or a failed one for nullopt.
 Row made_row(const std::string& configuration,
              int start,
              int frames,
              std::optional<double> pne_deg);
 
-/// Without what differs from run to run.
+/// Returns results.csv without running times, which differ from run to run.
 std::string csv_without_times(std::vector<Row> rows);
 
 }  // namespace gpo::test

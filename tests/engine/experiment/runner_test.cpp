@@ -23,31 +23,25 @@ using ::testing::HasSubstr;
 /// Six windows of the bundled recording, which run by themselves in a second.
 class RunnerTest : public ::testing::Test {
  protected:
-  RunnerTest() : experiment_(plan("5,7")) {}
+  using Recordings = std::vector<std::shared_ptr<const Recording>>;
 
-  Experiment plan(const std::string& lengths) const {
-    return plan_experiment(recordings_,
-                           {parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
-                            parse_ranges(lengths, "lengths"),
-                            parse_ranges("0:20:10", "starts"),
-                            3});
+  static Experiment plan(const Recordings& recordings, const std::string& lengths = "5,7") {
+    return plan_experiment(
+        recordings,
+        {.configurations = parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
+         .lengths = parse_ranges(lengths, "lengths"),
+         .starts = parse_ranges("0:20:10", "starts"),
+         .seed = 3});
   }
-  static Experiment plan_of(const std::vector<std::shared_ptr<const Recording>>& recordings) {
-    return plan_experiment(recordings,
-                           {parse_configurations("gpo,gpo+no-ransac,gpo+averaging"),
-                            parse_ranges("5,7", "lengths"),
-                            parse_ranges("0:20:10", "starts"),
-                            3});
-  }
-  std::shared_ptr<const Recording> with_focal_length(double fx) const {
+  Recordings with_focal_length(double fx) const {
     Recording other = *recordings_[0];
     other.camera.fx = fx;
-    return std::make_shared<const Recording>(other);
+    return {std::make_shared<const Recording>(other)};
   }
   bool run(const fs::path& folder, const RunOptions& options = {}) const {
     return run_experiment(experiment_, recordings_, folder, options);
   }
-  /// Stops after so many windows.
+  /// Stops after a number of windows.
   void interrupt(const fs::path& folder, int windows) const {
     std::stop_source source;
     RunOptions options;
@@ -56,6 +50,15 @@ class RunnerTest : public ::testing::Test {
       if (progress.done == windows) source.request_stop();
     };
     EXPECT_FALSE(run(folder, options));
+  }
+  /// Runs an experiment. Returns the number of windows that were done before.
+  int resume(const Experiment& experiment, const Recordings& recordings, RunOptions options) const {
+    int first_done = -1;
+    options.progress = [&](const ExperimentProgress& progress) {
+      if (first_done < 0) first_done = progress.done;
+    };
+    EXPECT_TRUE(run_experiment(experiment, recordings, a_, options));
+    return first_done;
   }
   std::vector<Row> rows(const fs::path& folder) const {
     return collect_rows(experiment_, std::span(&folder, 1));
@@ -67,32 +70,29 @@ class RunnerTest : public ::testing::Test {
   const TestFolder folder_;
   const fs::path a_ = folder_.path() / "a";
   const fs::path b_ = folder_.path() / "b";
-  const std::vector<std::shared_ptr<const Recording>> recordings_{
-      open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk")};
-  const Experiment experiment_;
+  const Recordings recordings_{open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk")};
+  const Experiment experiment_ = plan(recordings_);
 };
 
-TEST_F(RunnerTest, RowsAreWhatRunGivesInTheOrderOfThePlan) {
+TEST_F(RunnerTest, RowsEqualSingleRunsInTheOrderOfThePlan) {
   ASSERT_TRUE(run(a_));
   std::vector<Row> expected;
-  for (const int start : {0, 10, 20}) {
-    for (const int frames : {5, 7}) {
+  for (const int start : {0, 10, 20})
+    for (const int frames : {5, 7})
       for (const Configuration& c : experiment_.configurations) {
         const Settings window{.start = start, .frames = frames, .options = {.seed = 3}};
         expected.push_back(make_row(*Inspector(recordings_[0]).inspect(apply(c, window))));
       }
-    }
-  }
   EXPECT_EQ(csv_without_times(rows(a_)), csv_without_times(expected));
 }
 
-TEST_F(RunnerTest, JobsDoNotMatter) {
+TEST_F(RunnerTest, ResultsDoNotDependOnJobs) {
   ASSERT_TRUE(run(a_, {.jobs = 1}));
   ASSERT_TRUE(run(b_, {.jobs = 3}));
   EXPECT_EQ(csv_without_times(rows(a_)), csv_without_times(rows(b_)));
 }
 
-TEST_F(RunnerTest, FinishedWindowsAreNotDoneAgain) {
+TEST_F(RunnerTest, FinishedWindowsAreNotRecomputed) {
   interrupt(a_, 2);
   EXPECT_EQ(windows_in(a_), 2);
   for (const auto& file : fs::directory_iterator(a_ / "windows")) {
@@ -101,20 +101,14 @@ TEST_F(RunnerTest, FinishedWindowsAreNotDoneAgain) {
     for (auto& row : window["rows"]) row["track_ms"] = 12345.0;
     folder_.write(name, window.dump());
   }
-  int first_done = -1;
-  RunOptions options;
-  options.progress = [&](const ExperimentProgress& progress) {
-    if (first_done < 0) first_done = progress.done;
-  };
-  ASSERT_TRUE(run(a_, options));
-  EXPECT_EQ(first_done, 2);
+  EXPECT_EQ(resume(experiment_, recordings_, {}), 2);
   const std::vector<Row> resumed = rows(a_);
   EXPECT_EQ(std::ranges::count(resumed, 12345.0, [](const Row& r) { return *r.track_ms; }), 6);
   ASSERT_TRUE(run(b_));
   EXPECT_EQ(csv_without_times(resumed), csv_without_times(rows(b_)));
 }
 
-TEST_F(RunnerTest, TornAndForeignFilesAreDoneAgain) {
+TEST_F(RunnerTest, TruncatedAndForeignFilesAreRecomputed) {
   ASSERT_TRUE(run(a_));
   const std::string expected = csv_without_times(rows(a_));
   folder_.cut("a/windows/desk-10-5.json", 0.5);
@@ -126,12 +120,12 @@ TEST_F(RunnerTest, TornAndForeignFilesAreDoneAgain) {
   EXPECT_EQ(csv_without_times(rows(a_)), expected);
 }
 
-TEST_F(RunnerTest, AnotherExperimentIsRefused) {
+TEST_F(RunnerTest, RejectsAnotherExperiment) {
   interrupt(a_, 1);
   EXPECT_THAT(
-      error_of([&] { run_experiment(plan("5,8"), recordings_, a_, {}); }),
+      error_of([&] { run_experiment(plan(recordings_, "5,8"), recordings_, a_, {}); }),
       HasSubstr(
-          "experiment.json: is of another experiment (`lengths` differs), expected the same"));
+          "experiment.json: belongs to another experiment (`lengths` differs); choose another"));
   EXPECT_THAT(error_of([&] {
                 Experiment other = experiment_;
                 other.configurations.pop_back();
@@ -145,52 +139,41 @@ TEST_F(RunnerTest, AnotherExperimentIsRefused) {
   EXPECT_THAT(error_of([&] { run(a_); }), HasSubstr("is not the definition of an experiment"));
 }
 
-TEST_F(RunnerTest, TheSameRecordingByAnotherPathGoesOn) {
+TEST_F(RunnerTest, ResumesUnderAnotherPathOfTheRecording) {
   interrupt(a_, 2);
   Experiment moved = experiment_;
   moved.recordings[0].path = "/another/machine/./desk/";
-  int first_done = -1;
-  RunOptions options;
-  options.progress = [&](const ExperimentProgress& progress) {
-    if (first_done < 0) first_done = progress.done;
-  };
-  ASSERT_TRUE(run_experiment(moved, recordings_, a_, options));
-  EXPECT_EQ(first_done, 2);
+  EXPECT_EQ(resume(moved, recordings_, {}), 2);
 }
 
-TEST_F(RunnerTest, WindowsOfAnotherCalibrationAreDoneAnew) {
+TEST_F(RunnerTest, WindowsOfAnotherCalibrationAreRecomputed) {
   ASSERT_TRUE(run(a_));
-  const std::vector changed{with_focal_length(600)};
-  const Experiment other = plan_of(changed);
+  const Recordings changed = with_focal_length(600);
+  const Experiment other = plan(changed);
   std::vector<std::string> notes;
-  int first_done = -1;
   RunOptions options;
   options.note = [&](const std::string& note) { notes.push_back(note); };
-  options.progress = [&](const ExperimentProgress& progress) {
-    if (first_done < 0) first_done = progress.done;
-  };
-  ASSERT_TRUE(run_experiment(other, changed, a_, options));
-  EXPECT_EQ(first_done, 0);
+  EXPECT_EQ(resume(other, changed, options), 0);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_THAT(notes[0], HasSubstr("`fx of desk` differs; the windows concerned are computed anew"));
+  EXPECT_THAT(notes[0], HasSubstr("`fx of desk` differs from the earlier run; the affected"));
   ASSERT_TRUE(run_experiment(other, changed, b_, {}));
   EXPECT_EQ(csv_without_times(collect_rows(other, std::span(&a_, 1))),
             csv_without_times(collect_rows(other, std::span(&b_, 1))));
   EXPECT_EQ(read_experiment(a_), other);
 }
 
-TEST_F(RunnerTest, MergeRefusesWindowsOfAnotherCalibrationOrProgram) {
-  const std::vector changed{with_focal_length(600)};
+TEST_F(RunnerTest, MergeRejectsWindowsOfAnotherCalibrationOrProgram) {
+  const Recordings changed = with_focal_length(600);
   ASSERT_TRUE(run(a_, {.shard = {1, 2}}));
-  ASSERT_TRUE(run_experiment(plan_of(changed), changed, b_, {.shard = {2, 2}}));
+  ASSERT_TRUE(run_experiment(plan(changed), changed, b_, {.shard = {2, 2}}));
   const fs::path merged = folder_.path() / "merged";
   const std::vector folders{a_, b_};
   EXPECT_THAT(error_of([&] { merge_experiments(folders, merged); }),
               HasSubstr("different experiments (`fx of desk` differs)"));
-  // Two shards in one folder: the second one takes it over.
-  ASSERT_TRUE(run_experiment(plan_of(changed), changed, a_, {.shard = {2, 2}}));
+  // Two shards in one folder: the second one replaces the definition.
+  ASSERT_TRUE(run_experiment(plan(changed), changed, a_, {.shard = {2, 2}}));
   EXPECT_THAT(error_of([&] { merge_experiments(std::span(&a_, 1), merged); }),
-              HasSubstr("desk-0-5.json: is of another experiment than experiment.json (`fx of "
+              HasSubstr("desk-0-5.json: belongs to another experiment than experiment.json (`fx of "
                         "desk` differs)"));
   EXPECT_FALSE(fs::exists(merged));
   const std::string name = "b/windows/desk-20-7.json";
@@ -198,11 +181,11 @@ TEST_F(RunnerTest, MergeRefusesWindowsOfAnotherCalibrationOrProgram) {
   window["program"] = "0.0.1";
   folder_.write(name, window.dump());
   const ExperimentTask task{0, 20, {7}};
-  EXPECT_EQ(load_window(b_, plan_of(changed), task, 7).differs,
+  EXPECT_EQ(load_window(b_, plan(changed), task, 7).differs,
             std::vector<std::string>{"version of the program"});
 }
 
-TEST_F(RunnerTest, AFolderOfOtherThingsIsRefused) {
+TEST_F(RunnerTest, RejectsFoldersWithOtherFiles) {
   folder_.write("a/mine.txt", std::string("keep"));
   EXPECT_THAT(error_of([&] { run(a_); }),
               HasSubstr("found something there already, expected no folder or an empty one, or one "
@@ -210,7 +193,7 @@ TEST_F(RunnerTest, AFolderOfOtherThingsIsRefused) {
   EXPECT_FALSE(fs::exists(a_ / "experiment.json"));
 }
 
-TEST_F(RunnerTest, WindowsWhoseTimesAreToldComeLastAndSayTheirJobs) {
+TEST_F(RunnerTest, TimedWindowsComeLastAndRecordTheirJobs) {
   std::vector<std::string> timed_too_early;  // 7 frames are nearest to 30
   RunOptions options{.jobs = 2, .timing_jobs = 1};
   options.progress = [&](const ExperimentProgress& progress) {
@@ -227,12 +210,12 @@ TEST_F(RunnerTest, WindowsWhoseTimesAreToldComeLastAndSayTheirJobs) {
   }
 }
 
-TEST_F(RunnerTest, ImagesOfWhatIsDoneAreLetGo) {
+TEST_F(RunnerTest, FreesImagesOfFinishedRecordings) {
   ASSERT_TRUE(run(a_, {.jobs = 2}));
   EXPECT_EQ(recordings_[0]->images->bytes(), 0U);
 }
 
-TEST_F(RunnerTest, ShardsMergeToWhatOneRunMakes) {
+TEST_F(RunnerTest, MergedShardsEqualASingleRun) {
   ASSERT_TRUE(run(a_));
   const fs::path c = folder_.path() / "c";
   const fs::path d = folder_.path() / "d";
@@ -248,13 +231,13 @@ TEST_F(RunnerTest, ShardsMergeToWhatOneRunMakes) {
   EXPECT_EQ(folder_.read("d/windows/desk-10-5.json"), folder_.read("c/windows/desk-10-5.json"));
 }
 
-TEST_F(RunnerTest, MergeNamesWhatIsMissingAndRefusesDifferentExperiments) {
+TEST_F(RunnerTest, MergeNamesMissingWindowsAndRejectsDifferentExperiments) {
   ASSERT_TRUE(run(a_, {.shard = {2, 3}}));
   const fs::path merged = folder_.path() / "merged";
   EXPECT_THAT(error_of([&] { merge_experiments(std::span(&a_, 1), merged); }),
               HasSubstr("4 of 6 windows are missing (desk from frame 0, desk from frame 20)"));
   EXPECT_FALSE(fs::exists(merged));
-  begin_experiment(b_, plan("5,8"));
+  begin_experiment(b_, plan(recordings_, "5,8"));
   const std::vector folders{a_, b_};
   EXPECT_THAT(error_of([&] { merge_experiments(folders, merged); }),
               HasSubstr("different experiments (`lengths` differs)"));
@@ -262,12 +245,15 @@ TEST_F(RunnerTest, MergeNamesWhatIsMissingAndRefusesDifferentExperiments) {
   EXPECT_THAT(error_of([&] { merge_experiments(nowhere, merged); }), HasSubstr("nowhere"));
 }
 
-TEST_F(RunnerTest, WhatARecordingLacksIsAFailedRowWithTheReason) {
+TEST_F(RunnerTest, MissingSensorGivesAFailedRowWithTheReason) {
   Recording bare = *recordings_[0];
   bare.gyroscope.reset();
   const std::vector recordings{std::make_shared<const Recording>(bare)};
-  const Experiment experiment = plan_experiment(
-      recordings, {parse_configurations("gpo+gyro,gpo"), {{5, 5, 1}}, {{0, 0, 1}}, 1});
+  const Experiment experiment =
+      plan_experiment(recordings,
+                      {.configurations = parse_configurations("gpo+gyro,gpo"),
+                       .lengths = {{5, 5}},
+                       .starts = {{0, 0}}});
   ASSERT_TRUE(run_experiment(experiment, recordings, a_, {}));
   const std::vector<Row> rows = collect_rows(experiment, std::span(&a_, 1));
   ASSERT_EQ(rows.size(), 2U);

@@ -3,7 +3,6 @@
 #include "engine/experiment/summary.h"
 
 #include "engine/experiment/figures.h"
-#include "engine/experiment/tables.h"
 #include "tests/engine/experiment/made_rows.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +28,7 @@ TEST(Distribution, IsMedianAndQuartiles) {
   EXPECT_FALSE(distribution({}).median);
 }
 
-/// Three windows of 10 frames and one of 20. Without RANSAC one of 10 and that of 20 fail.
+/// Returns three windows of 10 frames and one of 20. Without RANSAC one of each length fails.
 std::vector<Row> made_rows() {
   return {made_row("gpo", 0, 10, 1.0),
           made_row("gpo+no-ransac", 0, 10, 3.0),
@@ -41,7 +40,7 @@ std::vector<Row> made_rows() {
           made_row("gpo+no-ransac", 2, 10, 5.0)};
 }
 
-TEST(Summary, CountsFailuresAndLeavesThemOutOfTheMedians) {
+TEST(Summary, CountsFailuresAndExcludesThemFromMedians) {
   const std::vector<Cell> cells = summarize(made_rows());
   ASSERT_EQ(cells.size(), 4U);
   EXPECT_EQ(cells[0].configuration, "gpo");
@@ -57,21 +56,21 @@ TEST(Summary, CountsFailuresAndLeavesThemOutOfTheMedians) {
   EXPECT_EQ(cells[0].values.at("pde_m").count, 0);  // unknown everywhere
 }
 
-TEST(Summary, ComparesOnTheWindowsThatAllSolved) {
+TEST(Summary, ComparesOnWindowsThatAllSolved) {
   const std::vector<Cell> cells = summarize(on_common_windows(made_rows()));
   ASSERT_EQ(cells.size(), 3U);
-  EXPECT_EQ(cells[0].windows, 2);  // not the one of 100 degrees, which the other failed
+  EXPECT_EQ(cells[0].windows, 2);  // without the one of 100 deg, which the other failed
   EXPECT_EQ(cells[0].values.at("pne_deg").median, 1.5);
-  EXPECT_EQ(cells[1].frames, 20);  // the other solved none of this length and has no say
+  EXPECT_EQ(cells[1].frames, 20);  // the other solved none of this length and is ignored
   EXPECT_EQ(cells[1].windows, 1);
   EXPECT_EQ(cells[2].values.at("pne_deg").median, 4);
 }
 
 Experiment made_experiment() {
-  return {{{"made", "somewhere/made", 22, {0, 1, 2}, {}}},
-          {10, 20},
-          parse_configurations("gpo,gpo+no-ransac"),
-          1};
+  return {
+      .recordings = {{.name = "made", .path = "somewhere/made", .frames = 22, .starts = {0, 1, 2}}},
+      .lengths = {10, 20},
+      .configurations = parse_configurations("gpo,gpo+no-ransac")};
 }
 
 TEST(Summary, JsonHasAllWindowsEachRecordingAndEachFigure) {
@@ -86,16 +85,14 @@ TEST(Summary, JsonHasAllWindowsEachRecordingAndEachFigure) {
   EXPECT_EQ(json["windows_that_all_solved"][0]["cells"][0]["pne_deg"]["median"], 1.5);
 }
 
-std::vector<std::string> names_of(const std::vector<FigurePlan>& plans) {
+std::vector<std::string> names(const std::string& configurations) {
   std::vector<std::string> names;
-  for (const FigurePlan& plan : plans) names.push_back(plan.name);
+  for (const FigurePlan& plan : figure_plans(parse_configurations(configurations)))
+    names.push_back(plan.name);
   return names;
 }
 
-TEST(Figures, AreThosePapersThatHaveSomethingToCompare) {
-  const auto names = [](const std::string& configurations) {
-    return names_of(figure_plans(parse_configurations(configurations)));
-  };
+TEST(Figures, NeedTwoConfigurationsToCompare) {
   EXPECT_THAT(names("gpo,gpo+no-ransac"), ElementsAre("gpo_ransac"));
   EXPECT_THAT(names("gpo,gpo+truth,gpo+averaging,gpo+no-ransac"),
               ElementsAre("gpo_ransac", "rotation_sources"));
@@ -105,16 +102,13 @@ TEST(Figures, AreThosePapersThatHaveSomethingToCompare) {
               ElementsAre("rotation_sources", "configurations"));
 }
 
-TEST(Figures, AreMadeOnlyWhereTheirTitlesAreTrue) {
-  const auto names = [](const std::string& configurations) {
-    return names_of(figure_plans(parse_configurations(configurations)));
-  };
-  // Neither is one with and one without RANSAC, and the rotations are the same.
+TEST(Figures, HaveTitlesThatFitTheirConfigurations) {
+  // These pairs do not differ in RANSAC alone, and their rotations are the same.
   EXPECT_THAT(names("gpo,gpo+anchored"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo,gpo+consistent,gpo+anchored"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo,gpo+no-ransac+anchored"), ElementsAre("configurations"));
   EXPECT_THAT(names("ba,ba+anchored"), ElementsAre("configurations"));
-  // "GPO and ..." without GPO.
+  // "GPO and ..." needs GPO.
   EXPECT_THAT(names("pnp,dbscan"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo+anchored,pba,fpba"), ElementsAre("configurations"));
   EXPECT_THAT(names("gpo,pnp,dbscan"), ElementsAre("aggregation"));
@@ -123,7 +117,7 @@ TEST(Figures, AreMadeOnlyWhereTheirTitlesAreTrue) {
   EXPECT_EQ(plans[0].configurations.size(), 2U);
 }
 
-TEST(Figures, SayWhoseTheBoundIsAndHowManyWindowsAPointIs) {
+TEST(Figures, NameTheBoundAndCountWindows) {
   const std::vector<Figure> all = figures(made_rows(), made_experiment().configurations);
   EXPECT_THAT(all[0].note, HasSubstr("the inliers of GPO"));
   EXPECT_THAT(all[0].note, HasSubstr("a curve may be below this one"));
@@ -133,7 +127,7 @@ TEST(Figures, SayWhoseTheBoundIsAndHowManyWindowsAPointIs) {
   EXPECT_TRUE(pne.curves[2].counts.empty());
 }
 
-TEST(Figures, GiveAMethodItsOwnMarkerEverywhere) {
+TEST(Figures, GiveAMethodTheSameMarkerEverywhere) {
   const auto marker = [](const Figure& figure, const std::string& name) {
     return std::ranges::find(figure.charts[1].curves, name, &Curve::name)->marker;
   };
@@ -149,10 +143,10 @@ TEST(Figures, GiveAMethodItsOwnMarkerEverywhere) {
   EXPECT_EQ(marker(others, "GPO"), marker(others, "GPO without RANSAC"));
 }
 
-TEST(Figures, HoldMediansQuartilesAndTheDottedBound) {
+TEST(Figures, ShowMediansQuartilesAndTheDottedBound) {
   const std::vector<Figure> all = figures(made_rows(), made_experiment().configurations);
   ASSERT_EQ(all.size(), 1U);
-  EXPECT_THAT(all[0].title, HasSubstr("1 to 2 a length"));
+  EXPECT_THAT(all[0].title, HasSubstr("1 to 2 per length"));
   ASSERT_EQ(all[0].charts.size(), 3U);
   const Chart& ate = all[0].charts[0];
   EXPECT_EQ(ate.y_label, "ATE [mm]");
@@ -173,14 +167,14 @@ TEST(Figures, HoldMediansQuartilesAndTheDottedBound) {
   EXPECT_TRUE(pne.curves[2].lower.empty());
 }
 
-TEST(Figures, SayWhoSolvedNothing) {
+TEST(Figures, NameConfigurationsWithoutSolvedWindows) {
   const std::vector<Row> rows{made_row("gpo", 0, 10, 1.0), made_row("gpo+no-ransac", 0, 10, {})};
   const Figure figure = figures(rows, made_experiment().configurations).front();
   EXPECT_EQ(figure.charts[0].curves.size(), 1U);
   EXPECT_THAT(figure.title, HasSubstr("none solved by GPO without RANSAC"));
 }
 
-TEST(Tables, RunningTimesAreOfThirtyFramesOrTheNextBelow) {
+TEST(Tables, RunningTimesAreForThirtyFramesOrTheNextShorterLength) {
   const Table table = running_time_table(made_rows());
   EXPECT_THAT(table.caption, HasSubstr("with 20 frames (no windows of 30)"));
   ASSERT_EQ(table.lines.size(), 2U);
@@ -192,9 +186,9 @@ TEST(Tables, RunningTimesAreOfThirtyFramesOrTheNextBelow) {
   EXPECT_THAT(running_time_table(longer).caption, HasSubstr("with 40 frames"));
 }
 
-TEST(Tables, RunningTimesSayHowTheyWereMeasured) {
+TEST(Tables, RunningTimesDescribeTheirMeasurement) {
   std::vector<Row> rows{made_row("gpo", 0, 30, 1.0), made_row("gpo", 0, 60, 1.0)};
-  EXPECT_THAT(running_time_table(rows).caption, HasSubstr("not known how many"));
+  EXPECT_THAT(running_time_table(rows).caption, HasSubstr("unknown number of windows"));
   rows[0].jobs = 1;
   rows[1].jobs = 8;  // of another length
   rows[0].processor = "a processor";
@@ -216,7 +210,7 @@ TEST(Tables, OverviewShowsSolvedOfTriedWindows) {
   EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000      40.0         -\n"));
 }
 
-TEST(Tables, OverviewForProgramsHasANumberACell) {
+TEST(Tables, OverviewForProgramsHasOneNumberPerCell) {
   const std::string csv = to_csv(overview_numbers(made_rows()));
   EXPECT_THAT(csv, HasSubstr("method,frames,solved,of,PNE [deg],ATE [mm],PDE [mm]\n"));
   EXPECT_THAT(csv, HasSubstr("\ngpo+no-ransac,10,2,3,4.000,40.0,\n"));

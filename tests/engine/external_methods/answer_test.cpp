@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr Asked kAsked{.id = 4, .frames = 2, .tracks = 10, .planes = 2};
+constexpr ExpectedAnswer kExpected{.id = 4, .frames = 2, .tracks = 10, .planes = 2};
 const std::string kStill = R"({"R_wc": [[1,0,0],[0,1,0],[0,0,1]], "center": [0,0,0]})";
 const std::string kMoved = R"({"R_wc": [0,-1,0, 1,0,0, 0,0,1], "center": [1,2,3]})";
 
@@ -22,12 +22,12 @@ std::string answer_with(const std::string& more, const std::string& second = kMo
   return fmt::format(R"({{"cameras": [{}, {}]{}}})", kStill, second, more);
 }
 
-TEST(ReadAnswer, ReadsAllOfIt) {
+TEST(ReadAnswer, ReadsAllKeys) {
   const Answer answer =
       read_answer(answer_with(R"(, "id": 4, "plane": {"normal": [0,0,-2], "distance": 4},
         "planes": [{"plane": 1, "normal": [0,-1,0], "distance": 3}],
         "points": [{"track": 9, "position": [0.5, 1e-3, 2]}], "milliseconds": 12.5)"),
-                  kAsked);
+                  kExpected);
   EXPECT_FALSE(answer.failed);
   ASSERT_EQ(answer.cameras.size(), 2U);
   EXPECT_EQ(answer.cameras[1]->R_wc(0, 1), -1) << "by rows";
@@ -43,21 +43,22 @@ TEST(ReadAnswer, ReadsAllOfIt) {
   EXPECT_EQ(answer.milliseconds, 12.5);
 }
 
-TEST(ReadAnswer, ACameraMayBeMissingAndAReasonStandAlone) {
-  EXPECT_FALSE(read_answer(answer_with("", "null"), kAsked).cameras[1]);
-  const Answer failed = read_answer(R"({"failed": "too\ndark"})", kAsked);
+TEST(ReadAnswer, AcceptsMissingCameraAndReasonAlone) {
+  EXPECT_FALSE(read_answer(answer_with("", "null"), kExpected).cameras[1]);
+  const Answer failed = read_answer(R"({"failed": "too\ndark"})", kExpected);
   EXPECT_EQ(failed.failed, "too\\ndark") << "one line";
 }
 
-TEST(ReadAnswer, ARotationOfFewDigitsIsMadeOne) {
+TEST(ReadAnswer, OrthonormalizesRotationsOfFewDigits) {
   const Answer answer = read_answer(
-      answer_with("", R"({"R_wc": [0.8,-0.6001,0, 0.6,0.8,0, 0,0,1], "center": [0,0,0]})"), kAsked);
+      answer_with("", R"({"R_wc": [0.8,-0.6001,0, 0.6,0.8,0, 0,0,1], "center": [0,0,0]})"),
+      kExpected);
   const Eigen::Matrix3d R = answer.cameras[1]->R_wc;
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
   EXPECT_NEAR(R(1, 0), 0.6, 1e-3);
 }
 
-TEST(ReadAnswer, WhatIsWrongIsToldByItsKey) {
+TEST(ReadAnswer, NamesTheKeyOfAnError) {
   const auto camera = [](const std::string& R, const std::string& center) {
     return answer_with("", fmt::format(R"({{"R_wc": {}, "center": {}}})", R, center));
   };
@@ -68,10 +69,10 @@ TEST(ReadAnswer, WhatIsWrongIsToldByItsKey) {
           {"", "no JSON"},
           {R"({"cameras": NaN})", "no JSON"},
           {"[1]", "answer: expected an object"},
-          {"{}", "cameras: is missing, and so is failed"},
+          {"{}", "cameras: is missing, as is failed"},
           {R"({"camrea": 1})", "camrea: unknown key, expected id, failed, cameras"},
           {R"({"failed": 7})", "failed: expected a text"},
-          {R"({"cameras": []})", "cameras: expected 2, one a frame, found 0"},
+          {R"({"cameras": []})", "cameras: expected 2, one per frame, found 0"},
           {R"({"cameras": [null, null]})", "cameras[0]: expected the reference camera"},
           {answer_with("", "7"), "cameras[1]: expected an object"},
           {answer_with("", R"({"R_wc": [1], "center": [0,0,0], "scale": 1})"),
@@ -100,11 +101,10 @@ TEST(ReadAnswer, WhatIsWrongIsToldByItsKey) {
            "points[1].track: expected each track once, found 1 again"},
           {answer_with(R"(, "milliseconds": "1")"), "milliseconds: expected a number"},
           {std::string(100'000, '['), "nested too deep"},
-      }) {
-    EXPECT_THAT(test::error_of([&, &line = line] { read_answer(line, kAsked); }),
+      })
+    EXPECT_THAT(test::error_of([&, &line = line] { read_answer(line, kExpected); }),
                 HasSubstr(message))
         << line;
-  }
 }
 
 }  // namespace

@@ -39,18 +39,18 @@ std::vector<double> numbers_of(const auto& matrix) {
   return rows;
 }
 
-enum class Told { all, plane, points, cameras };
+enum class Given { all, plane, points, cameras };
 
-/// A result as a user's own program would answer it.
-std::string answer_of(const Initialization& result, Told told) {
+/// Returns a result as the answer of a user's program.
+std::string answer_of(const Initialization& result, Given given) {
   Json json = {{"cameras", Json::array()}};
   for (const Pose& camera : result.cameras)
     json["cameras"].push_back(
         {{"R_wc", numbers_of(camera.R_wc)}, {"center", numbers_of(camera.p_wc)}});
-  if (told == Told::all || told == Told::plane)
+  if (given == Given::all || given == Given::plane)
     json["plane"] = {{"normal", numbers_of(result.plane.normal)},
                      {"distance", result.plane.distance}};
-  if (told == Told::all || told == Told::points) {
+  if (given == Given::all || given == Given::points) {
     json["points"] = Json::array();
     for (const MapPoint& point : result.points)
       json["points"].push_back({{"track", point.track}, {"position", numbers_of(point.position)}});
@@ -60,33 +60,32 @@ std::string answer_of(const Initialization& result, Told told) {
 
 CommandOptions patient() { return {.time_limit = std::chrono::seconds(60)}; }
 
-/// Of a command whose answers are lines of a file.
-Method method_of_file(const test::TestFolder& folder, const std::string& answers) {
+Method mine(const std::string& command, const CommandOptions& options = patient()) {
+  return command_method({"mine", command}, options, 0);
+}
+
+/// Runs a command that answers with the lines of a file.
+Initialization answered(const Window& window, const std::string& answers) {
+  const test::TestFolder folder;
   const auto file = folder.write("answers", answers);
-  return command_method(
-      {"mine",
-       fmt::format(
-           "exec 3< '{}'; while read -r window; do read -r answer <&3; echo \"$answer\"; done",
-           file.string())},
-      patient(),
-      0);
+  return mine(fmt::format("exec 3< '{}'; while read -r window; do read -r answer <&3; echo "
+                          "\"$answer\"; done",
+                          file.string()))
+      .initialize(window, {}, {});
 }
 
 std::string reason_of(const std::string& command, CommandOptions options = patient()) {
-  const Initialization result =
-      command_method({"mine", command}, options, 0).initialize(wandering_window(), {}, {});
+  const Initialization result = mine(command, options).initialize(wandering_window(), {}, {});
   EXPECT_FALSE(result.ok) << command;
   EXPECT_EQ(result.reason.find('\n'), std::string::npos) << result.reason;
   return result.reason;
 }
 
-TEST(CommandMethod, WhatOursFoundComesBackAsItIs) {
-  const test::TestFolder folder;
+TEST(CommandMethod, ReturnsTheGivenResultUnchanged) {
   const Window window = wandering_window();
   const Initialization ours = find_method("gpo").initialize(window, {}, {});
   ASSERT_TRUE(ours.ok) << ours.reason;
-  const Initialization theirs =
-      method_of_file(folder, answer_of(ours, Told::plane)).initialize(window, {}, {});
+  const Initialization theirs = answered(window, answer_of(ours, Given::plane));
   ASSERT_TRUE(theirs.ok) << theirs.reason;
   EXPECT_EQ(theirs.plane.normal, ours.plane.normal);
   EXPECT_EQ(theirs.plane.distance, 1);
@@ -100,13 +99,11 @@ TEST(CommandMethod, WhatOursFoundComesBackAsItIs) {
   EXPECT_EQ(theirs.rms_px, ours.rms_px);
 }
 
-TEST(CommandMethod, ThePlaneIsFittedAndThePointsAreTriangulatedWhereTheyAreNotGiven) {
-  const test::TestFolder folder;
+TEST(CommandMethod, FitsMissingPlaneAndTriangulatesMissingPoints) {
   const Window window = wandering_window();
   const Initialization ours = find_method("gpo").initialize(window, {}, {});
-  for (const Told told : {Told::points, Told::cameras}) {
-    const Initialization theirs =
-        method_of_file(folder, answer_of(ours, told)).initialize(window, {}, {});
+  for (const Given given : {Given::points, Given::cameras}) {
+    const Initialization theirs = answered(window, answer_of(ours, given));
     ASSERT_TRUE(theirs.ok) << theirs.reason;
     EXPECT_LT(angle_deg(theirs.plane.normal, ours.plane.normal), 2);
     EXPECT_EQ(theirs.plane.distance, 1);
@@ -115,8 +112,7 @@ TEST(CommandMethod, ThePlaneIsFittedAndThePointsAreTriangulatedWhereTheyAreNotGi
   }
 }
 
-TEST(CommandMethod, AnyWorldAndScaleWillDo) {
-  const test::TestFolder folder;
+TEST(CommandMethod, AcceptsAnyWorldAndScale) {
   const Window window = wandering_window();
   const Initialization ours = find_method("gpo").initialize(window, {}, {});
   Initialization moved = ours;
@@ -129,8 +125,7 @@ TEST(CommandMethod, AnyWorldAndScaleWillDo) {
   for (MapPoint& point : moved.points) point.position = to_world(world, scale * point.position);
   moved.plane = {-(world.R_wc * ours.plane.normal), 0};
   moved.plane.distance = -moved.plane.normal.dot(moved.points.front().position);
-  const Initialization theirs =
-      method_of_file(folder, answer_of(moved, Told::all)).initialize(window, {}, {});
+  const Initialization theirs = answered(window, answer_of(moved, Given::all));
   ASSERT_TRUE(theirs.ok) << theirs.reason;
   EXPECT_LT(angle_deg(theirs.plane.normal, ours.plane.normal), 1e-6);
   for (std::size_t i = 0; i < ours.cameras.size(); ++i) {
@@ -139,30 +134,26 @@ TEST(CommandMethod, AnyWorldAndScaleWillDo) {
   }
 }
 
-TEST(CommandMethod, ACameraThatIsNotGivenIsFoundFromThePoints) {
-  const test::TestFolder folder;
+TEST(CommandMethod, ResectsMissingCameraFromPoints) {
   const Window window = wandering_window();
   const Initialization ours = find_method("gpo").initialize(window, {}, {});
-  Json answer = Json::parse(answer_of(ours, Told::all));
+  Json answer = Json::parse(answer_of(ours, Given::all));
   answer["cameras"][3] = nullptr;
-  const Initialization theirs =
-      method_of_file(folder, json_text(answer, -1)).initialize(window, {}, {});
+  const Initialization theirs = answered(window, json_text(answer, -1));
   ASSERT_TRUE(theirs.ok) << theirs.reason;
   EXPECT_LT((theirs.cameras[3].p_wc - ours.cameras[3].p_wc).norm(), 0.02);
 }
 
-TEST(CommandMethod, WhatDoesNotFitTheTracksIsRefusedAsOurs) {
-  const test::TestFolder folder;
+TEST(CommandMethod, RejectsResultThatDoesNotFitTheTracks) {
   const Window window = wandering_window();
   Initialization wrong = find_method("gpo").initialize(window, {}, {});
   wrong.plane.normal = so3_exp({0.8, 0, 0}) * wrong.plane.normal;
-  const Initialization theirs =
-      method_of_file(folder, answer_of(wrong, Told::plane)).initialize(window, {}, {});
+  const Initialization theirs = answered(window, answer_of(wrong, Given::plane));
   EXPECT_FALSE(theirs.ok);
   EXPECT_THAT(theirs.reason, StartsWith("mine: "));
 }
 
-TEST(CommandMethod, EachWayToFailIsOneClearLine) {
+TEST(CommandMethod, ReportsEachFailureInOneLine) {
   EXPECT_EQ(reason_of("read w; echo '{\"failed\": \"too dark\"}'; cat"), "mine: too dark");
   EXPECT_THAT(reason_of("cat"), HasSubstr("mine: answer 1: "));
   EXPECT_THAT(reason_of("read w; echo garbage; cat"),
@@ -178,80 +169,74 @@ TEST(CommandMethod, EachWayToFailIsOneClearLine) {
   EXPECT_EQ(reason_of("sleep 1000", {.time_limit = std::chrono::milliseconds(200)}),
             "mine: no answer 1 within 0.2 s");
   EXPECT_EQ(reason_of("printf begun; sleep 1000", {.time_limit = std::chrono::milliseconds(500)}),
-            "mine: no answer 1 within 0.5 s, only the beginning of it");
+            "mine: no answer 1 within 0.5 s, only its beginning");
 }
 
 TEST(CommandMethod, OneProcessServesManyWindowsUntilItFails) {
   const test::TestFolder folder;
   const Window window = wandering_window();
   const auto count = folder.path() / "started";
-  const Method mine =
-      command_method({"mine",
-                      fmt::format("echo >> '{}'; read w; echo '{{\"failed\": \"a\"}}'; read w; "
-                                  "echo '{{\"failed\": \"b\"}}'; read w; echo garbage; read w",
-                                  count.string())},
-                     patient(),
-                     0);
+  const Method method =
+      mine(fmt::format("echo >> '{}'; read w; echo '{{\"failed\": \"a\"}}'; read w; "
+                       "echo '{{\"failed\": \"b\"}}'; read w; echo garbage; read w",
+                       count.string()));
   std::vector<std::string> reasons;
-  for (int i = 0; i < 4; ++i) reasons.push_back(mine.initialize(window, {}, {}).reason);
+  for (int i = 0; i < 4; ++i) reasons.push_back(method.initialize(window, {}, {}).reason);
   EXPECT_THAT(reasons,
               ElementsAre("mine: a", "mine: b", HasSubstr("mine: answer 3: no JSON"), "mine: a"));
   EXPECT_EQ(folder.read("started"), "\n\n");
 }
 
-TEST(CommandMethod, OneThatAnswersOnceIsStartedForEachWindow) {
+TEST(CommandMethod, RestartsProgramThatAnswersOnce) {
   const Window window = wandering_window();
-  const Method mine =
-      command_method({"mine", "read w; echo '{\"failed\": \"once\"}'"}, patient(), 0);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(mine.initialize(window, {}, {}).reason, "mine: once");
+  const Method method = mine("read w; echo '{\"failed\": \"once\"}'");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(method.initialize(window, {}, {}).reason, "mine: once");
 }
 
-TEST(CommandMethod, SeveralThreadsHaveAProcessEach) {
+TEST(CommandMethod, StartsOneProcessPerThread) {
   const Window window = wandering_window();
-  const Method mine = command_method(
-      {"mine", "while read w; do sleep 0.1; echo \"{\\\"failed\\\": \\\"$$\\\"}\"; done"},
-      patient(),
-      0);
+  const Method method =
+      mine("while read w; do sleep 0.1; echo \"{\\\"failed\\\": \\\"$$\\\"}\"; done");
   std::vector<std::string> reasons(3);
   {
     std::vector<std::jthread> threads;
     for (std::string& reason : reasons)
-      threads.emplace_back([&] { reason = mine.initialize(window, {}, {}).reason; });
+      threads.emplace_back([&] { reason = method.initialize(window, {}, {}).reason; });
   }
   EXPECT_NE(reasons[0], reasons[1]);
   EXPECT_NE(reasons[1], reasons[2]);
   EXPECT_THAT(reasons, ::testing::Each(StartsWith("mine: ")));
 }
 
-TEST(CommandMethod, AStopIsNoFailure) {
+TEST(CommandMethod, StopIsNoFailure) {
   std::stop_source stop;
   stop.request_stop();
-  const Initialization result = command_method({"mine", "sleep 1000"}, patient(), 0)
-                                    .initialize(wandering_window(), {}, Watch(stop.get_token()));
+  const Initialization result =
+      mine("sleep 1000").initialize(wandering_window(), {}, Watch(stop.get_token()));
   EXPECT_TRUE(result.stopped);
 }
 
-TEST(CommandMethod, WhatItComplainsOfIsTold) {
-  std::vector<std::string> told;
+TEST(CommandMethod, PassesOnStandardError) {
+  std::vector<std::string> lines;
   CommandOptions options = patient();
-  options.told = [&](const std::string& name, const std::string& line) {
-    told.push_back(name + ": " + line);
+  options.on_line = [&](const std::string& name, const std::string& line) {
+    lines.push_back(name + ": " + line);
   };
   reason_of(
       "read w; echo 'slow' >&2; printf 'a\\033b\\n' >&2; sleep 0.2; echo '{\"failed\": \"x\"}'",
       options);
-  EXPECT_THAT(told, ElementsAre("mine: slow", "mine: a\\x1Bb"));
-  told.clear();
+  EXPECT_THAT(lines, ElementsAre("mine: slow", "mine: a\\x1Bb"));
+  lines.clear();
   reason_of("read w; seq 1000 >&2; sleep 0.2; echo '{\"failed\": \"x\"}'", options);
-  EXPECT_EQ(told.size(), 21U);
-  EXPECT_EQ(told.back(), "mine: ...");
+  EXPECT_EQ(lines.size(), 21U);
+  EXPECT_EQ(lines.back(), "mine: ...");
 }
 
-TEST(CommandMethod, AnotherContentOfItsFilesIsAnotherMethod) {
+TEST(CommandMethod, IdentityDependsOnContentOfFiles) {
   const test::TestFolder folder;
   const auto identity = [&](const std::string& content) {
     const auto file = folder.write("mine.py", content);
-    return command_method({"mine", "python3 " + file.string()}, {}, 0).identity;
+    return mine("python3 " + file.string()).identity;
   };
   const std::string first = identity("one");
   EXPECT_THAT(first, StartsWith("python3 /"));
@@ -259,16 +244,16 @@ TEST(CommandMethod, AnotherContentOfItsFilesIsAnotherMethod) {
   EXPECT_EQ(identity("one"), first);
 }
 
-TEST(MethodCommand, IsANameAndACommand) {
-  const MethodCommand mine = parse_method_command("my_2-nd=FOO=1 python3 mine.py");
-  EXPECT_EQ(mine.name, "my_2-nd");
-  EXPECT_EQ(mine.command, "FOO=1 python3 mine.py");
+TEST(MethodCommand, HasNameAndCommand) {
+  const MethodCommand parsed = parse_method_command("my_2-nd=FOO=1 python3 mine.py");
+  EXPECT_EQ(parsed.name, "my_2-nd");
+  EXPECT_EQ(parsed.command, "FOO=1 python3 mine.py");
   for (const char* bad : {"", "mine", "=cat", "mine=", "mine= ", "a+b=cat", "a,b=cat", "all=cat"})
     EXPECT_THAT(test::error_of([&] { parse_method_command(bad); }), HasSubstr("--method-command"))
         << bad;
 }
 
-TEST(WindowJson, TellsWhatTheWindowHolds) {
+TEST(WindowJson, ContainsTheWindow) {
   Window window = wandering_window();
   window.points_px[2].col(7).setConstant(std::numeric_limits<double>::quiet_NaN());
   Gyroscope gyroscope;

@@ -142,7 +142,7 @@ TEST(CsvTable, NamesTheLineOfATimeThatDoesNotAscend) {
               EndsWith("t.txt:4: found time stamp 2, earlier than the one before it, expected "
                        "ascending time stamps"));
   EXPECT_THAT(error_of([&] { times_of(folder, "1\n1\n"); }),
-              HasSubstr("t.txt:2: found time stamp 1, a repetition"));
+              HasSubstr("t.txt:2: found time stamp 1, equal to"));
   EXPECT_THAT(error_of([&] { times_of(folder, "1\nx\n"); }),
               EndsWith("t.txt:2: found \"x\", expected a time stamp"));
 }
@@ -176,13 +176,13 @@ INSTANTIATE_TEST_SUITE_P(
                  ":2: found 3 columns, expected 4 (timestamp,wx,wy,wz)"},
         BadTable{"1,2,3,4\n2,2,3,4,5\n", ":2: found 5 columns, expected 4 (timestamp,wx,wy,wz)"},
         BadTable{"1,2,3,4\n2,2,3",
-                 ":2: found 3 columns (the file seems cut), expected 4 (timestamp,wx,wy,wz)"},
+                 ":2: found 3 columns (the file seems truncated), expected 4 (timestamp,wx,wy,wz)"},
         BadTable{"timestamp,wx,wz,wy\n1,2,3,4\n",
                  ":1: found column 3 named \"wz\", expected \"wy\" (columns timestamp,wx,wy,wz)"},
         BadTable{"#timestamp,ax,ay,az\n1,2,3,4\n",
                  ":1: found column 2 named \"ax\", expected \"wx\" (columns timestamp,wx,wy,wz)"},
         BadTable{"timestamp,wx,wy,wz,t\n1,2,3,4\n",
-                 ":1: found 5 names of columns, expected 4, as many as the rows have"},
+                 ":1: found 5 names of columns, expected 4 as in the rows"},
         BadTable{"1,2,3,4\n2,nan,3,4\n", ":2: found \"nan\", expected a finite number"},
         BadTable{"1,2,3,4\n2,3,-inf,4\n", ":2: found \"-inf\", expected a finite number"},
         BadTable{"1,2,3,4\n2,3,,4\n", ":2: found \"\", expected a finite number"},

@@ -16,35 +16,35 @@ using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-ReplyLimits within(milliseconds time) {
-  ReplyLimits limits;
-  limits.time = time;
-  return limits;
-}
-
 constexpr milliseconds kEnough{20'000};
+
+ProcessReply ask(ChildProcess& process,
+                 const std::string& question = "question\n",
+                 milliseconds time = kEnough) {
+  return process.ask(question, {.time = time});
+}
 
 TEST(ChildProcess, AnswersLineByLine) {
   ChildProcess process("while read a; do echo \"<$a>\"; done");
   for (const std::string text : {"one", "two"}) {
-    const ProcessReply reply = process.ask(text + "\n", within(kEnough));
+    const ProcessReply reply = ask(process, text + "\n");
     EXPECT_EQ(reply.reply, Reply::answered);
     EXPECT_EQ(reply.answer, "<" + text + ">");
     EXPECT_TRUE(process.is_in_step());
   }
-  EXPECT_EQ(process.end(), "closed its standard output") << "that is: it lived";
+  EXPECT_EQ(process.end(), "closed its standard output") << "it was alive";
 }
 
-// Neither end may wait for the other: the question and the answer are larger than any pipe.
-TEST(ChildProcess, TakesAndGivesMoreThanAPipeHolds) {
+// Neither end may block: question and answer are larger than any pipe.
+TEST(ChildProcess, TransfersMoreThanAPipeHolds) {
   ChildProcess process("cat");
   const std::string question = std::string(3'000'000, 'x') + "\n";
-  const ProcessReply reply = process.ask(question, within(kEnough));
+  const ProcessReply reply = ask(process, question);
   EXPECT_EQ(reply.reply, Reply::answered);
   EXPECT_EQ(reply.answer + "\n", question);
 }
 
-TEST(ChildProcess, HowItEndedIsTold) {
+TEST(ChildProcess, ReportsHowItEnded) {
   for (const auto& [command, how] :
        {std::pair{"exit 3", "ended with exit code 3"},
         std::pair{"read a; printf half; kill -9 $$", "was killed by signal 9 (Killed)"},
@@ -53,7 +53,7 @@ TEST(ChildProcess, HowItEndedIsTold) {
         std::pair{"exit 255", "ended with exit code 255"},
         std::pair{"exec >&-; sleep 60", "closed its standard output"}}) {
     ChildProcess process(command);
-    const ProcessReply reply = process.ask("question\n", within(kEnough));
+    const ProcessReply reply = ask(process);
     EXPECT_EQ(reply.reply, Reply::ended) << command;
     EXPECT_EQ(reply.answer, how == std::string("was killed by signal 9 (Killed)") ? "half" : "");
     EXPECT_FALSE(process.is_in_step()) << command;
@@ -61,15 +61,15 @@ TEST(ChildProcess, HowItEndedIsTold) {
   }
 }
 
-TEST(ChildProcess, ALateOneIsKilledWithAllThatItStarted) {
+TEST(ChildProcess, KillsLateProcessWithItsChildren) {
   pid_t grandchild = 0;
   {
     ChildProcess process("sleep 1000 & echo $!; wait");
-    grandchild = std::stoi(process.ask("", within(kEnough)).answer);
+    grandchild = std::stoi(ask(process, "").answer);
     ASSERT_EQ(kill(grandchild, 0), 0);
-    EXPECT_EQ(process.ask("question\n", within(milliseconds(100))).reply, Reply::late);
+    EXPECT_EQ(ask(process, "question\n", milliseconds(100)).reply, Reply::late);
   }
-  // Whoever inherits it has to wait for it.
+  // Another process may have to reap it first.
   bool gone = false;
   for (int i = 0; i < 500 && !gone; ++i) {
     std::this_thread::sleep_for(milliseconds(10));
@@ -85,22 +85,22 @@ TEST(ChildProcess, ALateOneIsKilledWithAllThatItStarted) {
   EXPECT_TRUE(gone);
 }
 
-TEST(ChildProcess, AnEndlessAnswerEndsAtItsLimit) {
+TEST(ChildProcess, LimitsEndlessAnswer) {
   ChildProcess process("yes | tr -d '\\n'");
-  const ProcessReply reply = process.ask("question\n", within(kEnough));
+  const ProcessReply reply = ask(process);
   EXPECT_EQ(reply.reply, Reply::too_long);
   EXPECT_LT(reply.answer.size(), ReplyLimits{}.answer_bytes + 100'000);
 }
 
-TEST(ChildProcess, OfEndlessComplaintsTheBeginningIsKept) {
+TEST(ChildProcess, LimitsEndlessStandardError) {
   ChildProcess process("read a; yes complaint | head -c 50000000 >&2; echo done");
-  const ProcessReply reply = process.ask("question\n", within(kEnough));
+  const ProcessReply reply = ask(process);
   EXPECT_EQ(reply.answer, "done");
-  EXPECT_EQ(reply.said.size(), ReplyLimits{}.said_bytes);
-  EXPECT_THAT(reply.said, StartsWith("complaint\ncomplaint\n"));
+  EXPECT_EQ(reply.error_output.size(), ReplyLimits{}.error_bytes);
+  EXPECT_THAT(reply.error_output, StartsWith("complaint\ncomplaint\n"));
 }
 
-TEST(ChildProcess, AStopIsHeeded) {
+TEST(ChildProcess, StopsOnRequest) {
   ChildProcess process("sleep 1000");
   std::stop_source stop;
   std::jthread stopper([&] {
@@ -108,22 +108,22 @@ TEST(ChildProcess, AStopIsHeeded) {
     stop.request_stop();
   });
   const auto begin = std::chrono::steady_clock::now();
-  EXPECT_EQ(process.ask("question\n", within(kEnough), stop.get_token()).reply, Reply::stopped);
+  EXPECT_EQ(process.ask("question\n", {.time = kEnough}, stop.get_token()).reply, Reply::stopped);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, kEnough / 2);
 }
 
-// A write to it raises SIGPIPE, which would end this program.
-TEST(ChildProcess, OneThatDoesNotListenDoesNoHarm) {
+// A write to it raises SIGPIPE, which would end the test program.
+TEST(ChildProcess, SurvivesClosedStandardInput) {
   ChildProcess process("exec <&-; sleep 0.2; echo answered anyway");
-  const ProcessReply reply = process.ask(std::string(500'000, 'x') + "\n", within(kEnough));
+  const ProcessReply reply = ask(process, std::string(500'000, 'x') + "\n");
   EXPECT_EQ(reply.reply, Reply::answered);
   EXPECT_EQ(reply.answer, "answered anyway");
-  EXPECT_FALSE(process.is_in_step()) << "what it has not read it cannot have answered";
+  EXPECT_FALSE(process.is_in_step()) << "the answer belongs to no question";
 }
 
-TEST(ChildProcess, AnswersThatNobodyAskedForPutItOutOfStep) {
+TEST(ChildProcess, UnrequestedOutputPutsItOutOfStep) {
   ChildProcess process("while read a; do echo first; echo second; done");
-  EXPECT_EQ(process.ask("question\n", within(kEnough)).answer, "first");
+  EXPECT_EQ(ask(process).answer, "first");
   std::this_thread::sleep_for(milliseconds(200));
   EXPECT_FALSE(process.is_in_step());
 }

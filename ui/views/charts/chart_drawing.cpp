@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/charts/chart_drawing.h"
 
-#include "engine/experiment/figure.h"
+#include "engine/base/chart.h"
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/marker_shapes.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/figure.h"
+#include "engine/base/chart.h"
 #include "ui/views/charts/chart_drawing.h"
 
 #include <optional>

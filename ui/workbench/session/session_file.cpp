@@ -3,7 +3,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/method_specs.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/setting_values.h"

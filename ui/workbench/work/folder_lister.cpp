@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/work/folder_lister.h"
 
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/synthesis/recipe.h"

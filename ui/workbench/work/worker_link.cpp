@@ -3,7 +3,7 @@
 #include "ui/workbench/work/worker_link.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/results_file.h"
+#include "engine/experiment/row.h"
 #include "engine/inspection/inspection.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/playing.h"

@@ -213,7 +213,7 @@ TEST_F(EurocReader, NamesBackwardTimes) {
   folder.write("mav0/imu0/data.csv", "20,0,0,0\n30,0,0,0\n25,0,0,0\n");
   EXPECT_THAT(error(), HasSubstr("imu0/data.csv:3: found time stamp 25, earlier than"));
   folder.write("mav0/cam0/data.csv", "20,0.png\n20,1.png\n");
-  EXPECT_THAT(error(), HasSubstr("cam0/data.csv:2: found time stamp 20, a repetition"));
+  EXPECT_THAT(error(), HasSubstr("cam0/data.csv:2: found time stamp 20, equal to"));
 }
 
 TEST_F(EurocReader, NamesBadTruth) {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/images/snapshots.h"
+#include "app/commands/snapshots.h"
 
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
@@ -20,11 +20,11 @@
 namespace gpo {
 namespace {
 
-std::string failure_text(const std::string& what, const std::string& reason) {
-  return fmt::format("{}: initialization failed: {}", what, reason);
+std::string failure_text(const std::string& method, const std::string& reason) {
+  return fmt::format("{}: initialization failed: {}", method, reason);
 }
 
-/// The frame that is asked for, or the window's last.
+/// Returns the requested frame or the window's last. Throws SettingError.
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
   const Settings& settings = request.compared.window;
   const int frame = request.frame.value_or(settings.start + settings.frames - 1);
@@ -35,14 +35,13 @@ int frame_to_draw(const ViewRequest& request, const Recording& recording) {
                                  recording.frame_count() - 1));
 }
 
-/// One inspection a configuration, in their order.
+/// Returns one inspection per configuration, in their order.
 std::vector<std::shared_ptr<const Inspection>> inspect_each(
     const std::shared_ptr<const Recording>& recording, const ComparisonRequest& request) {
   Inspector inspector(recording);
   const std::vector<Configuration> configurations = configurations_of(request);
   const Settings base = base_of(configurations, request.window);
   std::vector<std::shared_ptr<const Inspection>> inspections;
-  inspections.reserve(configurations.size());
   for (const Configuration& configuration : configurations)
     inspections.push_back(inspector.inspect(apply(configuration, base)));
   return inspections;
@@ -64,9 +63,9 @@ DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
   return drawn;
 }
 
-cv::Mat image_of(const ViewRequest& request,
-                   const Pane& pane,
-                   const std::shared_ptr<const Inspection>& inspection) {
+cv::Mat draw_pane(const ViewRequest& request,
+                  const Pane& pane,
+                  const std::shared_ptr<const Inspection>& inspection) {
   const int frame = frame_to_draw(request, *inspection->recording);
   const auto size = [&](int width, int height) {
     return request.size.value_or(cv::Size(width, height));
@@ -85,56 +84,54 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   const auto inspection = Inspector(recording).inspect(request.compared.window, stop);
   if (!inspection) throw InputError("stopped");
   const Initialization& result = *inspection->initialization;
-  DrawnView drawn{image_of(request, pane, inspection), result.ok, {inspection}};
+  DrawnView drawn{draw_pane(request, pane, inspection), result.ok, {inspection}};
   if (!result.ok)
     drawn.failures.push_back(failure_text(inspection->settings.options.method, result.reason));
   return drawn;
 }
 
-/// Descending.
+/// Returns the requested window lengths in descending order. Throws InputError.
 std::vector<int> lengths_of(const ComparisonRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
   std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
-  if (lengths.empty() || lengths.front() < 2) {
+  if (lengths.empty() || lengths.front() < 2)
     throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
                                  text,
                                  request.window.frames));
-  }
   std::ranges::reverse(lengths);
   return lengths;
 }
 
-/// The errors over the length of windows from one start.
+/// Draws the errors over the length of windows from one start.
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
                       const ViewRequest& request) {
   const std::vector<Configuration> configurations = configurations_of(request.compared);
   Settings window = base_of(configurations, request.compared.window);
-  FigurePlan plan{"curves", "", {}};
+  FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
   for (const Configuration& configuration : configurations)
     plan.configurations.push_back(configuration_of(apply(configuration, window)));
   DrawnView drawn;
   std::vector<Row> rows;
   Inspector inspector(recording);
-  // The longest window first: the Inspector keeps its tracks for the others.
+  // The longest window comes first: the Inspector caches its tracks for the others.
   for (const int length : lengths_of(request.compared)) {
     window.frames = length;
     for (const Configuration& configuration : configurations) {
       const auto inspection = inspector.inspect(apply(configuration, window));
-      if (!inspection->truth) {
+      if (!inspection->truth)
         throw InputError(fmt::format(
             "--view curves: {} has no ground truth to measure errors against", recording->name));
-      }
       rows.push_back(make_row(*inspection));
       if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
     }
   }
   std::ranges::reverse(rows);
   Figure figure = figure_over_length(rows, plan);
-  // One window a length is what was asked for here, not few of many.
+  // One window per length was requested here, so its points are not drawn as few of many.
   for (Chart& chart : figure.charts)
     for (Curve& curve : chart.curves) curve.counts.clear();
   figure.title =
-      fmt::format("{}: windows from frame {}, by their length", recording->name, window.start);
+      fmt::format("{}: windows from frame {} over their length", recording->name, window.start);
   for (const Configuration& configuration : plan.configurations) {
     const auto own = rows_of(rows, {&configuration, 1});
     const bool solved = std::ranges::any_of(own, &Row::ok);

@@ -1,0 +1,130 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The commands that read, write and make recordings: info, convert, synthesize.
+#include "app/commands/commands.h"
+#include "app/recordings/recordings.h"
+#include "app/terminal/output.h"
+#include "app/terminal/progress.h"
+#include "engine/base/error.h"
+#include "engine/calibration/calibration_report.h"
+#include "engine/files/json_text.h"
+#include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/report/topic_info.h"
+#include "engine/inspection/studies/rotations_over_recording.h"
+#include "engine/recording/board/board_truth.h"
+#include "engine/synthesis/recipe.h"
+#include "engine/synthesis/synthesize.h"
+
+#include <array>
+#include <cstdio>
+#include <functional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Refuses an existing file without .json: `--json` may have been followed by a recording.
+void check_json_file(const InfoArguments& arguments) {
+  const auto& file = arguments.json;
+  if (fs::exists(file) && file.extension() != ".json")
+    throw InputError(fmt::format(
+        "--json: {} already exists and is not a .json file; choose another file", file.string()));
+  check_outputs(std::array{NamedFile{"--json", file}},
+                std::array{NamedFile{"recording", arguments.recording}});
+}
+
+/// Compares the gyroscope with the rotations of a few windows. Returns the reason why they
+/// disagree, or an empty text.
+std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recording,
+                                   double rate_hz) {
+  constexpr int kWindows = 12;
+  constexpr int kMinFrames = 20;
+  if (!recording->gyroscope || recording->frame_count() < kMinFrames) return "";
+  if (!recording->images && recording->tracks.empty()) return "";
+  const auto windows = rotations_over_recording(recording, kWindows);
+  return why_it_does_not_fit(
+      fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
+}
+
+/// Opens the recording. If that fails, prints the topics of a bag before the error.
+std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& arguments,
+                                                      const std::vector<TopicInfo>& topics) {
+  try {
+    return open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
+  } catch (const InputError&) {
+    if (!arguments.wants_json) {
+      fmt::print("{}", to_text(topics));
+      std::fflush(stdout);
+    }
+    throw;
+  }
+}
+
+/// Returns the stored poses, or computes them from a board in view.
+std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_token& stop) {
+  if (recording.truth || !recording.board || !recording.images) return recording.truth;
+  ProgressBar bar("finding the board");
+  return board_truth(recording, 0, recording.frame_count(), stop, std::ref(bar));
+}
+
+}  // namespace
+
+int info_command(const InfoArguments& arguments) {
+  const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
+  if (to_file) check_json_file(arguments);
+  const auto topics = describe_topics(arguments.recording, arguments.topics);
+  const auto recording = open_or_print_topics(arguments, topics);
+  RecordingInfo info = describe(*recording);
+  if (const auto why = gyroscope_disagreement(recording, info.rate_hz); !why.empty())
+    info.notes.push_back(why);
+  if (!arguments.wants_json) {
+    fmt::print("{}{}", to_text(info), to_text(topics));
+    return kDone;
+  }
+  nlohmann::json json = to_json(info);
+  if (!topics.empty()) json["topics"] = to_json(topics);
+  write_output(to_file ? arguments.json : "-", json_text(json, 2));
+  return kDone;
+}
+
+int convert_command(const ConvertArguments& arguments) {
+  const fs::path& output = arguments.output;
+  const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
+  const Interrupt interrupt;
+  const std::string remains = output.string() + " was not written";
+  const auto truth = truth_of(*opened, interrupt.token());
+  interrupt.check(remains);
+  {
+    ProgressBar bar("writing " + output.string());
+    write_recording(*opened, truth, arguments.format, output, [&](int done, int of) {
+      bar(done, of);
+      interrupt.check(remains);
+    });
+  }
+  fmt::print("{}: {} frames\n", output.string(), opened->frame_count());
+  return kDone;
+}
+
+int synthesize_command(const fs::path& recipe_file, const fs::path& output) {
+  const Recipe recipe = read_recipe(recipe_file);
+  {
+    const Interrupt interrupt;
+    ProgressBar bar("synthesizing " + output.string());
+    synthesize(recipe, output, [&](int done, int of) {
+      bar(done, of);
+      interrupt.check(output.string() + " was not written");
+    });
+  }
+  fmt::print("{}: {} frames, {}x{}\n",
+             output.string(),
+             recipe.frame_count,
+             recipe.camera.width,
+             recipe.camera.height);
+  return kDone;
+}
+
+}  // namespace gpo
