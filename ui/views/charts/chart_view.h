@@ -4,7 +4,7 @@
 
 #include "engine/base/chart.h"
 #include "ui/look/palette.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/charts/chart_mapping.h"
 #include "ui/views/image/image_texture.h"
 

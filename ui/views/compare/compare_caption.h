@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/compare/compare_column.h"
 
 struct ImDrawList;

@@ -4,8 +4,7 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "ui/look/image_zoom.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_texture.h"

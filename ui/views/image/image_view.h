@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
 #include <memory>

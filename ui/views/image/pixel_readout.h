@@ -3,8 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/image_zoom.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 
 #include <string>
 

@@ -4,8 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/image_zoom.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 
 #include <cstdint>
 #include <optional>

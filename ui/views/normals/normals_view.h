@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/studies/normal_study.h"
-#include "ui/look/normals_zoom.h"
 #include "ui/look/palette.h"
+#include "ui/look/zoom.h"
 #include "ui/views/image/image_texture.h"
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 
 #include <cstdint>
 #include <initializer_list>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/view_choices.h"
+#include "ui/look/view_toggles.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/image_zoom.h"
 #include "ui/look/view_toggles.h"
+#include "ui/look/zoom.h"
 
 #include <memory>
 #include <optional>

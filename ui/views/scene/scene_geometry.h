@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/view_choices.h"
+#include "ui/look/view_toggles.h"
 
 #include <array>
 #include <optional>

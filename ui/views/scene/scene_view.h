@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
 #include <memory>
