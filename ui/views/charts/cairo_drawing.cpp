@@ -3,7 +3,7 @@
 #include "ui/views/charts/cairo_drawing.h"
 
 #include "engine/base/error.h"
-#include "ui/context/gui_style.h"
+#include "ui/context/gui.h"
 #include "ui/look/palette.h"
 
 #include <algorithm>
