@@ -9,7 +9,7 @@
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/residual_charts.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/overlay/track_colors.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/commands.h"

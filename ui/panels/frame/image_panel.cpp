@@ -10,8 +10,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/pixel_readout.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
 

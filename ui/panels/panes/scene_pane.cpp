@@ -6,7 +6,7 @@
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/views/scene/scene_geometry.h"
 
 namespace gpo {

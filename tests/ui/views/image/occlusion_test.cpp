@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/occlusion.h"
-
 #include "tests/ui/made_inspection.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 
 #include <algorithm>

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/pixel_readout.h"
-
 #include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/views/image/pointing.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

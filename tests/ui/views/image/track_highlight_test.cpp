@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/track_highlight.h"
-
 #include "tests/ui/made_inspection.h"
+#include "ui/views/image/pointing.h"
 
 #include <gtest/gtest.h>
 

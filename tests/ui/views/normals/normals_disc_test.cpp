@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/normals/normals_disc.h"
-
 #include "engine/geometry/pose.h"
 #include "engine/methods/plane/normal_landscape.h"
-#include "ui/views/scene/uncertainty_geometry.h"
+#include "ui/views/scene/scene_geometry.h"
 
 #include <cmath>
 

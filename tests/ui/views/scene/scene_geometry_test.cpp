@@ -5,7 +5,6 @@
 #include "engine/inspection/studies/plane_patches.h"
 #include "engine/truth/truth.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/views/scene/plane_grid.h"
 
 #include <cmath>
 

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/scene/uncertainty_geometry.h"
-
 #include "tests/ui/made_inspection.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/views/scene/scene_geometry.h"
