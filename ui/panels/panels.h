@@ -7,7 +7,7 @@
 #include "ui/panels/facts/curve_facts.h"
 #include "ui/panels/facts/track_rows.h"
 #include "ui/views/charts/chart_view.h"
-#include "ui/views/charts/residual_charts.h"
+#include "ui/views/charts/study_charts.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_texture.h"

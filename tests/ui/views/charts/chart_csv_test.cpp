@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_csv.h"
+#include "ui/views/charts/chart_view.h"
 
 #include <limits>
 

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/residual_charts.h"
-
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/residuals.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/views/charts/study_charts.h"
 
 #include <cmath>
 #include <numeric>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/solver_charts.h"
+#include "ui/views/charts/study_charts.h"
 
 #include <gtest/gtest.h>
 
