@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "ui/context/framebuffer.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/workbench/actions/apply.h"
@@ -134,7 +133,7 @@ Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
   use_theme(input, gui, views);
-  gui.begin_frame(size.width, size.height, 1, delta_seconds);
+  gui.begin_frame(size.width, size.height, delta_seconds);
   draw_panels(input, size, views, commands);
   gui.end_frame(views.window, color_of(Role::border));
   return commands;

@@ -62,7 +62,7 @@ class ImageView : public View {
     frame_ = frame;
     gui_.begin_frame(kSize.width, kSize.height);
     draw_image_view(
-        *ImGui::GetBackgroundDrawList(), whole(), inspection_, frame, &texture_, {}, {});
+        *ImGui::GetBackgroundDrawList(), whole(), {inspection_, frame, {}}, &texture_, {});
     gui_.end_frame(image_, color_of(Role::border));
   }
 
@@ -103,7 +103,7 @@ class OnlyScene : public View {
   void draw(int frame) override {
     gui_.begin_frame(kSize.width, kSize.height);
     draw_scene_view(
-        *ImGui::GetBackgroundDrawList(), whole(), view_, inspection_, frame, camera_, options_);
+        *ImGui::GetBackgroundDrawList(), whole(), {inspection_, frame, options_}, view_, camera_);
     gui_.end_frame(image_, color_of(Role::border));
   }
 

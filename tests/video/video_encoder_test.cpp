@@ -23,7 +23,7 @@ cv::Mat disc(int i) {
   return image;
 }
 
-TEST(VideoEncoder, WritesTheWholeFileOrNothing) {
+TEST(VideoEncoder, WritesACompleteFileOrNone) {
   const TestFolder folder;
   const fs::path file = folder.path() / "a.mp4";
   {
@@ -31,7 +31,7 @@ TEST(VideoEncoder, WritesTheWholeFileOrNothing) {
     video.add(disc(0));
     EXPECT_FALSE(fs::exists(file));
   }
-  EXPECT_TRUE(fs::is_empty(folder.path()));  // not finished
+  EXPECT_TRUE(fs::is_empty(folder.path())) << "not finished";
   VideoEncoder video(file, 25, {64, 48});
   EXPECT_THAT(error_of([&] {
                 VideoEncoder(folder.path() / "b.mp4", 25, {64, 48}).finish();
@@ -42,7 +42,7 @@ TEST(VideoEncoder, WritesTheWholeFileOrNothing) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(VideoEncoder, IsReadByOpenCv) {
+TEST(VideoEncoder, OpenCvReadsItsVideos) {
   const TestFolder folder;
   constexpr int kFrames = 10;
   for (const double rate_hz : {25.0, 29.97, 12.5, 1.0, 240.0}) {
@@ -62,7 +62,7 @@ TEST(VideoEncoder, IsReadByOpenCv) {
   }
 }
 
-TEST(VideoEncoder, RefusesWhereItCannotWrite) {
+TEST(VideoEncoder, ReportsFilesAndImagesThatItCannotWrite) {
   EXPECT_THAT(error_of([] {
                 VideoEncoder("/nowhere/at/all.mp4", 25, {64, 48});
               }),
@@ -74,7 +74,9 @@ TEST(VideoEncoder, RefusesWhereItCannotWrite) {
               HasSubstr("size changed"));
 }
 
-TEST(VideoEncoder, SizesAreEven) { EXPECT_EQ(even_size({639, 480}), cv::Size(640, 480)); }
+TEST(VideoEncoder, RoundsSizesUpToEvenOnes) {
+  EXPECT_EQ(even_size({639, 480}), cv::Size(640, 480));
+}
 
 }  // namespace
 }  // namespace gpo

@@ -2,18 +2,130 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 
-#include "ui/context/gui_style.h"
 #include "ui/context/imgui_versions.h"
+#include "ui/context/theme.h"
 #include "ui/context/window_context.h"
 #include "ui/context/window_image.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+extern "C" {
+extern const char gpo_font_regular[], gpo_font_regular_end[];
+extern const char gpo_font_bold[], gpo_font_bold_end[];
+}
+
 namespace gpo {
+namespace {
+
+void apply_colors(ImVec4* colors, Theme theme) {
+  using enum Role;
+  const auto color = [theme](Role role, double alpha = 1) -> ImVec4 {
+    const std::uint32_t rgb = color_of(role, theme);
+    return {static_cast<float>(red(rgb)),
+            static_cast<float>(green(rgb)),
+            static_cast<float>(blue(rgb)),
+            static_cast<float>(alpha)};
+  };
+  colors[ImGuiCol_Text] = color(text);
+  colors[ImGuiCol_TextDisabled] = color(text_dim);
+  colors[ImGuiCol_TextSelectedBg] = color(accent, 0.35);
+  colors[ImGuiCol_WindowBg] = colors[ImGuiCol_ChildBg] = color(panel);
+  colors[ImGuiCol_MenuBarBg] = color(background);
+  colors[ImGuiCol_PopupBg] = color(raised, 0.98);
+  colors[ImGuiCol_ModalWindowDimBg] = color(background, 0.6);
+  colors[ImGuiCol_Border] = colors[ImGuiCol_Separator] = color(border);
+  colors[ImGuiCol_BorderShadow] = ImVec4(0, 0, 0, 0);
+  colors[ImGuiCol_FrameBg] = color(raised);
+  colors[ImGuiCol_FrameBgHovered] = color(hovered);
+  colors[ImGuiCol_FrameBgActive] = color(active);
+  colors[ImGuiCol_Button] = colors[ImGuiCol_Header] = color(raised);
+  colors[ImGuiCol_ButtonHovered] = colors[ImGuiCol_HeaderHovered] = color(hovered);
+  colors[ImGuiCol_ButtonActive] = colors[ImGuiCol_HeaderActive] = color(active);
+  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = color(accent);
+  colors[ImGuiCol_SliderGrabActive] = color(text);
+  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgCollapsed] = color(background);
+  colors[ImGuiCol_TitleBgActive] = color(raised);
+  colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = color(panel);
+  colors[ImGuiCol_TabHovered] = color(hovered);
+  colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = color(active);
+  colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_ResizeGripHovered] = color(accent, 0.6);
+  colors[ImGuiCol_SeparatorActive] = colors[ImGuiCol_ResizeGripActive] = color(accent);
+  colors[ImGuiCol_ResizeGrip] = color(border);
+  colors[ImGuiCol_ScrollbarBg] = color(background, 0);
+  colors[ImGuiCol_ScrollbarGrab] = color(hovered);
+  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = color(active);
+  colors[ImGuiCol_TableHeaderBg] = color(raised);
+  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = color(border);
+  colors[ImGuiCol_TableRowBg] = ImVec4(0, 0, 0, 0);
+  colors[ImGuiCol_TableRowBgAlt] = color(text, 0.03);
+  colors[ImGuiCol_NavHighlight] = color(accent);
+  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = color(accent);
+}
+
+/// Adds a font with digits of equal width, so that changing numbers do not move; Inter's differ.
+void add_font(std::string_view font, float size_px) {
+  static const ImWchar digits[] = {'0', '9', 0};
+  // Latin with ° ² ± × ·, Greek, – … and quotes, arrows, − √ ≈ ≤ ≥, ○ ● ▶ ◀, ticks and crosses.
+  // clang-format off
+  static const ImWchar others[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x2010, 0x2044, 0x2190, 0x2199,
+                                   0x2200, 0x2265, 0x25A0, 0x25FF, 0x2713, 0x2717, 0};
+  // clang-format on
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  auto* bytes = const_cast<char*>(font.data());  // Dear ImGui only reads them
+  const int count = static_cast<int>(font.size());
+  ImFontConfig config;
+  config.FontDataOwnedByAtlas = false;
+  config.OversampleH = 2;
+  config.GlyphRanges = digits;
+  config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = std::round(0.53F * size_px);
+  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &config);
+  ImFontConfig rest;
+  rest.FontDataOwnedByAtlas = false;
+  rest.OversampleH = 2;
+  rest.MergeMode = true;
+  rest.GlyphRanges = others;
+  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &rest);
+}
+
+void apply_style(float scale, Theme theme) {
+  ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
+  apply_colors(style.Colors, theme);
+  style.WindowPadding = ImVec2(12, 10);
+  style.FramePadding = ImVec2(9, 5);
+  style.ItemSpacing = ImVec2(8, 7);
+  style.ItemInnerSpacing = ImVec2(7, 4);
+  style.CellPadding = ImVec2(8, 4);
+  style.WindowBorderSize = style.PopupBorderSize = style.ChildBorderSize = 1;
+  style.FrameBorderSize = style.TabBorderSize = 0;
+  style.WindowRounding = style.ChildRounding = 0;
+  style.FrameRounding = style.PopupRounding = style.GrabRounding = style.TabRounding = 4;
+  style.ScrollbarRounding = 6;
+  style.ScrollbarSize = 12;
+  style.GrabMinSize = 11;
+  style.WindowTitleAlign = ImVec2(0.0F, 0.5F);
+  style.ScaleAllSizes(scale);
+}
+
+/// In the order of `Font`.
+void load_fonts(float scale) {
+  const auto size = [scale](float at_96_dpi) { return std::round(at_96_dpi * scale); };
+  add_font(regular_font(), size(16));
+  add_font(bold_font(), size(16));
+  add_font(regular_font(), size(14));
+  add_font(bold_font(), size(20));
+}
+
+}  // namespace
+
+std::string_view regular_font() { return {gpo_font_regular, gpo_font_regular_end}; }
+
+std::string_view bold_font() { return {gpo_font_bold, gpo_font_bold_end}; }
 
 ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(font)]; }
 
@@ -63,14 +175,13 @@ void Gui::set_zoom(double zoom) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-void Gui::begin_frame(int width, int height, float framebuffer_scale, double delta_seconds) {
+void Gui::begin_frame(int width, int height, double delta_seconds) {
   ImGui_ImplOpenGL3_NewFrame();
   if (has_window_) ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
-  io.DisplaySize = ImVec2(static_cast<float>(width) / framebuffer_scale,
-                          static_cast<float>(height) / framebuffer_scale);
-  io.DisplayFramebufferScale = ImVec2(framebuffer_scale, framebuffer_scale);
-  // Dear ImGui asserts that time goes on.
+  io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
+  io.DisplayFramebufferScale = ImVec2(1, 1);
+  // Dear ImGui asserts that time passes.
   io.DeltaTime = std::max(static_cast<float>(delta_seconds), 1e-5F);
   ImGui::NewFrame();
 }
@@ -84,5 +195,15 @@ void Gui::end_frame(WindowImage& image, std::uint32_t background_rgb) {
   ImGui::Render();
   image.show(*ImGui::GetDrawData(), background_rgb);
 }
+
+Theme current_theme() {
+  if (ImGui::GetCurrentContext() == nullptr) return Theme::dark;
+  const auto* gui = static_cast<const Gui*>(ImGui::GetIO().UserData);
+  return gui != nullptr ? gui->theme() : Theme::dark;
+}
+
+std::uint32_t color_of(Role role) { return color_of(role, current_theme()); }
+
+std::uint32_t imgui_color(Role role, double alpha) { return imgui_color(color_of(role), alpha); }
 
 }  // namespace gpo

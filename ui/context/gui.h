@@ -5,6 +5,7 @@
 #include "ui/look/palette.h"
 
 #include <cstdint>
+#include <string_view>
 
 struct ImFont;
 
@@ -15,41 +16,41 @@ class WindowImage;
 
 enum class Font { regular, bold, small, heading };
 
-/// The font in the current Dear ImGui context; push it, or draw with it.
+/// Returns the font in the current Dear ImGui context; push it, or draw with it.
 ImFont* font(Font font);
 
-/// Dear ImGui in the OpenGL context that is current: style, fonts, frames. One screen unit is one
-/// pixel of the framebuffer; what is HiDPI is drawn with larger fonts and paddings.
+/// The two OpenType fonts embedded in the program.
+std::string_view regular_font();
+std::string_view bold_font();
+
+/// Dear ImGui in the current OpenGL context: style, fonts, frames. A screen unit is a pixel of the
+/// framebuffer; on HiDPI screens fonts and paddings are larger.
 class Gui {
  public:
   static constexpr double kFixedFrame_s = 1.0 / 60;
 
-  /// Without input, for pictures: the same frames give the same bytes.
+  /// Without input, for images: the same frames give the same bytes.
   explicit Gui(float content_scale = 1);
-  /// For that window; `WindowInput` feeds it with mouse and keys.
+  /// For a window; `WindowInput` passes mouse and keys to it.
   explicit Gui(WindowContext& window);
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Width and height of what is drawn [px]. `framebuffer_scale`: pixels a screen unit; 1 on X11.
-  void begin_frame(int width,
-                   int height,
-                   float framebuffer_scale = 1,
-                   double delta_seconds = kFixedFrame_s);
-  /// Renders into the framebuffer that is bound, over what is there.
+  /// `width` and `height` of the drawn area [px].
+  void begin_frame(int width, int height, double delta_seconds = kFixedFrame_s);
+  /// Renders over the content of the bound framebuffer.
   void end_frame();
-  /// The same, but draws only what has changed since the picture's last frame.
+  /// The same, but draws only the parts that changed since the last frame.
   void end_frame(WindowImage& image, std::uint32_t background_rgb);
-  /// Sizes in pixels that were made for 96 dpi are to be multiplied by this.
+  /// Factor for sizes in pixels at 96 dpi.
   float scale() const { return scale_; }
-  /// Everything so many times as large as the screen's own scale has it, which a window that moves
-  /// to another screen changes. Between two frames.
+  /// Scale of the screen, which changes when the window moves to another one.
   void set_screen_scale(float content_scale) { screen_scale_ = content_scale; }
+  /// Magnifies everything beyond the screen's scale. Call it between two frames.
   void set_zoom(double zoom);
 
   Theme theme() const { return theme_; }
-  /// Of everything that is drawn from now on.
   void set_theme(Theme theme);
 
  private:

@@ -3,13 +3,13 @@
 #include "ui/context/offscreen_context.h"
 
 #include "engine/base/error.h"
-#include "ui/context/framebuffer.h"
 
 #include <array>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glew.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -18,7 +18,7 @@ bool initialized(EGLDisplay display) {
   return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE;
 }
 
-/// Surfaceless first: it needs neither a display nor a GPU.
+/// Tries a surfaceless display first: it needs neither a display nor a GPU.
 EGLDisplay open_display() {
   const auto platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       eglGetProcAddress("eglGetPlatformDisplayEXT"));
@@ -51,7 +51,7 @@ EGLContext create_context(EGLDisplay display) {
   const std::array<EGLint, 7> context_attributes = {EGL_CONTEXT_MAJOR_VERSION,
                                                     3,
                                                     EGL_CONTEXT_MINOR_VERSION,
-                                                    3,
+                                                    3,  //
                                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                                     EGL_NONE};
@@ -59,6 +59,51 @@ EGLContext create_context(EGLDisplay display) {
 }
 
 }  // namespace
+
+void load_gl_functions() {
+  glewExperimental = GL_TRUE;
+  const GLenum status = glewInit();
+  if (status != GLEW_OK && status != GLEW_ERROR_NO_GLX_DISPLAY)
+    throw InputError("cannot load OpenGL 3.3: install libgl1-mesa-dri or a driver");
+  while (glGetError() != GL_NO_ERROR) {
+  }
+}
+
+Framebuffer::Framebuffer(int width, int height) : width_(width), height_(height) {
+  glGenRenderbuffers(1, &color_);
+  glBindRenderbuffer(GL_RENDERBUFFER, color_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  glGenFramebuffers(1, &framebuffer_);
+  bind();
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
+}
+
+Framebuffer::~Framebuffer() {
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteRenderbuffers(1, &color_);
+}
+
+void Framebuffer::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, width_, height_);
+}
+
+void Framebuffer::copy_to(unsigned framebuffer) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glDisable(GL_SCISSOR_TEST);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
+cv::Mat read_bound_framebuffer(int width, int height) {
+  cv::Mat rgba(height, width, CV_8UC4), bgr;
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
+  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+  cv::flip(bgr, bgr, 0);  // OpenGL's rows begin at the bottom
+  return bgr;
+}
 
 struct OffscreenContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -73,7 +118,7 @@ struct OffscreenContext::Handles {
     if (make_current()) framebuffer.reset();
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    // The display stays: EGL gives the same one to every context of the process.
+    // The display stays open: EGL gives the same one to every context of the process.
   }
 };
 
@@ -83,7 +128,7 @@ OffscreenContext::OffscreenContext(int width, int height)
   if (handles_->display != EGL_NO_DISPLAY) handles_->context = create_context(handles_->display);
   if (handles_->context == EGL_NO_CONTEXT || !handles_->make_current())
     throw InputError(
-        "cannot draw without a display: found no EGL with OpenGL 3.3, expected Mesa's (on Debian: "
+        "cannot draw without a display: EGL with OpenGL 3.3 is missing. Install Mesa's (on Debian: "
         "apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri)");
   load_gl_functions();
   handles_->framebuffer = std::make_unique<Framebuffer>(width, height);

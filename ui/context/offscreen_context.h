@@ -8,19 +8,44 @@
 
 namespace gpo {
 
-/// OpenGL 3.3 core without a display, by EGL, with a framebuffer of its own. Current in the thread
-/// that made it. Throws InputError that says what to install where there is no EGL.
+/// Loads OpenGL's functions into the current context. GLEW reports "no GLX display" in an EGL
+/// context although all functions are loaded; this is ignored. Throws InputError.
+void load_gl_functions();
+
+/// An owned RGBA8 framebuffer without depth. Needs its context to be current.
+class Framebuffer {
+ public:
+  Framebuffer(int width, int height);
+  ~Framebuffer();
+  Framebuffer(const Framebuffer&) = delete;
+  Framebuffer& operator=(const Framebuffer&) = delete;
+
+  /// Makes it the target of all following draw calls, with a viewport of its size.
+  void bind() const;
+  /// Copies the pixels into another framebuffer (0: the window's) and binds that one.
+  void copy_to(unsigned framebuffer) const;
+
+ private:
+  int width_, height_;
+  unsigned framebuffer_ = 0, color_ = 0;
+};
+
+/// Returns the content of the bound framebuffer: CV_8UC3, BGR, y down.
+cv::Mat read_bound_framebuffer(int width, int height);
+
+/// OpenGL 3.3 core without a display, through EGL, with its own framebuffer. Current in the thread
+/// that creates it. Throws InputError with the packages to install if EGL is missing.
 class OffscreenContext {
  public:
   OffscreenContext(int width, int height);
   ~OffscreenContext();
 
   void make_current();
-  /// Makes it current; draws go to its framebuffer from now on.
+  /// Makes the context current and its framebuffer the target of all following draw calls.
   void bind();
   int width() const { return width_; }
   int height() const { return height_; }
-  /// What was drawn: CV_8UC3, BGR, y down.
+  /// Returns the content of its framebuffer: CV_8UC3, BGR, y down.
   cv::Mat read_bgr();
 
  private:

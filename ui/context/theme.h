@@ -8,14 +8,13 @@
 
 namespace gpo {
 
-/// The theme that the current Dear ImGui context is drawn in (`Gui::set_theme`); dark where there
-/// is none. It belongs to the context as its fonts and its style do: there is one for all that is
-/// drawn into it, and everything that draws would have to be handed it.
+/// Returns the theme of the current Dear ImGui context (`Gui::set_theme`); dark if there is none.
+/// Like fonts and style it is a property of the context, so that draw functions need no parameter.
 Theme current_theme();
 
 /// In the current theme.
 std::uint32_t color_of(Role role);
-/// As Dear ImGui packs it. `alpha` in 0..1.
+/// Packed as in Dear ImGui. `alpha` in 0..1.
 std::uint32_t imgui_color(Role role, double alpha = 1);
 
 }  // namespace gpo

@@ -44,7 +44,7 @@ void VtkWindow::OpenGLInitContext() {
   const GLenum status = glewInit();
   GlewInitValid = status == GLEW_OK || status == GLEW_ERROR_NO_GLX_DISPLAY;
   if (!GlewInitValid) {
-    vtkErrorMacro("OpenGL's functions could not be loaded");
+    vtkErrorMacro("cannot load OpenGL's functions");
     return;
   }
   Initialized = true;
@@ -64,16 +64,12 @@ unsigned render_to_texture(VtkWindow& window, int width, int height) {
   GLint bound = 0;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &bound);
   window.SetSize(width, height);
-  // VTK remembers the state of OpenGL; Dear ImGui has changed it since.
+  // VTK caches OpenGL's state, which Dear ImGui has changed.
   window.GetState()->Reset();
   window.Render();
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound));
   glUseProgram(0);
   glBindVertexArray(0);
-  return texture_of(window);
-}
-
-unsigned texture_of(VtkWindow& window) {
   auto* texture = window.GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0);
   return texture != nullptr ? texture->GetHandle() : 0;
 }

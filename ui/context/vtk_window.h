@@ -10,16 +10,16 @@
 
 namespace gpo {
 
-/// VTK in the OpenGL context that is current, drawing into a texture of its own. VTK never opens a
-/// window here; Debian's would abort without a display.
+/// VTK in the current OpenGL context, drawing into a texture. It never opens a window; Debian's VTK
+/// would abort without a display.
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
   VtkWindow(const VtkWindow&) = delete;
   void operator=(const VtkWindow&) = delete;
 
-  /// Loads OpenGL's functions once; VTK 9.1 takes GLEW's "no GLX display" for a failure, and then
-  /// prints an error a frame and draws thin lines only.
+  /// Loads OpenGL's functions once. VTK 9.1 takes GLEW's "no GLX display" for a failure, prints an
+  /// error per frame and draws only thin lines.
   void OpenGLInitContext() override;
 
  protected:
@@ -27,17 +27,14 @@ class VtkWindow : public vtkGenericOpenGLRenderWindow {
   vtkTypeMacro(VtkWindow, vtkGenericOpenGLRenderWindow)
 };
 
-/// Anti-aliased by four samples: llvmpipe's most, and the same bytes every time.
+/// Anti-aliased by four samples: the maximum of llvmpipe, so that bytes are reproducible.
 vtkSmartPointer<VtkWindow> make_vtk_window();
 
-/// Renders at this size and returns the texture of the picture, bottom row first; 0 where there
-/// is nothing to draw on. Fetch it anew after every call. The bound framebuffer stays bound.
+/// Renders at this size and returns the texture of the image, bottom row first; 0 for an empty
+/// size. The texture is valid until the next call. The bound framebuffer stays bound.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
 
-/// The texture of the last picture; 0 before the first.
-unsigned texture_of(VtkWindow& window);
-
-/// While it lives, VTK's errors and warnings come here instead of the standard error stream.
+/// Redirects VTK's errors and warnings from the standard error stream to a function.
 class VtkMessages {
  public:
   explicit VtkMessages(std::function<void(const std::string&)> on_message);

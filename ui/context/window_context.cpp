@@ -3,7 +3,7 @@
 #include "ui/context/window_context.h"
 
 #include "engine/base/error.h"
-#include "ui/context/framebuffer.h"
+#include "ui/context/offscreen_context.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,10 +17,10 @@ namespace {
 std::string last_glfw_error() {
   const char* description = nullptr;
   glfwGetError(&description);
-  return description != nullptr ? description : "no reason given";
+  return description != nullptr ? description : "unknown reason";
 }
 
-/// That most of a window is on; the first one where none is.
+/// Returns the monitor that shows most of a window; the primary one if none does.
 GLFWmonitor* monitor_below(const cv::Rect& window) {
   int count = 0;
   GLFWmonitor** const all = glfwGetMonitors(&count);
@@ -44,20 +44,20 @@ GLFWmonitor* monitor_below(const cv::Rect& window) {
 WindowContext::WindowContext(const std::string& title, int width, int height, bool visible) {
   if (glfwInit() != GLFW_TRUE)
     throw InputError("cannot open a window: " + last_glfw_error() +
-                     "; expected a display (`run` and `snapshot` need none)");
+                     ". A display is required; `run` and `snapshot` work without one");
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
-  // The views bring their own depth and samples; the window only shows them.
+  // The views have depth and samples of their own.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
     glfwTerminate();
-    throw InputError("cannot open a window: " + reason + "; expected OpenGL 3.3");
+    throw InputError("cannot open a window: " + reason + ". OpenGL 3.3 is required");
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);

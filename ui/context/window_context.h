@@ -10,8 +10,8 @@ struct GLFWwindow;
 
 namespace gpo {
 
-/// A window of the desktop with OpenGL 3.3 core, current in the thread that made it. One at a time.
-/// Throws InputError where there is no display.
+/// A desktop window with OpenGL 3.3 core, current in the thread that creates it. Only one at a
+/// time. Throws InputError without a display.
 class WindowContext {
  public:
   WindowContext(const std::string& title, int width, int height, bool visible = true);
@@ -20,31 +20,31 @@ class WindowContext {
   WindowContext& operator=(const WindowContext&) = delete;
 
   void make_current();
-  /// Makes it current; draws go to the back buffer from now on, to all of it.
+  /// Makes the context current and its back buffer the target of all following draw calls.
   void bind();
-  /// Takes what happened since the last call from the desktop.
+  /// Handles the events since the last call.
   void poll();
-  /// As `poll`, but sleeps until something happens, at most so long.
+  /// The same, but first sleeps until an event, at most `seconds`.
   void wait(double seconds);
   void swap();
   bool should_close() const;
-  /// Of the framebuffer [px].
+  /// Returns the size of the framebuffer [px].
   cv::Size size() const;
-  /// The monitor's: 1 at 96 dpi, 2 on a HiDPI screen.
+  /// Returns the monitor's scale: 1 at 96 dpi, 2 on a HiDPI screen.
   float content_scale() const;
-  /// The whole monitor, or as it was before.
+  /// Covers the whole monitor, or restores the place before that.
   void set_fullscreen(bool fullscreen);
-  /// As large as that [screen units], but no larger than the monitor's free area.
+  /// Resizes [screen units], at most to the monitor's free area.
   void resize(cv::Size wanted);
-  /// [screen units], and of a window in full screen what it was before.
+  /// Returns the window's place [screen units]; in full screen the place before that.
   cv::Rect place() const;
-  /// What was drawn into the back buffer: CV_8UC3, BGR, y down. Before `swap`.
+  /// Returns the content of the back buffer before `swap`: CV_8UC3, BGR, y down.
   cv::Mat read_bgr();
   GLFWwindow* glfw() { return window_; }
 
  private:
   GLFWwindow* window_ = nullptr;
-  cv::Rect before_;  ///< full screen; empty: it is not
+  cv::Rect before_;  ///< place before full screen; empty if not in full screen
 };
 
 }  // namespace gpo

@@ -33,7 +33,7 @@ bool same_command(const ImDrawCmd& a, const ImDrawCmd& b) {
          a.UserCallback == b.UserCallback && a.UserCallbackData == b.UserCallbackData;
 }
 
-/// Whole pixels; empty where the corners are no rectangle.
+/// Rounds outwards to whole pixels; empty if the corners are not in order.
 cv::Rect outer_rect(float x0, float y0, float x1, float y1) {
   const cv::Point low(static_cast<int>(std::floor(x0)), static_cast<int>(std::floor(y0)));
   const cv::Point high(static_cast<int>(std::ceil(x1)), static_cast<int>(std::ceil(y1)));
@@ -55,7 +55,7 @@ cv::Rect bounds_of(const ImDrawList& list) {
   return clips & outer_rect(low.x, low.y, high.x, high.y);
 }
 
-/// Rectangles that overlap become one, so that nothing is drawn twice.
+/// Merges overlapping rectangles, so that no pixel is drawn twice.
 void add(std::vector<cv::Rect>& rects, cv::Rect rect) {
   if (rect.empty()) return;
   for (auto other = rects.begin(); other != rects.end();) {
@@ -95,15 +95,11 @@ WindowImage::DrawnList WindowImage::drawn(const ImDrawList& list) {
 }
 
 bool WindowImage::same(const DrawnList& drawn, const ImDrawList& list) {
-  return std::equal(drawn.commands.begin(),
-                    drawn.commands.end(),
-                    list.CmdBuffer.begin(),
-                    list.CmdBuffer.end(),
-                    same_command) &&
+  return std::ranges::equal(drawn.commands, list.CmdBuffer, same_command) &&
          same_items(drawn.vertices, list.VtxBuffer) && same_items(drawn.indices, list.IdxBuffer);
 }
 
-/// Notes where the lists differ from those of the last frame.
+/// Collects the regions where the lists differ from those of the last frame.
 void WindowImage::remember(const ImDrawData& data) {
   const auto count = static_cast<std::size_t>(data.CmdListsCount);
   for (std::size_t i = count; i < lists_.size(); ++i) add(redrawn_, lists_[i].bounds);
@@ -117,7 +113,7 @@ void WindowImage::remember(const ImDrawData& data) {
   }
 }
 
-/// All that is in this part, whichever list it is of: they cover each other.
+/// Redraws a region from all lists in it: they cover each other.
 void WindowImage::redraw(ImDrawData& data,
                            const cv::Rect& part,
                            std::uint32_t background_rgb) const {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/context/framebuffer.h"
+#include "ui/context/offscreen_context.h"
 
 #include <cstdint>
 #include <memory>
@@ -13,29 +13,28 @@
 
 namespace gpo {
 
-/// To be called before a texture is added to the list: says which content of it is meant. Dear
-/// ImGui's lists name a texture, and stay the same when another picture is brought into it.
+/// Marks the content of the texture that is added to the list next. Dear ImGui's lists name only
+/// the texture and do not change when another image is uploaded into it.
 void mark_content(ImDrawList& list, std::size_t revision);
 
-/// The picture of the window, kept from frame to frame: only where Dear ImGui's lists differ from
-/// those of the last frame is it drawn anew, and then it is copied. What is drawn is compared, not
-/// what it was drawn from, so that nobody has to say what has changed, textures excepted
-/// (`mark_content`). A screen unit is a pixel. Needs its context to be current.
+/// Caches the window's pixels from frame to frame: redraws only the regions where Dear ImGui's
+/// lists differ from those of the last frame, then copies all. Needs its context to be current. A
+/// screen unit is a pixel.
 class WindowImage {
  public:
-  /// Into the framebuffer that is bound, over all of it. `data` is what it was afterwards.
+  /// Draws into the bound framebuffer, over all of it. `data` is unchanged afterwards.
   void show(ImDrawData& data, std::uint32_t background_rgb);
 
-  /// What the last call drew anew [px], y down; empty where nothing had changed.
+  /// Returns the regions that the last call redrew [px], y down.
   const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
 
  private:
-  /// What Dear ImGui wanted to be drawn for one of its windows.
+  /// A copy of one list of Dear ImGui.
   struct DrawnList {
     std::vector<ImDrawCmd> commands;
     std::vector<ImDrawVert> vertices;
     std::vector<ImDrawIdx> indices;
-    cv::Rect bounds;  ///< nothing is drawn outside of it
+    cv::Rect bounds;  ///< contains all that it draws
   };
   static DrawnList drawn(const ImDrawList& list);
   static bool same(const DrawnList& drawn, const ImDrawList& list);

@@ -11,8 +11,8 @@ namespace gpo {
 
 std::string number_text(double value, int most) {
   const double size = std::abs(value);
-  const int behind = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
-  return fmt::format("{:.{}f}", value, std::min(behind, most));
+  const int decimals = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f}", value, std::min(decimals, most));
 }
 
 std::string two_decimals(const std::optional<double>& value) {
@@ -39,9 +39,9 @@ std::string difference_text(double value, double reference, std::string (*text)(
 
 std::string uncertain_text(double value, double sigma) {
   constexpr int kMost = 6;
-  const int behind =
+  const int decimals =
       sigma > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost) : kMost;
-  return fmt::format("{:.{}f} \u00b1{:.{}f}", value, behind, sigma, behind);
+  return fmt::format("{:.{}f} \u00b1{:.{}f}", value, decimals, sigma, decimals);
 }
 
 }  // namespace gpo

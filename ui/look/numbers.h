@@ -7,10 +7,10 @@
 
 namespace gpo {
 
-/// Three significant digits, but none beyond `most` behind the point.
+/// Formats with three significant digits, but at most `most` decimals.
 std::string number_text(double value, int most);
 
-/// "0.25"; a dash where it is not known.
+/// "0.25"; a dash if unknown.
 std::string two_decimals(const std::optional<double>& value);
 
 /// "4.1 mm", "1.20 m".
@@ -19,12 +19,11 @@ std::string length_text(double meters);
 std::string angle_text(double degrees);
 std::string milliseconds_text(double milliseconds);
 
-/// "+0.12°", "-1.3 mm": from a reference to a value, both in the unit of `text`; "±0" where the
-/// difference does not show.
+/// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm"; "±0" if it
+/// rounds to zero.
 std::string difference_text(double value, double reference, std::string (*text)(double));
 
-/// "0.912 ±0.004": a value with as many digits as two of its standard deviation say, at most
-/// six behind the point.
+/// "0.912 ±0.004": two significant digits of the standard deviation, at most six decimals.
 std::string uncertain_text(double value, double sigma);
 
 }  // namespace gpo

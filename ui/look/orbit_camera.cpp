@@ -20,7 +20,7 @@ double half_tangent(const OrbitCamera& camera) {
   return std::tan(radians(camera.view_angle_deg) / 2);
 }
 
-/// Where the eye may be along one axis of the view, so that all of the points are within the slopes
+/// Positions x of the eye along one axis of the view from which all points are within the slopes
 /// -`before` and `after` of the forward direction: least + after z <= x <= most - before z.
 struct Reach {
   double least, most, before, after;
@@ -107,6 +107,14 @@ std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
   if (p.z() <= 0) return std::nullopt;
   const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
   return view_size_px / 2 + focal_px * p.head<2>() / p.z();
+}
+
+std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
+                                         const Eigen::Vector3d& point,
+                                         const ScreenRect& rect) {
+  auto pixel = view_pixel(camera, point, rect.size);
+  if (pixel) *pixel += rect.min;
+  return pixel;
 }
 
 Eigen::Vector3d view_ray(const OrbitCamera& camera,

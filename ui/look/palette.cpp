@@ -12,9 +12,9 @@ struct Colors {
   std::uint32_t dark, light;
 };
 
-/// The themes, in the order of the roles.
-constexpr Colors kThemes[] = {
-    {Role::inlier, 0x1FCB93, 0x1FCB93},     // bluish green, lightened to show on pictures
+/// In the order of the roles.
+constexpr Colors kRoleColors[] = {
+    {Role::inlier, 0x1FCB93, 0x1FCB93},     // bluish green, lightened to stand out on images
     {Role::outlier, 0xF0503C, 0xF0503C},    // red
     {Role::residual, 0xF0E442, 0xF0E442},   // yellow
     {Role::truth, 0xA9AEB6, 0x6E757E},      // neutral gray
@@ -53,17 +53,16 @@ constexpr Colors kThemes[] = {
     {Role::bad, 0xF26A58, 0xC4311F},
 };
 
-constexpr bool complete() {
-  for (std::size_t i = 0; i < std::size(kThemes); ++i)
-    if (static_cast<std::size_t>(kThemes[i].role) != i) return false;
-  return std::size(kThemes) == static_cast<std::size_t>(Role::bad) + 1;
-}
-static_assert(complete());
+static_assert([] {
+  for (std::size_t i = 0; i < std::size(kRoleColors); ++i)
+    if (static_cast<std::size_t>(kRoleColors[i].role) != i) return false;
+  return std::size(kRoleColors) == static_cast<std::size_t>(Role::bad) + 1;
+}());
 
 }  // namespace
 
 std::uint32_t color_of(Role role, Theme theme) {
-  const Colors& colors = kThemes[static_cast<std::size_t>(role)];
+  const Colors& colors = kRoleColors[static_cast<std::size_t>(role)];
   return theme == Theme::dark ? colors.dark : colors.light;
 }
 

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 namespace gpo {
 
-/// What a color stands for, in the views and the panels. The methods' own colors are in `methods()`
-/// and the same in every theme. Data in Okabe-Ito's colors, which people who see few colors tell
-/// apart; shape tells them apart too.
+/// Meaning of a color in views and panels. The methods' colors are in `methods()`, the same in
+/// every theme. Data have Okabe and Ito's colors, which color-blind people can distinguish.
 enum class Role {
   // Data.
   inlier,
@@ -18,19 +16,19 @@ enum class Role {
   residual,
   truth,
   cube_base,
-  cube_edge,  ///< the other edges: lighter
-  cube_face,  ///< translucent
+  cube_edge,  ///< edges off the base
+  cube_face,
   reference,  ///< the reference camera's mark
   plane,
   uncertain,
   map_point,
-  selected,    ///< rings around what is picked out
-  pointed_at,  ///< ... and around what the mouse rests on
-  rotation,    ///< how fast the camera turns
+  selected,    ///< rings around picked tracks
+  pointed_at,  ///< rings around the item under the mouse
+  rotation,    ///< angular rate
   axis_x,
   axis_y,
   axis_z,
-  gravity,  ///< up, and the horizon
+  gravity,  ///< up direction and horizon
   // Stages of an inspection.
   tracking,
   ransac,
@@ -48,19 +46,19 @@ enum class Role {
   border,
   text_dim,
   text,
-  accent,  ///< what is chosen or can be dragged
+  accent,  ///< chosen or draggable items
   good,
   warning,
   bad,
 };
 
-/// Of the window: its surfaces, its text, and the data that is drawn light on dark.
+/// Colors of the window's surfaces and text, and of data drawn light on dark.
 enum class Theme { dark, light };
 
 /// 0xRRGGBB.
 std::uint32_t color_of(Role role, Theme theme);
 
-/// Figures for print, on white; the same in every theme.
+/// Colors of figures for print, on white; the same in every theme.
 namespace palette {
 constexpr std::uint32_t kInk = 0x1A1D21;
 constexpr std::uint32_t kPaperAxis = 0x6B727C;
@@ -71,7 +69,7 @@ constexpr double red(std::uint32_t rgb) { return ((rgb >> 16) & 0xFF) / 255.0; }
 constexpr double green(std::uint32_t rgb) { return ((rgb >> 8) & 0xFF) / 255.0; }
 constexpr double blue(std::uint32_t rgb) { return (rgb & 0xFF) / 255.0; }
 
-/// Between two colors, 0..1: thin things are drawn dim and opaque, so that depth is right.
+/// Mixes two colors, `share` 0..1. Thin lines are dimmed this way, opaque, so that depth is right.
 inline std::uint32_t mixed_rgb(std::uint32_t a, std::uint32_t b, double share) {
   const auto channel = [&](int shift) {
     const double x = (a >> shift) & 0xFF, y = (b >> shift) & 0xFF;
@@ -80,7 +78,7 @@ inline std::uint32_t mixed_rgb(std::uint32_t a, std::uint32_t b, double share) {
   return channel(16) | channel(8) | channel(0);
 }
 
-/// As Dear ImGui packs a color (IM_COL32). `alpha` in 0..1.
+/// Packs a color as Dear ImGui does (IM_COL32). `alpha` in 0..1.
 inline std::uint32_t imgui_color(std::uint32_t rgb, double alpha = 1) {
   return static_cast<std::uint32_t>(alpha * 255.999) << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) |
          ((rgb >> 16) & 0xFF);

@@ -14,13 +14,13 @@ constexpr int kBlock_px = 16;
 constexpr double kMostUnequal = 0.0005;
 constexpr double kMostUnequalInBlock = 0.25;
 
-/// The largest difference of any channel, CV_8UC1.
+/// Returns the largest difference of any channel, CV_8UC1.
 cv::Mat largest_difference(const cv::Mat& actual, const cv::Mat& expected) {
-  cv::Mat difference;
+  cv::Mat difference, largest;
   cv::absdiff(actual, expected, difference);
-  std::array<cv::Mat, 3> channels;
-  cv::split(difference, channels.data());
-  return cv::max(channels[0], cv::max(channels[1], channels[2]));
+  cv::reduce(
+      difference.reshape(1, static_cast<int>(difference.total())), largest, 1, cv::REDUCE_MAX);
+  return largest.reshape(1, actual.rows);
 }
 
 double worst_block(const cv::Mat& unequal) {
@@ -34,22 +34,19 @@ double worst_block(const cv::Mat& unequal) {
   return worst;
 }
 
-/// The expected picture, pale, with what differs in red.
+/// Returns the expected image, pale, with small differences in blue and unequal pixels in red.
 cv::Mat drawn_difference(const cv::Mat& expected,
                          const cv::Mat& difference,
                          const cv::Mat& unequal) {
-  cv::Mat gray, image;
-  cv::cvtColor(expected, gray, cv::COLOR_BGR2GRAY);
-  gray = gray / 3 + 160;
-  cv::cvtColor(gray, image, cv::COLOR_GRAY2BGR);
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x) {
-      const int d = difference.at<uchar>(y, x);
-      if (unequal.at<uchar>(y, x) != 0)
-        image.at<cv::Vec3b>(y, x) = {0, 0, static_cast<uchar>(std::min(255, 150 + d))};
-      else if (d > 0)
-        image.at<cv::Vec3b>(y, x) = {230, 190, 120};
-    }
+  cv::Mat image;
+  cv::cvtColor(expected, image, cv::COLOR_BGR2GRAY);
+  image = image / 3 + 160;
+  cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+  image.setTo(cv::Scalar(230, 190, 120), difference > 0);
+  const cv::Mat zero = cv::Mat::zeros(difference.size(), CV_8U);
+  cv::Mat red;
+  cv::merge(std::vector<cv::Mat>{zero, zero, difference + 150}, red);
+  red.copyTo(image, unequal);
   return image;
 }
 
@@ -74,7 +71,7 @@ ImageComparison compare_images(const cv::Mat& actual, const cv::Mat& expected, i
   if (!result.equal)
     result.reason = fmt::format(
         "{} pixels ({:.3f} %) differ by more than {} levels, {:.0f} % of the worst 16x16 block; "
-        "allowed are {} % and {} %",
+        "allowed: {} % and {} %",
         result.unequal,
         100 * share,
         tolerance,

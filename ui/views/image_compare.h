@@ -9,22 +9,22 @@
 
 namespace gpo {
 
-/// Why the rule is not simply "equal": llvmpipe's results differ by a few levels between makes of
-/// processors, all over a picture; a thing that moved differs by much, in one place.
+/// Result of comparing two images. llvmpipe's results differ by a few levels between processors, in
+/// all of the image; a displaced item differs by many, in one place.
 struct ImageComparison {
   static constexpr std::array<int, 4> kSweep = {1, 3, 8, 30};
 
   bool equal = false;
-  std::string reason;      ///< why not, for people; empty where equal
+  std::string reason;      ///< of inequality, for people
   int unequal = 0;         ///< pixels with a channel that differs by more than the tolerance
   double worst_block = 0;  ///< largest share of unequal pixels in a block of 16 x 16 [0..1]
-  std::array<int, 4> beyond = {};  ///< pixels that differ by more than kSweep
-  cv::Mat difference;              ///< CV_8UC3: where they differ, enhanced, over the expected one
+  std::array<int, 4> beyond = {};  ///< numbers of pixels that differ by more than kSweep
+  cv::Mat difference;              ///< CV_8UC3: differences, enhanced, over the expected image
 };
 
-/// Two pictures, CV_8UC3. A pixel is unequal where a channel differs by more than `tolerance`
-/// levels; pictures are unequal where their sizes differ, or more than 0.05 % of their pixels, or
-/// more than 25 % of the pixels of a block of 16 x 16.
+/// Compares two images, CV_8UC3. A pixel is unequal if a channel differs by more than `tolerance`
+/// levels. Images are unequal if their sizes differ, or more than 0.05 % of their pixels, or more
+/// than 25 % of the pixels of a block of 16 x 16.
 ImageComparison compare_images(const cv::Mat& actual,
                                    const cv::Mat& expected,
                                    int tolerance = 3);

@@ -18,12 +18,12 @@
 namespace gpo {
 namespace {
 
-/// Text as large as a person expects on a picture of this size.
+/// Returns a scale of text in proportion to the image.
 float text_scale(cv::Size size) {
   return std::clamp(static_cast<float>(size.height) / 720.0F, 0.85F, 3.0F);
 }
 
-/// `Resource` is what the drawing needs in the graphics memory: it lives within the context.
+/// Creates a `Resource` in graphics memory and calls `draw(resource, list, rect)`.
 template <class Resource, class Draw>
 cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   std::string complaint;
@@ -47,50 +47,52 @@ cv::Mat snapshot_image(const Inspection& inspection,
                        const ViewOptions& options) {
   const Recording& recording = *inspection.recording;
   const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
-  using Texture = ImageTexture;
-  return snapshot<Texture>(
-      pixels, text_scale(pixels), [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
-        if (recording.images) texture.upload(recording.images->bgr(frame));
-        draw_image_view(list, rect, inspection, frame, &texture, {}, options);
-      });
+  const auto draw = [&](ImageTexture& texture, ImDrawList& list, const ScreenRect& rect) {
+    if (recording.images) texture.upload(recording.images->bgr(frame));
+    draw_image_view(list, rect, {inspection, frame, options}, &texture, {});
+  };
+  return snapshot<ImageTexture>(pixels, text_scale(pixels), draw);
 }
 
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        cv::Size size,
                        const ViewOptions& options) {
-  const double aspect = static_cast<double>(size.width) / size.height;
+  const double side = cube_side(inspection, options.cube_side);
   const OrbitCamera camera =
-      default_scene_camera(inspection, cube_side(inspection, options.cube_side), aspect);
-  return snapshot<SceneView>(
-      size, text_scale(size), [&](SceneView& view, ImDrawList& list, const ScreenRect& rect) {
-        draw_scene_view(list, rect, view, inspection, frame, camera, options);
-      });
+      default_scene_camera(inspection, side, static_cast<double>(size.width) / size.height);
+  const auto draw = [&](SceneView& scene, ImDrawList& list, const ScreenRect& rect) {
+    draw_scene_view(list, rect, {inspection, frame, options}, scene, camera);
+  };
+  return snapshot<SceneView>(size, text_scale(size), draw);
 }
 
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          cv::Size size) {
-  NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
+  NormalsContent content{.inspection = *inspection,
+                         .study = study_normals(*inspection),
+                         .answers = {},
+                         .frame = frame};
   const Method& method = inspection->settings.options.method.row();
   if (inspection->initialization->ok)
-    content.answers.push_back({method.title, method.rgb, inspection, true});
-  return snapshot<NormalsMap>(
-      size, text_scale(size), [&](NormalsMap& map, ImDrawList& list, const ScreenRect& rect) {
-        draw_normals_view(list, rect, map, content, {});
-      });
+    content.answers.push_back(
+        {.name = method.title, .rgb = method.rgb, .inspection = inspection, .current = true});
+  const auto draw = [&](NormalsMap& map, ImDrawList& list, const ScreenRect& rect) {
+    draw_normals_view(list, rect, map, content, {});
+  };
+  return snapshot<NormalsMap>(size, text_scale(size), draw);
 }
 
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
   const cv::Size pixels = size.value_or(default_compare_size(inspections));
+  const auto draw = [&](ImageTexture& texture, ImDrawList& list, const ScreenRect& rect) {
+    if (!inspections.empty() && inspections.front()->recording->images)
+      texture.upload(inspections.front()->recording->images->bgr(frame));
+    draw_compare_view(list, rect, inspections, frame, &texture);
+  };
   const auto scale = static_cast<float>(compare_text_scale(inspections, pixels));
-  using Texture = ImageTexture;
-  return snapshot<Texture>(
-      pixels, scale, [&](Texture& texture, ImDrawList& list, const ScreenRect& rect) {
-        if (!inspections.empty() && inspections.front()->recording->images)
-          texture.upload(inspections.front()->recording->images->bgr(frame));
-        draw_compare_view(list, rect, inspections, frame, &texture);
-      });
+  return snapshot<ImageTexture>(pixels, scale, draw);
 }
 
 }  // namespace gpo

@@ -14,11 +14,11 @@
 
 namespace gpo {
 
-/// One view of one frame (counts in the recording), drawn without a display by what the window
-/// draws with: CV_8UC3, BGR. On the same machine the same bytes every time. Throws InputError where
-/// there is no OpenGL.
+// Images of a view of a frame (counted in the recording), drawn without a display by the window's
+// code: CV_8UC3, BGR. The same bytes every time on the same machine. They throw InputError without
+// OpenGL.
 
-/// As large as the recording's pictures where no size is given.
+/// By default of the size of the recording's images.
 cv::Mat snapshot_image(const Inspection& inspection,
                        int frame,
                        std::optional<cv::Size> size = {},
@@ -29,12 +29,12 @@ cv::Mat snapshot_scene(const Inspection& inspection,
                        cv::Size size = {960, 720},
                        const ViewOptions& options = {});
 
-/// The disc of normals; studies the window for it.
+/// The disc of normals, after a study of the window.
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          cv::Size size = {720, 760});
 
-/// At the size of `default_compare_size` where none is given.
+/// By default of the size of `default_compare_size`.
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size = {});
 
 }  // namespace gpo

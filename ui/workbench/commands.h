@@ -3,9 +3,8 @@
 #pragma once
 
 #include "engine/inspection/settings/settings.h"
-#include "ui/look/normals_zoom.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/image_zoom.h"
+#include "ui/look/zoom.h"
 #include "ui/workbench/division.h"
 #include "ui/workbench/selection.h"
 

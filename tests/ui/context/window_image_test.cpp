@@ -6,8 +6,6 @@
 #include "ui/context/gui.h"
 #include "ui/views/image/image_texture.h"
 
-#include <functional>
-
 #include <GL/glew.h>
 #include <gmock/gmock.h>
 
@@ -39,7 +37,7 @@ class WindowImages : public DrawingTest {
     begin(content);
     gui_.end_frame(image_, kGround);
   }
-  /// What a picture that has nothing to keep would be.
+  /// Returns the pixels drawn without a cache.
   cv::Mat drawn_at_once(const Content& content) {
     WindowImage fresh;
     begin(content);
@@ -60,7 +58,7 @@ class WindowImages : public DrawingTest {
   WindowImage image_;
 };
 
-TEST_F(WindowImages, NothingIsDrawnAnewWhereNothingChanged) {
+TEST_F(WindowImages, RedrawsNothingIfNothingChanged) {
   draw({});
   EXPECT_THAT(image_.redrawn(), ElementsAre(cv::Rect(0, 0, 100, 80)));
   const cv::Mat first = context_.read_bgr();
@@ -72,7 +70,7 @@ TEST_F(WindowImages, NothingIsDrawnAnewWhereNothingChanged) {
   EXPECT_EQ(first.at<cv::Vec3b>(79, 99), cv::Vec3b(0x30, 0x20, 0x10));
 }
 
-TEST_F(WindowImages, OnlyTheWindowThatChangedIsDrawnAnew) {
+TEST_F(WindowImages, RedrawsOnlyTheChangedWindow) {
   draw({});
   const Content other{.left = IM_COL32(9, 9, 9, 99)};
   draw(other);
@@ -82,7 +80,7 @@ TEST_F(WindowImages, OnlyTheWindowThatChangedIsDrawnAnew) {
   EXPECT_TRUE(same_bytes(context_.read_bgr(), drawn_at_once(other)));
 }
 
-TEST_F(WindowImages, PartsAreTheSameBytesAsAllAtOnce) {
+TEST_F(WindowImages, PartialRedrawGivesTheSameBytesAsAFullOne) {
   const Content contents[] = {{},
                               {.right_x = 47},
                               {.right_x = 47, .popup = true},
@@ -96,7 +94,7 @@ TEST_F(WindowImages, PartsAreTheSameBytesAsAllAtOnce) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_F(WindowImages, AnotherImageInTheSameTextureIsDrawn) {
+TEST_F(WindowImages, RedrawsATextureWithNewContent) {
   ImageTexture texture;
   const auto draw_texture = [&](int gray) {
     texture.upload(cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(gray)));

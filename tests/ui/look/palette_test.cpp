@@ -10,7 +10,7 @@
 namespace gpo {
 namespace {
 
-/// Relative luminance, by WCAG 2.
+/// Returns the relative luminance (WCAG 2).
 double luminance(std::uint32_t rgb) {
   const auto linear = [](double c) {
     return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
@@ -23,7 +23,7 @@ double contrast(std::uint32_t a, std::uint32_t b) {
   return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
 }
 
-TEST(Palette, TextIsReadableOnItsGround) {
+TEST(Palette, TextHasEnoughContrast) {
   for (const Theme theme : {Theme::dark, Theme::light})
     for (const Role ground : {Role::background, Role::panel, Role::raised})
       for (const Role text :
@@ -33,14 +33,14 @@ TEST(Palette, TextIsReadableOnItsGround) {
             << static_cast<int>(ground);
 }
 
-TEST(Palette, MeasurementsKeepTheirColorAndTextDoesNot) {
+TEST(Palette, OnlyDataKeepTheirColorInBothThemes) {
   for (const Role role : {Role::inlier, Role::outlier, Role::residual, Role::cube_base})
     EXPECT_EQ(color_of(role, Theme::dark), color_of(role, Theme::light));
   for (const Role role : {Role::text, Role::panel, Role::selected, Role::truth})
     EXPECT_NE(color_of(role, Theme::dark), color_of(role, Theme::light));
 }
 
-TEST(Palette, DearImGuiHasRedInTheLowestByte) {
+TEST(Palette, PacksRedIntoTheLowestByteForDearImGui) {
   EXPECT_EQ(imgui_color(0x112233, 1), 0xFF332211U);
   EXPECT_EQ(imgui_color(0x112233, 0), 0x00332211U);
   EXPECT_EQ(mixed_rgb(0x000000, 0xFF0080, 0.5), 0x800040U);

@@ -18,7 +18,7 @@ namespace {
 
 class Snapshot : public DrawingTest {};
 
-/// Where pictures are kept: to look at, and for the test that starts another process.
+/// Returns the file of an image, for people and for the test that starts another process.
 std::filesystem::path kept(const std::string& name) {
   const char* other = std::getenv("GPO_TEST_KEEP");
   return std::filesystem::path(other != nullptr ? other : GPO_TEST_OUTPUT_DIR) / (name + ".png");
@@ -34,7 +34,7 @@ TEST_F(Snapshot, ImageHasTheRecordingsSizeAndTheSameBytesAgain) {
   const cv::Mat image = snapshot_image(inspection, 34);
   keep_snapshot("image", image);
   EXPECT_EQ(image.size(), cv::Size(640, 480));
-  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";
   EXPECT_TRUE(same_bytes(image, snapshot_image(inspection, 34)));
 }
 
@@ -43,12 +43,12 @@ TEST_F(Snapshot, SceneHasTheSameBytesAgain) {
   const cv::Mat image = snapshot_scene(inspection, 24);
   keep_snapshot("scene", image);
   EXPECT_EQ(image.size(), cv::Size(960, 720));
-  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";
   EXPECT_TRUE(same_bytes(image, snapshot_scene(inspection, 24)));
 }
 
 TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
-  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+  if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";
   const auto folder = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "another-process";
   std::filesystem::remove_all(folder);
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
@@ -61,18 +61,16 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
   EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
 }
 
-TEST_F(Snapshot, WithoutDistortionIsTheImageAsOpenCvUndistortsIt) {
+TEST_F(Snapshot, UndistortsAsOpenCvDoes) {
   const Inspection inspection = made_inspection({.distorted = true});
   const Camera& camera = inspection.recording->camera;
-  const cv::Mat drawn = snapshot_image(inspection,
-                                       20,
-                                       {},
-                                       {.show = {.tracks = false,
-                                                 .cube = false,
-                                                 .truth = false,
-                                                 .gravity = false,
-                                                 .undistorted = true,
-                                                 .legend = false}});
+  const ViewToggles only_image{.tracks = false,
+                               .cube = false,
+                               .truth = false,
+                               .gravity = false,
+                               .undistorted = true,
+                               .legend = false};
+  const cv::Mat drawn = snapshot_image(inspection, 20, {}, {.show = only_image});
   keep_snapshot("image_undistorted", drawn);
   cv::Mat expected;
   const cv::Mat K =
@@ -84,16 +82,15 @@ TEST_F(Snapshot, WithoutDistortionIsTheImageAsOpenCvUndistortsIt) {
   EXPECT_LT((mean[0] + mean[1] + mean[2]) / 3, 1.5) << "of 255";
 }
 
-TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutComplaint) {
-  keep_snapshot("image_error",
-                snapshot_image(
-                    made_inspection({.estimate_error = 3}), 30, {}, {.show = {.residuals = true}}));
+TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {
+  const Inspection tilted = made_inspection({.estimate_error = 3});
+  keep_snapshot("image_error", snapshot_image(tilted, 30, {}, {.show = {.residuals = true}}));
   keep_snapshot("image_large", snapshot_image(made_inspection(), 20, cv::Size(1280, 720)));
   keep_snapshot("image_reference", snapshot_image(made_inspection(), 5));
   keep_snapshot("image_outside", snapshot_image(made_inspection(), 38));
   keep_snapshot("image_failed", snapshot_image(made_inspection({.ok = false}), 20));
-  keep_snapshot("image_tracks_only",
-                snapshot_image(made_inspection({.images = false, .truth = false}), 20));
+  const Inspection blind = made_inspection({.images = false, .truth = false});
+  keep_snapshot("image_tracks_only", snapshot_image(blind, 20));
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
     keep_snapshot("scene_uncertain_" + std::to_string(times),

@@ -4,7 +4,7 @@
 
 #include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/charts/chart_csv.h"
+#include "ui/views/charts/chart_view.h"
 
 #include <algorithm>
 #include <cmath>

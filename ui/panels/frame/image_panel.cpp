@@ -10,8 +10,7 @@
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/pixel_readout.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
 
@@ -142,33 +141,21 @@ void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, C
       input.inspection() ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(state, views);
   options.show.legend &= room_for_legend(place, input.scale);
-  draw_image_view(list,
-                  rect,
-                  input.inspection() ? *input.inspection() : waiting,
-                  frame,
-                  shown_image(views),
-                  state.view.image_zoom,
-                  options);
-  if (input.inspection()) {
-    const Inspection& inspection = *input.inspection();
-    draw_highlight_in_image(list,
-                              rect,
-                              inspection,
-                              frame - inspection.window->start,
-                              pointer.mapping,
-                              highlight_of(state));
-  }
+  const FrameView view{input.inspection() ? *input.inspection() : waiting, frame, options};
+  draw_image_view(list, rect, view, shown_image(views), state.view.image_zoom);
+  if (input.inspection())
+    draw_highlight_in_image(list, rect, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(list, rect, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   if (ImGui::IsItemHovered())
     draw_pixel_text(list,
                     rect,
-                    pixel_text(input.inspection(),
-                               frame,
-                               camera,
-                               views.pixels,
-                               to_image(pointer.mapping, pointer.at),
-                               pointer.mapping.scale / input.scale));
+                    pixel_text({.inspection = input.inspection(),
+                                .frame = frame,
+                                .camera = camera,
+                                .bgr = views.pixels,
+                                .raw_px = to_image(pointer.mapping, pointer.at),
+                                .scale = pointer.mapping.scale / input.scale}));
   if (track) track_tooltip(input, views, *track);
   if (!views.image_error.empty()) {
     draw_badge(list, rect, color_of(Role::bad), "no picture", views.image_error);

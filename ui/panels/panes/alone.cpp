@@ -18,13 +18,13 @@ void image_alone(const PanelInput& input,
   const Inspection waiting =
       inspection ? Inspection{} : nothing_to_show(input.state.document.recording);
   const int frame = update_image(input, views);
+  const ViewOptions options =
+      view_options(other ? showing(input.state, *other) : input.state, views);
   draw_image_view(list,
                   screen_rect(place),
-                  inspection ? *inspection : waiting,
-                  frame,
+                  {inspection ? *inspection : waiting, frame, options},
                   shown_image(views),
-                  {},
-                  view_options(other ? showing(input.state, *other) : input.state, views));
+                  {});
   if (other) draw_flip_label(list, screen_rect(place), *other);
 }
 
@@ -40,10 +40,10 @@ void compare_alone(const PanelInput& input,
   draw_compare_view(*ImGui::GetBackgroundDrawList(),
                     screen_rect(place),
                     compare_columns(compared_results(state)),
-                    *state.document.recording,
-                    frame,
-                    shown_image(views),
-                    options);
+                    {.recording = *state.document.recording,
+                     .frame = frame,
+                     .image = shown_image(views),
+                     .options = options});
 }
 
 }  // namespace gpo

@@ -242,12 +242,14 @@ void draw_columns(const PanelInput& input,
   options.compare_zoom = state.view.compare_zoom;
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_compare_view(
-      list, rect, columns, *state.document.recording, frame, shown_image(views), options);
+  const CompareFrame shown{.recording = *state.document.recording,
+                           .frame = frame,
+                           .image = shown_image(views),
+                           .options = options};
+  draw_compare_view(list, rect, columns, shown);
   const auto places =
       compare_places(rect, count, aspect_of(state.document.recording->camera), options.top_line);
-  const ImageZoom zoom =
-      compare_zoom(columns, *state.document.recording, frame, places.front().image.size, options);
+  const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::string name = key_of(results[i].configuration);
     choose_by_heading(input, places[i], results[i], name, commands);

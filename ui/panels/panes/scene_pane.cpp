@@ -6,7 +6,7 @@
 #include "ui/panels/track_tooltip.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/views/scene/scene_geometry.h"
 
 namespace gpo {
@@ -37,9 +37,10 @@ Hover hover_in(const Inspection& inspection,
   Hover hover;
   if (!ImGui::IsItemHovered()) return hover;
   const Vector2d at = Vector2d(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - rect.min;
-  if (const auto column = point_at(inspection, camera, rect.size, at, 7 * scale)) {
+  const ScenePixel pixel{camera, rect.size, at};
+  if (const auto column = point_at(inspection, pixel, 7 * scale)) {
     hover.track = inspection.tracks->ids[*column];
-  } else if (const auto frame = camera_at(inspection, camera, rect.size, at, 9 * scale)) {
+  } else if (const auto frame = camera_at(inspection, pixel, 9 * scale)) {
     hover.camera = inspection.window->start + *frame;
   }
   return hover;
@@ -55,7 +56,7 @@ void move_cube_to(const PanelInput& input,
   const Vector2d pressed(io.MouseClickedPos[1].x, io.MouseClickedPos[1].y);
   if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(1)) return;
   if ((at - pressed).norm() > 4 * input.scale) return;
-  const auto point = plane_at(*input.inspection(), camera, rect.size, at - rect.min);
+  const auto point = plane_at(*input.inspection(), {camera, rect.size, at - rect.min});
   if (point) push(commands, MoveCube{*point});
 }
 
@@ -99,19 +100,10 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   ViewOptions options = view_options(state, views);
   options.show.legend &= room_for_legend(place, input.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
-  draw_scene_view(*ImGui::GetWindowDrawList(),
-                  rect,
-                  views.scene,
-                  inspection,
-                  state.view.frame,
-                  camera,
-                  options);
-  draw_highlight_in_scene(*ImGui::GetWindowDrawList(),
-                          rect,
-                          inspection,
-                          state.view.frame - inspection.window->start,
-                          camera,
-                          highlight_of(state));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const FrameView view{inspection, state.view.frame, options};
+  draw_scene_view(list, rect, view, views.scene, camera);
+  draw_highlight_in_scene(list, rect, view, camera, highlight_of(state));
   if (hover.track) track_tooltip(input, views, *hover.track);
   if (hover.camera) camera_tooltip(input, *hover.camera);
 }

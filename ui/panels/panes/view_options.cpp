@@ -9,7 +9,7 @@
 #include "ui/panels/panels.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/track_colors.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/workbench/tracks_in_view.h"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "engine/inspection/inspection.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace gpo {
+
+struct Views;
 
 /// What the state asks the views to show. Colors and model are made where those kept are others.
 ViewOptions view_options(const WorkbenchState& state, Views& views);

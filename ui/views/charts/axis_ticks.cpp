@@ -13,9 +13,9 @@ namespace gpo {
 namespace {
 
 constexpr std::array kSteps = {1.0, 2.0, 5.0};
-constexpr int kFewest = 3;  ///< ticks from which a scale can be read
+constexpr int kFewest = 3;  ///< ticks of a readable scale
 
-/// The `index`-th of ..., 0.5, 1, 2, 5, 10, ...; the 0th is 1.
+/// Returns the `index`-th of ..., 0.5, 1, 2, 5, 10, ...; the 0th is 1.
 double round_number(int index) {
   const int decade = static_cast<int>(std::floor(index / 3.0));
   // 5 * 10^-2 is not 0.05 to the last bit; 5 / 10^2 is.
@@ -24,7 +24,7 @@ double round_number(int index) {
   return decade < 0 ? step / power : step * power;
 }
 
-/// Index of the largest round number that is not above `value`.
+/// Returns the index of the largest round number that is not above `value`.
 int round_number_below(double value) {
   constexpr double kSlack = 1 + 1e-9;
   int index = 3 * static_cast<int>(std::floor(std::log10(value)));
@@ -47,11 +47,10 @@ AxisTicks linear_ticks(double low, double high, int most) {
     high += room;
   }
   int index = round_number_below((high - low) / most);
-  while (std::floor(high / round_number(index)) - std::ceil(low / round_number(index)) >= most)
-    ++index;
   const auto count = [&] {
     return std::floor(high / round_number(index)) - std::ceil(low / round_number(index)) + 1;
   };
+  while (count() > most) ++index;
   while (count() < kFewest) --index;
   const double step = round_number(index);
   AxisTicks ticks{low, high, {}, {}};

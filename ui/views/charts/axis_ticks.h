@@ -2,25 +2,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace gpo {
 
-/// How a chart's axis is divided: its range, and the values that are marked within.
+/// Range and marked values of an axis.
 struct AxisTicks {
   double low = 0, high = 1;
   std::vector<double> values;
   std::vector<std::string> labels;  ///< as many as values
 };
 
-/// At least three, else at most about `most` ticks at multiples of 1, 2 or 5 times a power of ten,
-/// over [low, high], which is not extended. One value is given some room on both sides.
+/// Returns at least three, otherwise about `most` or fewer ticks at multiples of 1, 2 or 5 times a
+/// power of ten, over [low, high]. An empty range is extended to both sides.
 AxisTicks linear_ticks(double low, double high, int most);
 
-/// Extends to 1, 2 or 5 times a power of ten below `low` and above `high`, both > 0. Ticks there,
-/// or at powers of ten only where these are enough, or at some of them where they are too many, or
-/// where they are fewer than three at round numbers between.
+/// Extends the range to 1, 2 or 5 times a power of ten below `low` and above `high`, both > 0.
+/// Ticks are at such numbers, or only at (some) powers of ten if that is enough, or at linear steps
+/// if there would be fewer than three.
 AxisTicks logarithmic_ticks(double low, double high, int most);
+
+/// Maps values of a chart to its image or to the screen.
+struct ChartMapping {
+  bool logarithmic = false;  ///< the y axis
+  double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
+  double left = 0, bottom = 0;  ///< where the axes meet [px]
+  double width = 1;             ///< of the x axis [px]
+  double height = 1;            ///< of the y axis [px]; negative where y is down
+
+  double x_px(double value) const { return left + width * (value - x_low) / (x_high - x_low); }
+  double y_px(double value) const {
+    const double part = logarithmic ? std::log(value / y_low) / std::log(y_high / y_low)
+                                    : (value - y_low) / (y_high - y_low);
+    return bottom + height * part;
+  }
+  Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
+  double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
+  double y_value(double px) const {
+    const double part = (px - bottom) / height;
+    return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
+  }
+  /// Whether a point is between the ends of the axes.
+  bool inside(const Eigen::Vector2d& point_px) const {
+    const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+  }
+};
 
 }  // namespace gpo

@@ -3,7 +3,7 @@
 #include "ui/views/charts/cairo_drawing.h"
 
 #include "engine/base/error.h"
-#include "ui/context/gui_style.h"
+#include "ui/context/gui.h"
 #include "ui/look/palette.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Release {
 template <class T>
 using Owned = std::unique_ptr<T, Release>;
 
-/// Without hints: one shape at all sizes.
+/// Without hints, so that shapes are the same at all sizes.
 Owned<cairo_font_options_t> font_options() {
   Owned<cairo_font_options_t> options(cairo_font_options_create());
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
@@ -47,18 +47,18 @@ cairo_font_face_t* load_font(std::string_view font) {
   const auto* bytes = reinterpret_cast<const FT_Byte*>(font.data());
   if (FT_Init_FreeType(&library) != 0 ||
       FT_New_Memory_Face(library, bytes, static_cast<FT_Long>(font.size()), 0, &face) != 0)
-    throw std::runtime_error("FreeType cannot read the program's font");
+    throw std::runtime_error("FreeType cannot read the embedded font");
   return cairo_ft_font_face_create_for_ft_face(face, FT_LOAD_NO_HINTING);
 }
 
-/// Both stay loaded: Cairo caches glyphs by font.
+/// Both fonts stay loaded: Cairo caches glyphs by font.
 cairo_font_face_t* font_face(bool bold) {
   static cairo_font_face_t* const kRegular = load_font(regular_font());
   static cairo_font_face_t* const kBold = load_font(bold_font());
   return bold ? kBold : kRegular;
 }
 
-/// Cairo fails on a text that is not UTF-8.
+/// Escapes bytes that are not UTF-8, on which Cairo fails.
 std::string clean(const std::string& text) { return legible(text, 4 * text.size()); }
 
 bool is_image(cairo_t& cairo) {
@@ -108,23 +108,26 @@ void stroke_straight(cairo_t& cairo, const Vector2d& from, const Vector2d& to, c
   stroke_line(cairo, line, {width, pen.ink});
 }
 
-void draw_text(cairo_t& cairo, const Text& text) {
-  const double share = text.anchor == Anchor::begin ? 0 : text.anchor == Anchor::middle ? 0.5 : 1;
+void draw_text(cairo_t& cairo,
+               const std::string& text,
+               const Vector2d& at,
+               const TextStyle& style) {
+  const double share = style.anchor == Anchor::begin ? 0 : style.anchor == Anchor::middle ? 0.5 : 1;
   cairo_save(&cairo);
-  cairo_translate(&cairo, text.at.x(), text.at.y());
-  if (text.upwards) cairo_rotate(&cairo, -std::numbers::pi / 2);
-  set_ink(cairo, {text.rgb});
+  cairo_translate(&cairo, at.x(), at.y());
+  if (style.upwards) cairo_rotate(&cairo, -std::numbers::pi / 2);
+  set_ink(cairo, {style.rgb});
   cairo_set_font_options(&cairo, font_options().get());
-  cairo_set_font_face(&cairo, font_face(text.bold));
-  cairo_set_font_size(&cairo, text.size);
+  cairo_set_font_face(&cairo, font_face(style.bold));
+  cairo_set_font_size(&cairo, style.size);
   cairo_move_to(
-      &cairo, -share * width_of(text.text, text.size, text.bold), kCapHeight / 2 * text.size);
-  // Cairo 1.16 moves the glyphs of a picture to whole pixels, outlines are where they belong.
+      &cairo, -share * width_of(text, style.size, style.bold), kCapHeight / 2 * style.size);
+  // Cairo 1.16 moves glyphs in images to whole pixels, but not outlines.
   if (is_image(cairo)) {
-    cairo_text_path(&cairo, clean(text.text).c_str());
+    cairo_text_path(&cairo, clean(text).c_str());
     cairo_fill(&cairo);
   } else {
-    cairo_show_text(&cairo, clean(text.text).c_str());
+    cairo_show_text(&cairo, clean(text).c_str());
   }
   cairo_restore(&cairo);
 }

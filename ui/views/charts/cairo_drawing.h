@@ -26,13 +26,13 @@ struct Pen {
   double width = 1;
   Ink ink;
   std::vector<double> dashes = {};  ///< lengths of dashes and gaps in turn; empty: solid
-  double phase = 0;                 ///< where in the pattern a line begins
-  bool round = false;               ///< ends of dashes; a dash of length 0 becomes a dot
+  double phase = 0;                 ///< offset of the pattern at the line's start
+  bool round = false;               ///< ends of dashes; makes a dot of a dash of length 0
 };
 
 void fill_polygon(cairo_t& cairo, const Polyline& outline, const Ink& ink);
 void stroke_line(cairo_t& cairo, const Polyline& line, const Pen& pen);
-/// A horizontal or vertical line; in pictures moved to whole pixels, so that it is sharp.
+/// Draws a horizontal or vertical line, in images at whole pixels, so that it is sharp.
 void stroke_straight(cairo_t& cairo,
                      const Eigen::Vector2d& from,
                      const Eigen::Vector2d& to,
@@ -40,34 +40,34 @@ void stroke_straight(cairo_t& cairo,
 
 enum class Anchor { begin, middle, end };
 
-/// A line of text in the program's own font. `at`: anchor along the text, middle of the capitals
-/// across it.
-struct Text {
-  std::string text;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+struct TextStyle {
   double size = 14;  ///< of the em
   std::uint32_t rgb = 0;
   Anchor anchor = Anchor::middle;
   bool bold = false;
-  bool upwards = false;  ///< rotated by 90 degrees about `at`
+  bool upwards = false;  ///< rotated by 90 degrees about its place
 };
 
-/// PDF gets text that can be selected, with its font; SVG and pictures get outlines.
-void draw_text(cairo_t& cairo, const Text& text);
+/// Draws a line of text in the program's font: selectable in PDF, as outlines in SVG and images.
+/// `at` is the anchor along the text and the middle of the capitals across it.
+void draw_text(cairo_t& cairo,
+               const std::string& text,
+               const Eigen::Vector2d& at,
+               const TextStyle& style);
 
 /// Returns the width of a text [units of `size`].
 double width_of(const std::string& text, double size, bool bold = false);
 
-/// Breaks a text into lines not wider than `room`, except where a single word is.
+/// Breaks a text into lines not wider than `room`, unless a single word is.
 std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double room);
 
 using CairoDraw = std::function<void(cairo_t& cairo)>;
 
-/// Draws on a surface, which it takes over, with `scale` device units a unit. Throws
+/// Draws on a surface, which it owns then, with `scale` device units per unit. Throws
 /// std::runtime_error with Cairo's message if it fails.
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
 
-/// Returns the picture that `draw` makes, CV_8UC3, BGR; the same bytes at every call.
+/// Returns the image drawn by `draw`, CV_8UC3, BGR; the same bytes at every call.
 cv::Mat drawn_image(cv::Size size,
                       double px_per_unit,
                       std::uint32_t ground,

@@ -4,7 +4,7 @@
 
 #include "engine/base/chart.h"
 #include "ui/views/charts/axis_ticks.h"
-#include "ui/views/charts/marker_shapes.h"
+#include "ui/views/charts/curve_style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// More bands over each other are drawn as outlines.
+/// More bands are drawn as outlines.
 constexpr int kMostFilledBands = 3;
 constexpr double kOutlinedOpacity = 0.05, kOutlineOpacity = 0.6, kOutlineWidth = 0.8;
-constexpr double kHollowShare = 0.55;  ///< of a hollow marker's size
+constexpr double kHollowShare = 0.55;  ///< of a hollow marker that is empty
 constexpr double kTick = 5, kTickGap = 4;
-constexpr double kDashPeriod = 32;  ///< of curves over others
+constexpr double kDashPeriod = 32;  ///< of curves over equal ones
 
 struct Extent {
   double low = INFINITY, high = -INFINITY;
@@ -56,14 +56,14 @@ int most_ticks(double length, double spacing) {
   return std::max(3, static_cast<int>(length / spacing));
 }
 
-/// Room for markers at both ends.
+/// Leaves room for markers at both ends.
 AxisTicks x_ticks(const Chart& chart, double length, double spacing) {
   const Extent extent = x_extent(chart);
   const double room = 0.03 * (extent.high - extent.low);
   return linear_ticks(extent.low - room, extent.high + room, most_ticks(length, spacing));
 }
 
-/// Errors are drawn from zero on.
+/// Linear axes include zero.
 AxisTicks y_ticks(const Chart& chart, double length, double spacing) {
   const Extent extent = y_extent(chart);
   const int most = most_ticks(length, spacing);
@@ -77,7 +77,7 @@ bool is_few(const Curve& curve, std::size_t i) {
   return !curve.counts.empty() && curve.counts[i] < kFewWindows;
 }
 
-/// Without the quartiles of few windows.
+/// Removes the quartiles of few windows.
 Chart with_quartiles_of_many(Chart chart) {
   for (Curve& curve : chart.curves)
     for (auto* side : {&curve.lower, &curve.upper})
@@ -106,7 +106,7 @@ struct Plot {
   }
 };
 
-/// The ranges [first, end) of indices without gaps in which `good(i)` holds.
+/// Returns the ranges [first, end) of consecutive indices with `good(i)`.
 template <class Good>
 std::vector<std::pair<int, int>> runs(std::size_t count, const Good& good) {
   std::vector<std::pair<int, int>> found;
@@ -140,17 +140,21 @@ void draw_band(const Plot& plot, const Curve& curve, bool filled) {
 }
 
 Pen pen_of(const CurveStyle& style, double s) {
-  if (style.dotted) return {kDotSize_px * s, {style.rgb}, {0, kDotSpacing_px * s}, 0, true};
+  if (style.dotted)
+    return {.width = kDotSize_px * s,
+            .ink = {style.rgb},
+            .dashes = {0, kDotSpacing_px * s},
+            .round = true};
   Pen pen{kCurveWidth_px * s, {style.rgb}, style.dashes};
   for (double& length : pen.dashes) length *= s;
   return pen;
 }
 
-/// Whether the one would hide the other: they have places in common, and agree at all of these.
+/// Whether one line would hide the other: they have common x values and agree at all of them.
 bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
   int common = 0;
   for (const Vector2d& point : a) {
-    bool there = false, near = false;  // a curve that steps has two points at one place
+    bool there = false, near = false;  // a curve that steps has two points at one x
     for (const Vector2d& other : b) {
       if (other.x() != point.x()) continue;
       there = true;
@@ -168,15 +172,15 @@ double length_of(const Polyline& line) {
   return length;
 }
 
-/// Dashes for a line over those drawn before, which show the ones that it would hide in its gaps.
-/// The pattern begins where the lowest one does, so that those of several lines are in step.
+/// Dashes a line that would hide lines drawn before, which show in its gaps. The pattern begins
+/// where the lowest of them does, so that several lines are in step.
 void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& drawn, double s) {
   const auto hides = [&](const Polyline& other) { return coincide(line, other, pen.width); };
   const auto lowest = std::ranges::find_if(drawn, hides);
   if (lowest == drawn.end()) return;
   const auto hidden = static_cast<int>(std::ranges::count_if(drawn, hides));
   const double period = kDashPeriod * s;
-  const double dash = std::ldexp(period, -hidden);  // half as long as that of the one below
+  const double dash = std::ldexp(period, -hidden);  // half as long as the dash below
   Polyline before;
   std::ranges::copy_if(*lowest, std::back_inserter(before), [&](const Vector2d& point) {
     return point.x() < line.front().x();
@@ -200,7 +204,7 @@ void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const
     fill_polygon(cairo, marker_shape(marker.shape, at, kHollowShare * size), {look.ground});
 }
 
-/// `drawn`: the lines so far, to which this curve's are added.
+/// Appends the curve's lines to `drawn`, the lines so far.
 void draw_curve(const Plot& plot, const Curve& curve, std::vector<Polyline>& drawn) {
   const CurveStyle& style = plot.style_of(curve);
   const auto good = [&](int i) { return plot.good(curve.x[i], curve.y[i]); };
@@ -215,7 +219,10 @@ void draw_curve(const Plot& plot, const Curve& curve, std::vector<Polyline>& dra
     if (!style.marker) continue;
     for (int i = run.first; i < run.second; ++i)
       draw_marker(plot.cairo,
-                  {*style.marker, style.marker_px, style.rgb, is_few(curve, i)},
+                  {.shape = *style.marker,
+                   .size = style.marker_px,
+                   .rgb = style.rgb,
+                   .hollow = is_few(curve, i)},
                   line[i - run.first],
                   plot.look);
   }
@@ -230,16 +237,15 @@ void draw_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ti
     const double x = to.x_px(x_ticks.values[i]);
     stroke_straight(cairo, {x, top}, {x, bottom}, {s, {look.grid}});
     stroke_straight(cairo, {x, bottom}, {x, bottom + tick}, {s, {look.axis}});
-    draw_text(
-        cairo,
-        {x_ticks.labels[i], {x, bottom + tick + kTickGap * s + size / 2}, size, look.tick_text});
+    const Vector2d below(x, bottom + tick + kTickGap * s + size / 2);
+    draw_text(cairo, x_ticks.labels[i], below, {size, look.tick_text});
   }
   for (std::size_t i = 0; i < y_ticks.values.size(); ++i) {
     const double y = to.y_px(y_ticks.values[i]);
     stroke_straight(cairo, {left, y}, {right, y}, {s, {look.grid}});
     stroke_straight(cairo, {left - tick, y}, {left, y}, {s, {look.axis}});
     const Vector2d beside(left - tick - kTickGap * s, y);
-    draw_text(cairo, {y_ticks.labels[i], beside, size, look.tick_text, Anchor::end});
+    draw_text(cairo, y_ticks.labels[i], beside, {size, look.tick_text, Anchor::end});
   }
   stroke_straight(cairo, {left, top}, {left, bottom}, {s, {look.axis}});
   stroke_straight(cairo, {left, bottom}, {right, bottom}, {s, {look.axis}});
@@ -255,16 +261,17 @@ ChartMapping draw_chart(cairo_t& cairo,
                         const cv::Rect2d& axes,
                         const ChartStyle& look) {
   const Chart chart = with_quartiles_of_many(whole);
-  Plot plot{cairo, chart, styles, look, {}};
+  Plot plot{
+      .cairo = cairo,
+      .chart = chart,
+      .styles = styles,
+      .look = look,
+      .to = {.left = axes.x, .bottom = axes.br().y, .width = axes.width, .height = -axes.height}};
   ChartMapping& to = plot.to;
-  to.left = axes.x;
-  to.bottom = axes.y + axes.height;
-  to.width = axes.width;
-  to.height = -axes.height;
   if (!has_values(chart)) {
     draw_axes(plot, {}, {});
     const Vector2d middle(axes.x + axes.width / 2, axes.y + axes.height / 2);
-    draw_text(cairo, {"no values", middle, look.text_size, look.dim});
+    draw_text(cairo, "no values", middle, {look.text_size, look.dim});
     return to;
   }
   const AxisTicks x = x_ticks(chart, axes.width, look.x_spacing);
@@ -319,7 +326,7 @@ void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look) {
   if (key.style == nullptr || key.style->marker)
     draw_marker(cairo, marker, (key.at + end) / 2, look);
   const Vector2d beside = end + Vector2d(look.legend.beside, 0);
-  draw_text(cairo, {key.text, beside, look.legend.text_size, look.text, Anchor::begin});
+  draw_text(cairo, key.text, beside, {look.legend.text_size, look.text, Anchor::begin});
 }
 
 }  // namespace gpo

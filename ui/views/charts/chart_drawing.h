@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/base/chart.h"
+#include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/cairo_drawing.h"
-#include "ui/views/charts/chart_mapping.h"
 #include "ui/views/charts/curve_style.h"
 
 #include <cstdint>
@@ -23,28 +23,29 @@ struct LegendStyle {
   double row = 25.5, text_size = 15;
 };
 
-/// Differences between charts in the window and on paper [units].
+/// Style of a chart, in the window or on paper [units].
 struct ChartStyle {
   std::uint32_t ground, text, tick_text, dim, axis, grid;
   double scale = 1;                       ///< of lines, markers and gaps
   double text_size = 15, tick_size = 14;  ///< of the em
-  double x_spacing = 50, y_spacing = 31;  ///< at least that much between ticks
-  bool dashes_coinciding = false;         ///< a curve over an equal one is dashed to show it
+  double x_spacing = 50, y_spacing = 31;  ///< smallest distances of ticks
+  bool dashes_coinciding = false;         ///< dashes a curve over an equal one, to show both
   LegendStyle legend = {};
 };
 
-/// Whether the chart has a value that can be drawn; on a logarithmic axis these are positive.
+/// Whether the chart has a value that can be drawn, on a logarithmic axis a positive one.
 bool has_values(const Chart& chart);
 
 /// Draws grid, bands, curves, axes and ticks with their labels, without titles; `axes` is the
-/// rectangle between the axes' ends, `styles` has one entry a name. Returns the places of values.
+/// rectangle between the axes' ends, `styles` has one entry per name. Returns the mapping of
+/// values.
 ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& chart,
                         const std::vector<CurveStyle>& styles,
                         const cv::Rect2d& axes,
                         const ChartStyle& look);
 
-/// An entry of a legend: a piece of a curve, or a hollow point, and its meaning.
+/// An entry of a legend: a sample of a curve, or a hollow point, and its meaning.
 struct LegendKey {
   const CurveStyle* style = nullptr;  ///< null: a hollow point
   std::string text;

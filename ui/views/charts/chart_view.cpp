@@ -21,7 +21,7 @@ namespace {
 // Around the axes, at scale 1 [px].
 constexpr double kLeft = 54, kRight = 14, kBottom = 38, kTop = 24, kInset = 6, kTitleGap = 10;
 
-/// Curves of fewer points show where these are.
+/// Curves with fewer points have markers.
 constexpr std::size_t kMostMarked = 40;
 
 ChartStyle window_style(Theme theme, double s) {
@@ -37,10 +37,14 @@ ChartStyle window_style(Theme theme, double s) {
           .x_spacing = 50 * s,
           .y_spacing = 26 * s,
           .dashes_coinciding = true,
-          .legend = {16 * s, 5 * s, 14 * s, 17 * s, 12 * s}};
+          .legend = {.sample = 16 * s,
+                     .beside = 5 * s,
+                     .between = 14 * s,
+                     .row = 17 * s,
+                     .text_size = 12 * s}};
 }
 
-/// Gaps (NaN) are equal.
+/// NaN equals NaN: a gap.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return std::ranges::equal(a, b, [](double left, double right) {
     return left == right || (std::isnan(left) && std::isnan(right));
@@ -84,8 +88,8 @@ std::vector<LegendKey> keys_of(const std::vector<CurveStyle>& styles) {
   return keys.size() < 2 ? std::vector<LegendKey>() : keys;
 }
 
-/// Places the keys beside the titles, which end at `titles`, or in rows below them. Returns where
-/// the axes may begin.
+/// Places the keys beside the titles, which end at `titles`, or in rows below them. Returns the top
+/// of the axes.
 double place_legend(std::vector<LegendKey>& keys,
                     const ChartStyle& look,
                     double titles,
@@ -96,6 +100,15 @@ double place_legend(std::vector<LegendKey>& keys,
   const double top = beside ? 3 * s : (kTop - 4) * s;
   for (LegendKey& key : keys) key.at += Eigen::Vector2d(left, top);
   return std::round(kTop * s + (beside ? 0 : height));
+}
+
+std::string csv_label(std::string text) {
+  std::ranges::replace(text, ',', ';');
+  return text;
+}
+
+std::string csv_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
 }
 
 }  // namespace
@@ -119,9 +132,12 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
-    draw_text(cairo, {chart.title, {kInset * s, y}, bold_size, look.text, Anchor::begin, true});
-    draw_text(cairo, {chart.y_label, {y_label, y}, size, look.dim, Anchor::begin});
-    draw_text(cairo, {chart.x_label, {middle, height - 9 * s}, size, look.dim});
+    draw_text(cairo,
+              chart.title,
+              {kInset * s, y},
+              {.size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true});
+    draw_text(cairo, chart.y_label, {y_label, y}, {size, look.dim, Anchor::begin});
+    draw_text(cairo, chart.x_label, {middle, height - 9 * s}, {size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
   });
   return image;
@@ -140,7 +156,11 @@ ChartMapping draw_chart_view(
   const Eigen::Vector2d corner = rect.min.array().round(), size = rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
   if (pixels.width < 1 || pixels.height < 1) return {};
-  view.update({chart, pixels, overlay_scale(), legend, current_theme()});
+  view.update({.chart = chart,
+               .size = pixels,
+               .scale = overlay_scale(),
+               .legend = legend,
+               .theme = current_theme()});
   mark_content(list, view.texture().revision());
   list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
   ChartMapping to = view.mapping();
@@ -167,7 +187,7 @@ std::string chart_values_at(const Chart& chart, double x) {
       if (!nearest || distance(other) < distance(*nearest)) nearest = other;
   if (!nearest) return values;
   for (const Curve& curve : chart.curves) {
-    // Where a curve steps there are two points at one x: the one on the side that is asked for.
+    // A curve that steps has two points at one x: takes the one on the side of `x`.
     const auto [first, end] = std::equal_range(curve.x.begin(), curve.x.end(), *nearest);
     if (first == end) continue;
     const auto at = x < *nearest ? first : std::prev(end);
@@ -176,6 +196,26 @@ std::string chart_values_at(const Chart& chart, double x) {
   }
   if (values.empty()) return values;
   return fmt::format("{}: {:.6g}\n{}{}", chart.x_label, *nearest, chart.y_label, values);
+}
+
+std::string to_csv(const Chart& chart) {
+  const bool band =
+      std::ranges::any_of(chart.curves, [](const Curve& curve) { return !curve.lower.empty(); });
+  std::string text = fmt::format("curve,{},{}{}\n",
+                                 csv_label(chart.x_label),
+                                 csv_label(chart.y_label),
+                                 band ? ",lower,upper" : "");
+  for (const Curve& curve : chart.curves) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      text += fmt::format(
+          "{},{},{}", csv_label(curve.name), csv_number(curve.x[i]), csv_number(curve.y[i]));
+      if (band && curve.lower.empty()) text += ",,";
+      if (!curve.lower.empty())
+        text += fmt::format(",{},{}", csv_number(curve.lower[i]), csv_number(curve.upper[i]));
+      text += '\n';
+    }
+  }
+  return text;
 }
 
 }  // namespace gpo

@@ -4,8 +4,8 @@
 
 #include "engine/base/chart.h"
 #include "ui/look/palette.h"
-#include "ui/look/rect.h"
-#include "ui/views/charts/chart_mapping.h"
+#include "ui/look/zoom.h"
+#include "ui/views/charts/axis_ticks.h"
 #include "ui/views/image/image_texture.h"
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// How a chart of the window is to be drawn.
+/// A chart of the window and its style.
 struct ChartRequest {
   Chart chart;
   cv::Size size;     ///< [px]
@@ -31,15 +31,13 @@ struct ChartImage {
   ChartMapping mapping;  ///< [px from the upper left corner, y down]
 };
 
-/// Draws axes with their ticks, grid, bands and curves, titles, and a legend where curves have
-/// different names.
+/// Draws axes with ticks, grid, bands, curves, titles, and a legend if curves have different names.
 ChartImage draw_window_chart(const ChartRequest& request);
 
-/// A chart of the window in the graphics memory. Needs the context in which it was made to be
-/// current.
+/// A chart of the window in graphics memory. Needs its context to be current.
 class ChartView {
  public:
-  /// Draws if something has changed since the last call. The size is not empty.
+  /// Draws only after a change. The size must not be empty.
   void update(const ChartRequest& request);
 
   const ImageTexture& texture() const { return texture_; }
@@ -51,19 +49,22 @@ class ChartView {
   ImageTexture texture_;
 };
 
-/// Draws the chart into the window in the current theme. Returns the places of values [screen px],
-/// to draw over it.
+/// Draws the chart into the window in the current theme. Returns its mapping to the screen [px].
 ChartMapping draw_chart_view(ImDrawList& list,
                              const ScreenRect& rect,
                              ChartView& view,
                              const Chart& chart,
                              bool legend = true);
 
-/// Draws a line across the chart at `x`, if that is within its axis.
+/// Draws a vertical line at `x` if it is within the axis.
 void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb);
 
-/// Returns the curves' values nearest to `x`, one a line, below the value of the x axis; empty if
+/// Returns the curves' values nearest to `x`, one per line, below the value of the x axis; empty if
 /// there are none.
 std::string chart_values_at(const Chart& chart, double x);
+
+/// Returns one line per point: the curve's name, x, y, and its band if there is one. Unknown values
+/// are empty; commas in labels become semicolons.
+std::string to_csv(const Chart& chart);
 
 }  // namespace gpo

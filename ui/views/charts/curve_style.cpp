@@ -3,43 +3,43 @@
 #include "ui/views/charts/curve_style.h"
 
 #include "ui/look/palette.h"
-#include "ui/views/charts/marker_shapes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <Eigen/Core>
 
 namespace gpo {
 namespace {
 
-/// Of the curves with one marker, in turn [px].
+/// Returns dashes and gaps of the `turn`-th curve with the same marker [px].
 const std::vector<double>& dashes_of(int turn) {
   static const std::array<std::vector<double>, 6> kPatterns = {
       std::vector<double>{}, {8, 5}, {9, 4, 2, 4}, {3, 3}, {16, 5}, {9, 3, 2, 3, 2, 3}};
   return kPatterns[static_cast<std::size_t>(turn) % kPatterns.size()];
 }
 
-/// For curves that look like another; none is light or like another.
+/// Replacements for colors that look like another one; distinct and dark.
 constexpr std::array<std::uint32_t, 10> kOthers = {0x0072B2,
                                                    0xD55E00,
                                                    0x8844AA,
                                                    0x222222,
-                                                   0x56B4E9,
+                                                   0x56B4E9,  //
                                                    0xAA1144,
                                                    0x8B5A2B,
                                                    0xE377C2,
                                                    0x117733,
                                                    0xB8860B};
 
-/// Relative luminance of a channel: 0 black, 1 white.
+/// Returns the relative luminance of a channel: 0 black, 1 white.
 double linear(double channel) {
   return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
 }
 
-/// Yellow would not show on white: as dark as it takes, in the same hue.
+/// Darkens light colors, such as yellow, for a white ground, in the same hue.
 std::uint32_t on_white(std::uint32_t rgb) {
   constexpr double kLightest = 0.5;
   const double luminance =
@@ -51,7 +51,7 @@ std::uint32_t on_white(std::uint32_t rgb) {
   return channel(red(rgb)) << 16 | channel(green(rgb)) << 8 | channel(blue(rgb));
 }
 
-/// CIE L*a*b* of sRGB, white point D65.
+/// Converts sRGB to CIE L*a*b*, white point D65.
 Eigen::Vector3d lab(std::uint32_t rgb) {
   Eigen::Matrix3d M;
   M << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
@@ -63,7 +63,7 @@ Eigen::Vector3d lab(std::uint32_t rgb) {
   return {116 * g.y() - 16, 500 * (g.x() - g.y()), 200 * (g.y() - g.z())};
 }
 
-/// From the nearest of the others that are not dotted; much where there are none.
+/// Returns the difference from the most similar solid curve; large if there is none.
 double distance(std::uint32_t rgb, const std::vector<CurveStyle>& others) {
   double least = 1000;
   for (const CurveStyle& other : others)
@@ -78,7 +78,41 @@ std::uint32_t unlike(const std::vector<CurveStyle>& others, std::uint32_t own) {
       kOthers, {}, [&](std::uint32_t rgb) { return distance(rgb, others); });
 }
 
+/// A marker with tips around its center, and dents between them.
+struct Shape {
+  int tips;
+  double first_deg;  ///< direction of the first tip, 90: up
+  double radius;     ///< of the tips [half sizes of the marker]
+  double dent;       ///< radius of the dents [radii of the tips]; 0: none
+};
+
+constexpr std::array kShapes{
+    Shape{24, 0, 1.0, 0},      // circle
+    Shape{4, 45, 1.25, 0},     // square
+    Shape{3, 90, 1.35, 0},     // triangle
+    Shape{4, 90, 1.3, 0},      // diamond
+    Shape{3, -90, 1.35, 0},    // inverted triangle
+    Shape{5, 90, 1.45, 0.42},  // star
+    Shape{4, 45, 1.4, 0.32},   // cross
+    Shape{6, 90, 1.15, 0},     // hexagon
+    Shape{4, 90, 1.5, 0.32},   // plus
+    Shape{3, 90, 1.5, 0.32},   // three-pointed star
+};
+
 }  // namespace
+
+std::vector<Eigen::Vector2d> marker_shape(int index, const Eigen::Vector2d& center, double size) {
+  const Shape& shape = kShapes[static_cast<std::size_t>(index) % kShapes.size()];
+  const int corners = shape.dent > 0 ? 2 * shape.tips : shape.tips;
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = (shape.first_deg + 360.0 * i / corners) * std::numbers::pi / 180;
+    const bool dented = shape.dent > 0 && i % 2 == 1;
+    const double radius = size / 2 * shape.radius * (dented ? shape.dent : 1);
+    outline.push_back(center + radius * Eigen::Vector2d(std::cos(angle), -std::sin(angle)));
+  }
+  return outline;
+}
 
 double color_difference(std::uint32_t a, std::uint32_t b) { return (lab(a) - lab(b)).norm(); }
 
@@ -92,7 +126,7 @@ std::vector<CurveStyle> curve_styles(const Figure& figure) {
       CurveStyle style{curve.name, on_white(curve.rgb), curve.dotted};
       if (!curve.dotted) {
         style.rgb = unlike(styles, style.rgb);
-        style.marker = curve.marker.value_or(next++) % marker_shape_count();
+        style.marker = curve.marker.value_or(next++) % static_cast<int>(kShapes.size());
         style.dashes = dashes_of(turns[*style.marker]++);
       }
       styles.push_back(std::move(style));

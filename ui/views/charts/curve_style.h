@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace gpo {
 
 // Sizes at scale 1 [px].
@@ -16,22 +18,25 @@ constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9;
 constexpr double kBandOpacity = 0.18;
 constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of dotted curves
 
-/// How the curves of one name are drawn in all charts of a figure, and explained in its legend.
+/// Style of the curves of one name, in all charts and the legend of a figure.
 struct CurveStyle {
   std::string name;
-  std::uint32_t rgb = 0;  ///< on paper dark enough for white
+  std::uint32_t rgb = 0;
   bool dotted = false;
   std::vector<double> dashes = {};           ///< and gaps in turn, at scale 1 [px]; empty: solid
   std::optional<int> marker = std::nullopt;  ///< of `marker_shape`; on the screen a circle
   double marker_px = kMarkerSize_px;
 };
 
-/// For print, one a name, in the order in which they appear. Curves with one marker differ in their
-/// dashes: a figure can be read without its colors. No two colors look alike: of those that would,
-/// the later one gets another.
+/// Returns styles for print, one per name, in order of appearance. Curves with the same marker have
+/// different dashes, and no two colors look alike: a later, similar one is replaced.
 std::vector<CurveStyle> curve_styles(const Figure& figure);
 
-/// How different two colors look, as CIE 1976 has it: 2 is just seen, 100 is black on white.
+/// Returns the CIE 1976 difference of two colors: 2 is barely visible, 100 is black on white.
 double color_difference(std::uint32_t a, std::uint32_t b);
+
+/// Returns the outline of a marker around a point, of about the same visual weight for all: circle,
+/// square, triangles, diamond, stars and crosses. `index` wraps around.
+std::vector<Eigen::Vector2d> marker_shape(int index, const Eigen::Vector2d& center, double size);
 
 }  // namespace gpo

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/compare/compare_caption.h"
-
 #include "engine/pipeline/method_defaults.h"
 #include "ui/look/numbers.h"
+#include "ui/views/compare/compare_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
 
@@ -33,7 +32,7 @@ std::string conditions(const Inspection& inspection, double width) {
                       width);
 }
 
-/// Sign and word of the verdict, ending at the rectangle's right edge. Returns its width [px].
+/// Draws sign and word of the verdict at the rectangle's right edge. Returns its width [px].
 double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
   const auto& verdict = inspection.initialization->verdict;
   if (!verdict) return 0;
@@ -50,11 +49,11 @@ double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& 
 std::string why_no_metrics(const Inspection& inspection) {
   if (!inspection.truth) return "no truth";
   const Alignment alignment = inspection.evaluation->alignment;
-  if (alignment == Alignment::point) return "the true path is a point: no scale";
+  if (alignment == Alignment::point) return "no scale: the true path is a point";
   return "the ground truth does not cover the reference frame or the plane";
 }
 
-/// What stands below the errors.
+/// Returns the line below the errors.
 std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
   const std::string least =
       fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
@@ -67,21 +66,22 @@ std::string remarks(const Inspection& inspection, const Evaluation& e, double wi
   return fitting_text(Font::small, {most, more, least}, width);
 }
 
-/// An error, and that of the first column.
+/// An error, and the first column's.
 struct ComparedError {
   const char* name;
   std::optional<double> value, first;
   std::string (*text)(double);
 };
 
-/// Whether the value does not fit beside its name.
+/// Whether the value is too wide for a place beside its name.
 bool too_wide(const ComparedError& error, double width) {
   const std::string value = error.value ? error.text(*error.value) : "–";
   const double beside = text_width(Font::small, error.name) + 6 * overlay_scale();
   return beside + text_width(Font::bold, value) > width - 4 * overlay_scale();
 }
 
-/// In a third of the caption: value and name, side by side or `stacked`; below the difference.
+/// Draws an error in a third of the caption: value and name, side by side or `stacked`, above the
+/// difference.
 void draw_error(
     ImDrawList& list, const Vector2d& at, double width, bool stacked, const ComparedError& error) {
   const double s = overlay_scale();

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "ui/views/compare/compare_column.h"
 #include "ui/views/overlay/view_options.h"
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -18,59 +19,79 @@ namespace gpo {
 
 class ImageTexture;
 
-/// Finished inspections of one window of one recording, a method or setting each.
+/// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
-/// Heading, picture and caption of one column.
+/// A configuration and its result.
+struct CompareColumn {
+  Configuration configuration;
+  std::shared_ptr<const Inspection> inspection;  ///< null: missing
+  std::string missing;                           ///< shown in its place: "computing", or why
+};
+using CompareColumns = std::span<const CompareColumn>;
+
+/// Places of heading, image and caption of a column.
 struct ColumnPlace {
   ScreenRect heading, image, caption;
 };
 
-/// Width / height of its pictures, within what a column can show well; 4:3 where it is not known.
+/// A frame in all columns.
+struct CompareFrame {
+  const Recording& recording;
+  int frame;                ///< counted in the recording
+  ImageTexture* image;  ///< null, or empty, if the recording has no images
+  const ViewOptions& options;
+};
+
+/// Returns width / height of the images, limited to what a column can show well; 4:3 if unknown.
 double aspect_of(const Camera& camera);
 
-/// Of `count` columns, in so many rows that pictures of this aspect (width / height) are largest;
-/// at the size of the current font.
+/// Arranges `count` columns in the number of rows that makes images of this aspect (width / height)
+/// largest, for the size of the current font.
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
                                         int count,
                                         double aspect,
                                         bool top_line);
 
-/// The part of the picture that all columns show, whose pictures are as large as `image_size`
-/// [screen px].
-ImageZoom compare_zoom(std::span<const CompareColumn> columns,
-                         const Recording& recording,
-                         int frame,
-                         const Eigen::Vector2d& image_size,
-                         const ViewOptions& options);
+/// Returns the part of the image that all columns show, in places of size `image_size` [screen
+/// px].
+ImageZoom compare_zoom(CompareColumns columns,
+                         const CompareFrame& shown,
+                         const Eigen::Vector2d& image_size);
 
-/// One column each: heading in the method's color, the picture of frame `frame` (counts in the
-/// recording), the same part in all columns, with that method's cube and thin and gray the true
-/// one; below it what the result is worth and how it differs from the first, or why there is none.
-/// `image` is null, or empty, where the recording has no pictures.
+/// Draws the columns: a heading in the method's color, the same part of the image with the method's
+/// cube and the true one, thin and gray, and below it the errors and their differences from the
+/// first column, or why there is no result.
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
-                       std::span<const CompareColumn> columns,
-                       const Recording& recording,
-                       int frame,
-                       ImageTexture* image,
-                       const ViewOptions& options);
+                       CompareColumns columns,
+                       const CompareFrame& shown);
 
-/// The same of inspections alone.
+/// The same for finished inspections, with default options.
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        Comparison inspections,
                        int frame,
                        ImageTexture* image);
 
-/// What the colors of the cubes mean, from the left. Returns how wide it is [px].
+/// Draws the title in the configuration's color, the verdict and the conditions of the result.
+void draw_compare_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column);
+
+/// Draws the errors of a result. `first`: result of the first column, for differences; null in the
+/// first column itself.
+void draw_compare_caption(ImDrawList& list,
+                          const ScreenRect& rect,
+                          const Inspection& inspection,
+                          const Inspection* first);
+
+/// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].
 double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);
 
-/// At which a column is 480 pixels wide.
+/// Returns the size with columns of 480 pixels.
 cv::Size default_compare_size(Comparison inspections);
 cv::Size default_compare_size(int columns, const Recording& recording);
 
-/// Of the text, such that it fits into columns of this picture [-]; 1 at the default size.
+/// Returns the scale of text that fits into the columns of this size [-]; 1 at the default size.
 double compare_text_scale(Comparison inspections, cv::Size size);
 
 }  // namespace gpo

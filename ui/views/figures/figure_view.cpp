@@ -3,8 +3,10 @@
 #include "ui/views/figures/figure_view.h"
 
 #include "engine/base/error.h"
+#include "ui/look/palette.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include <cairo-pdf.h>
@@ -14,9 +16,42 @@
 namespace gpo {
 namespace {
 
-// Of one chart with its titles [px], at which text has its nominal size.
+// Size of a chart with titles at which text has its nominal size [px].
 constexpr int kChartWidth = 500, kChartHeight = 440;
+constexpr double kFreeHeight = 205;  // of the axes on a sheet as high as its content, at scale 1
+constexpr double kMargin = 10;       // at scale 1
+constexpr double kLineSpacing = 1.35;
 constexpr std::uint32_t kWhite = 0xFFFFFF;
+
+bool has_few_windows(const Figure& figure) {
+  const auto few = [](int count) { return count > 0 && count < kFewWindows; };
+  for (const Chart& chart : figure.charts)
+    for (const Curve& curve : chart.curves)
+      if (std::ranges::any_of(curve.counts, few)) return true;
+  return false;
+}
+
+/// Returns colors and sizes of charts on white paper.
+ChartStyle paper_style(const FigureSheet& sheet) {
+  const double s = sheet.scale;
+  const FigureType& type = sheet.type;
+  return {.ground = 0xFFFFFF,
+          .text = palette::kInk,
+          .tick_text = palette::kInk,
+          .dim = palette::kPaperAxis,
+          .axis = palette::kPaperAxis,
+          .grid = palette::kPaperGrid,
+          .scale = s,
+          .text_size = type.axis_title,
+          .tick_size = type.tick,
+          .x_spacing = 3.6 * type.tick,
+          .y_spacing = 2.2 * type.tick,
+          .legend = {.sample = 40 * s,
+                     .beside = 8 * s,
+                     .between = 26 * s,
+                     .row = 1.7 * type.legend,
+                     .text_size = type.legend}};
+}
 
 int chart_count(const Figure& figure) {
   return std::max(1, static_cast<int>(figure.charts.size()));
@@ -35,53 +70,46 @@ struct PlacedFigure {
   double points_per_unit() const { return sheet.unit_mm / 25.4 * 72; }
 };
 
-/// Lines of text, centered at `text.at` and below.
-void write_lines(cairo_t& cairo, const std::vector<std::string>& lines, Text text) {
+/// Writes lines of text, centered, from `at` downwards.
+void write_lines(cairo_t& cairo,
+                 const std::vector<std::string>& lines,
+                 Eigen::Vector2d at,
+                 const TextStyle& style) {
   for (const std::string& line : lines) {
-    text.text = line;
-    draw_text(cairo, text);
-    text.at.y() += kLineSpacing * text.size;
+    draw_text(cairo, line, at, style);
+    at.y() += kLineSpacing * style.size;
   }
 }
 
 void write_titles(cairo_t& cairo,
                   const Chart& chart,
                   const cv::Rect2d& axes,
-                  const FigureSheet& sheet,
-                  std::uint32_t rgb) {
+                  const FigureSheet& sheet) {
   const FigureType& type = sheet.type;
+  const std::uint32_t rgb = palette::kInk;
   const double x = axes.x + axes.width / 2, y = axes.y + axes.height / 2;
   const double below = axes.br().y + 9 * sheet.scale + 1.1 * type.tick + type.axis_title;
   const double beside = axes.x - 3.3 * type.tick - type.axis_title;
-  draw_text(cairo,
-            {.text = chart.title,
-             .at = {x, axes.y - type.chart_title},
-             .size = type.chart_title,
-             .rgb = rgb,
-             .bold = true});
-  draw_text(cairo, {chart.x_label, {x, below}, type.axis_title, rgb});
-  draw_text(cairo,
-            {.text = chart.y_label,
-             .at = {beside, y},
-             .size = type.axis_title,
-             .rgb = rgb,
-             .upwards = true});
+  const Eigen::Vector2d above(x, axes.y - type.chart_title);
+  draw_text(cairo, chart.title, above, {.size = type.chart_title, .rgb = rgb, .bold = true});
+  draw_text(cairo, chart.x_label, {x, below}, {type.axis_title, rgb});
+  const TextStyle upwards{.size = type.axis_title, .rgb = rgb, .upwards = true};
+  draw_text(cairo, chart.y_label, {beside, y}, upwards);
 }
 
 void PlacedFigure::draw(cairo_t& cairo) const {
   const ChartStyle look = paper_style(sheet);
   const double middle = layout.width / 2;
-  write_lines(cairo,
-              layout.title,
-              {"", {middle, layout.title_y}, sheet.type.title, look.text, Anchor::middle, true});
+  const TextStyle title{.size = sheet.type.title, .rgb = look.text, .bold = true};
+  write_lines(cairo, layout.title, {middle, layout.title_y}, title);
   for (std::size_t i = 0; i < figure.charts.size(); ++i) {
     draw_chart(cairo, figure.charts[i], styles, layout.axes[i], look);
-    write_titles(cairo, figure.charts[i], layout.axes[i], sheet, look.text);
+    write_titles(cairo, figure.charts[i], layout.axes[i], sheet);
   }
   for (const LegendKey& key : layout.keys) draw_key(cairo, key, look);
-  write_lines(cairo, layout.note, {"", {middle, layout.note_y}, sheet.type.note, look.dim});
+  write_lines(cairo, layout.note, {middle, layout.note_y}, {sheet.type.note, look.dim});
   if (figure.charts.empty())
-    draw_text(cairo, {"no charts", {middle, layout.height / 2}, sheet.type.title, look.text});
+    draw_text(cairo, "no charts", {middle, layout.height / 2}, {sheet.type.title, look.text});
 }
 
 std::string description(const Figure& figure) {
@@ -99,7 +127,7 @@ cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned siz
   return CAIRO_STATUS_SUCCESS;
 }
 
-/// As the content of an XML element.
+/// Escapes a text as content of an XML element.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : legible(text, 4 * text.size()))
@@ -108,6 +136,48 @@ std::string escaped(const std::string& text) {
 }
 
 }  // namespace
+
+FigureLayout lay_out(const Figure& figure,
+                     const std::vector<CurveStyle>& styles,
+                     const FigureSheet& sheet) {
+  const double s = sheet.scale;
+  const FigureType& type = sheet.type;
+  FigureLayout layout;
+  layout.width = sheet.width;
+  const double room = sheet.width - 2 * kMargin * s;
+  layout.title = wrapped(figure.title, type.title, true, room);
+  layout.note = wrapped(figure.note, type.note, false, room);
+  const double lines = kLineSpacing * type.title * static_cast<double>(layout.title.size());
+  layout.title_y = kMargin * s + kLineSpacing * type.title / 2;
+  const double top = kMargin * s + lines;
+  for (const CurveStyle& style : styles) layout.keys.push_back({&style, style.name});
+  if (has_few_windows(figure))
+    layout.keys.push_back({nullptr, fmt::format("fewer than {} windows", kFewWindows)});
+  const double legend_height = place_keys(layout.keys, paper_style(sheet).legend, room, 0.5);
+  const double note_height = kLineSpacing * type.note * static_cast<double>(layout.note.size());
+  const double below = legend_height + note_height + (layout.note.empty() ? 1 : 1.6) * kMargin * s;
+  const auto charts = static_cast<int>(figure.charts.size());
+  const int columns = std::clamp(sheet.columns, 1, std::max(1, charts));
+  const int rows = std::max(1, (charts + columns - 1) / columns);
+  const double head = 2.1 * type.chart_title;
+  const double foot = 0.5 * type.tick + 8 * s + type.tick + 2.2 * type.axis_title;
+  double height = kFreeHeight * s;
+  if (sheet.height) height = std::max(20 * s, (*sheet.height - top - below) / rows - head - foot);
+  const double left = 3.3 * type.tick + 2 * type.axis_title, right = 1.3 * type.tick;
+  const double column = sheet.width / columns;
+  for (int i = 0; i < charts; ++i) {
+    const int row = i / columns;
+    layout.axes.emplace_back(std::round(column * (i % columns) + left),
+                             std::round(top + head + (head + height + foot) * row),
+                             std::max(20 * s, std::round(column - left - right)),
+                             std::round(height));
+  }
+  const double end = top + rows * (head + height + foot);
+  for (LegendKey& key : layout.keys) key.at += Eigen::Vector2d(kMargin * s, end);
+  layout.note_y = end + legend_height + 0.6 * kMargin * s + kLineSpacing * type.note / 2;
+  layout.height = sheet.height.value_or(std::ceil(end + below));
+  return layout;
+}
 
 cv::Size default_figure_size(const Figure& figure) {
   return {chart_count(figure) * kChartWidth, kChartHeight + 40};
@@ -123,15 +193,21 @@ FigureSheet screen_sheet(const Figure& figure, cv::Size size) {
   for (double* one :
        {&type.title, &type.chart_title, &type.axis_title, &type.tick, &type.legend, &type.note})
     *one *= s;
-  return {1.0 * size.width, 1.0 * size.height, s, columns, type};
+  return {.width = 1.0 * size.width,
+          .height = size.height,
+          .scale = s,
+          .columns = columns,
+          .type = type};
 }
 
 FigureSheet printed_sheet(const Figure& figure, double width_mm) {
-  constexpr double kUnit_mm = 25.4 / 72 / 2;  // half a point: 14 units are type of 7 pt
+  constexpr double kUnit_mm = 25.4 / 72 / 2;  // half a point: 14 units are 7 pt
   constexpr double kNarrowest = 300;          // of a chart
   const double width = width_mm / kUnit_mm;
   const int columns = std::clamp(static_cast<int>(width / kNarrowest), 1, chart_count(figure));
-  return {width, std::nullopt, 1, columns, {16, 15, 14.5, 14, 14, 14}, kUnit_mm};
+  const FigureType type{
+      .title = 16, .chart_title = 15, .axis_title = 14.5, .legend = 14, .note = 14};
+  return {.width = width, .columns = columns, .type = type, .unit_mm = kUnit_mm};
 }
 
 cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit) {
@@ -152,7 +228,7 @@ std::string figure_svg(const Figure& figure, const FigureSheet& sheet) {
     cairo_paint(&cairo);
     placed.draw(cairo);
   });
-  // Cairo numbers surfaces over the whole run.
+  // Cairo numbers surfaces through the whole run.
   const std::string_view name = "id=\"surface";
   if (const std::size_t id = svg.find(name); id != std::string::npos)
     svg.erase(id + name.size(), svg.find('"', id + name.size()) - id - name.size());
@@ -171,7 +247,7 @@ std::string figure_pdf(const Figure& figure, const FigureSheet& sheet) {
   cairo_pdf_surface_restrict_to_version(surface, CAIRO_PDF_VERSION_1_4);
   const std::string title = legible(figure.title, 4 * figure.title.size());
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title.c_str());
-  // Cairo writes the time of the run otherwise.
+  // By default Cairo writes the present time.
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2026-01-01T00:00:00Z");
   draw_on(surface, placed.points_per_unit(), [&](cairo_t& cairo) { placed.draw(cairo); });
   return pdf;

@@ -3,36 +3,65 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "ui/views/figures/figure_layout.h"
+#include "ui/views/charts/chart_drawing.h"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 namespace gpo {
 
-/// Wide enough for the figure's charts side by side [px].
+/// Sizes of a figure's text [units].
+struct FigureType {
+  double title = 19, chart_title = 16, axis_title = 15, tick = 14, legend = 15, note = 13;
+};
+
+/// The sheet of a figure [units].
+struct FigureSheet {
+  double width = 0;
+  std::optional<double> height = {};  ///< nullopt: as high as the content
+  double scale = 1;                   ///< of lines, markers and gaps
+  int columns = 1;                    ///< of charts
+  FigureType type = {};
+  double unit_mm = 25.4 / 96;  ///< on paper; by default a unit is a pixel of 96 dpi
+};
+
+/// Places of a figure's parts, y down [units].
+struct FigureLayout {
+  double width = 0, height = 0;
+  std::vector<cv::Rect2d> axes;  ///< one per chart
+  std::vector<std::string> title, note;
+  double title_y = 0, note_y = 0;  ///< of the first line
+  std::vector<LegendKey> keys;     ///< they point to the styles
+};
+FigureLayout lay_out(const Figure& figure,
+                     const std::vector<CurveStyle>& styles,
+                     const FigureSheet& sheet);
+
+/// Returns a size with room for the charts side by side [px].
 cv::Size default_figure_size(const Figure& figure);
 
-/// A sheet of pixels: charts side by side, one legend and the note below.
+/// Returns a sheet of pixels: charts side by side, one legend and the note below.
 FigureSheet screen_sheet(const Figure& figure, cv::Size size);
 
-/// A sheet for a page, as high as the figure takes: charts side by side or one below the other,
-/// type of 7 pt and more.
+/// Returns a sheet for a page, as high as its content: charts side by side or one below the other,
+/// text of at least 7 pt.
 FigureSheet printed_sheet(const Figure& figure, double width_mm);
 
-// The figure on white. Curves differ in markers and dashes besides colors and are hollow at points
-// of few windows; bands between quartiles are translucent, or outlined where they are many; bounds
-// are dotted. The same figure gives the same bytes.
+// Figures have a white ground. Curves differ in markers and dashes besides colors; points of few
+// windows are hollow, bands between quartiles translucent, or outlined if they are many, and bounds
+// dotted. The same figure gives the same bytes.
 
-/// Pixels, CV_8UC3, BGR.
+/// Returns pixels, CV_8UC3, BGR.
 cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
 
-/// SVG with text as outlines, so that it needs no font; the names of what is shown are in its title
-/// and description.
+/// Returns SVG with text as outlines, which needs no fonts; its title and description name the
+/// content.
 std::string figure_svg(const Figure& figure, const FigureSheet& sheet);
 
-/// A page of PDF with text that can be selected, and its fonts.
+/// Returns a page of PDF with selectable text and its fonts.
 std::string figure_pdf(const Figure& figure, const FigureSheet& sheet);
 
 /// Draws the figure on a `screen_sheet`.

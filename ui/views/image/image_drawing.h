@@ -4,65 +4,59 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "ui/look/image_zoom.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_texture.h"
 
-#include <array>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <imgui.h>
 
-struct ImDrawList;
-
 namespace gpo {
 
-/// The picture as it was recorded or without distortion, as the mapping says, and around it the
-/// background. Null or empty: an empty field in its place.
-void draw_image(ImDrawList& list,
-                  const ScreenRect& rect,
-                  const Camera& camera,
-                  ImageTexture* image,
-                  const ImageMapping& mapping);
+/// A camera's image on the screen.
+struct ImageCanvas {
+  ImDrawList& list;
+  const Camera& camera;
+  ImageMapping mapping;
 
-/// The part of the picture within a triangle alone.
-void draw_part(ImDrawList& list,
-               const Camera& camera,
-               const ImageTexture& image,
-               const ImageMapping& mapping,
-               const std::array<Eigen::Vector2d, 3>& triangle_raw_px);
+  ImVec2 at(const Eigen::Vector2d& raw_px) const;
+  /// `width` at scale 1 [px].
+  void polyline(const Outline& raw_px, ImU32 color, float width) const;
+};
 
-/// Edges alone; those behind the cube are thin.
-void draw_wireframe(ImDrawList& list, const ImageMapping& mapping, const CubeImage& cube);
+/// Draws the image, raw or undistorted as the mapping requires, and the background around it. Draws
+/// an empty field if the texture is null or empty.
+void draw_image(const ImageCanvas& canvas, const ScreenRect& rect, ImageTexture* image);
 
-/// As a body in soft light: brighter faces towards the light, darker towards its foot, edges in the
-/// legend's green. `shadow`: `contact_shadow`.
-void draw_body(ImDrawList& list,
-               const ImageMapping& mapping,
+/// Draws the part of the image within a triangle.
+void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Triangle& triangle);
+
+/// Draws only edges; those behind the cube are thin.
+void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
+
+/// Draws the cube as a body in soft light, darker towards its foot. `shadow`: `contact_shadow`.
+void draw_body(const ImageCanvas& canvas,
                const CubeImage& cube,
-               const std::vector<std::vector<Eigen::Vector2d>>& shadow);
+               const std::vector<Outline>& shadow);
 
-/// What is on the plane alone, for a model that stands there: shadow and base.
-void draw_foot(ImDrawList& list,
-               const ImageMapping& mapping,
+/// Draws only shadow and base, for a model in the cube's place.
+void draw_foot(const ImageCanvas& canvas,
                const CubeImage& cube,
-               const std::vector<std::vector<Eigen::Vector2d>>& shadow);
+               const std::vector<Outline>& shadow);
 
-/// The corners on the screen of a box around all of its edges.
-std::pair<ImVec2, ImVec2> bounds(const ImageMapping& mapping, const CubeImage& cube);
+/// Returns the corners on the screen of a box around all edges.
+std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// The true one: gray and dashed.
-void draw_true_cube(ImDrawList& list, const ImageMapping& mapping, const CubeImage& cube);
+/// Draws the true cube, gray and dashed.
+void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// The model with its points at `points_w`, as the camera at `pose` sees it: the lens bends it,
-/// too. Farther triangles first; those that are not wholly in front of the camera are left out.
-void draw_model(ImDrawList& list,
-                const ImageMapping& mapping,
-                const Camera& camera,
+/// Draws the model with its points at `points_w` as the camera at `pose` sees it, through its lens.
+/// Triangles are drawn from far to near, without those not completely in front of the camera.
+void draw_model(const ImageCanvas& canvas,
                 const Pose& pose,
                 const SolidModel& model,
                 const std::vector<Eigen::Vector3d>& points_w);

@@ -4,41 +4,39 @@
 
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/track_life.h"
+#include "engine/window/tracks.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Corners = std::array<Vector3d, 8>;
 
-constexpr int kPiecesOfAnEdge = 24;
-constexpr double kNear = 1e-3;  // of the cube's side: what is nearer to the camera is cut off
+constexpr int kPiecesPerEdge = 24;
+constexpr double kNear = 1e-3;  // nearest depth that is drawn [sides of the cube]
 
-/// Faces as corners in turn, each bit of a corner's index being one axis.
-constexpr std::array<std::array<int, 4>, 6> kFaces = {
-    {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
-
-/// The longest stretch of the segment that the camera sees.
-std::vector<Vector2d> segment_in_image(const Camera& camera,
-                                         Vector3d a_c,
-                                         Vector3d b_c,
-                                         double near) {
+/// Returns the longest visible part of a segment.
+Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, double near) {
   if (a_c.z() < near && b_c.z() < near) return {};
   const auto cut = [near](const Vector3d& inside, const Vector3d& outside) -> Vector3d {
     return inside + (outside - inside) * ((inside.z() - near) / (inside.z() - outside.z()));
   };
   if (a_c.z() < near) a_c = cut(b_c, a_c);
   if (b_c.z() < near) b_c = cut(a_c, b_c);
-  std::vector<Vector2d> longest, run;
-  for (int i = 0; i <= kPiecesOfAnEdge; ++i) {
-    const double s = static_cast<double>(i) / kPiecesOfAnEdge;
+  Outline longest, run;
+  for (int i = 0; i <= kPiecesPerEdge; ++i) {
+    const double s = static_cast<double>(i) / kPiecesPerEdge;
     const Vector2d raw_px = project(camera, (1 - s) * a_c + s * b_c);
     if (raw_px.allFinite())
       run.push_back(raw_px);
@@ -50,24 +48,23 @@ std::vector<Vector2d> segment_in_image(const Camera& camera,
   return longest;
 }
 
-bool contains_edge(const std::array<int, 4>& face, int a, int b) {
-  return std::count(face.begin(), face.end(), a) > 0 && std::count(face.begin(), face.end(), b) > 0;
+bool contains_edge(const std::array<int, 4>& face, const std::array<int, 2>& edge) {
+  return std::ranges::count(face, edge[0]) > 0 && std::ranges::count(face, edge[1]) > 0;
 }
 
 CubeFace face_in_image(const Camera& camera,
-                         const std::array<Vector3d, 8>& corners_c,
+                         const Corners& corners_c,
                          const std::array<int, 4>& face,
                          double near) {
   const Vector3d middle = (corners_c[0] + corners_c[7]) / 2;
   Vector3d center = Vector3d::Zero();
   for (const int corner : face) center += corners_c[corner] / 4;
-  CubeFace result{face, face == kFaces[0], center.dot(center - middle) < 0, {}};
+  CubeFace result{face, face == kCubeFaces[0], center.dot(center - middle) < 0, {}};
   for (int i = 0; i < 4; ++i) {
-    const Vector3d& a = corners_c[face[i]];
-    const Vector3d& b = corners_c[face[(i + 1) % 4]];
-    const auto side = a.z() > near && b.z() > near ? segment_in_image(camera, a, b, near)
-                                                   : std::vector<Vector2d>{};
-    if (side.size() != kPiecesOfAnEdge + 1) return {face, result.base, result.facing, {}};
+    const Vector3d &a = corners_c[face[i]], &b = corners_c[face[(i + 1) % 4]];
+    Outline side;
+    if (a.z() > near && b.z() > near) side = segment_in_image(camera, a, b, near);
+    if (side.size() != kPiecesPerEdge + 1) return {face, result.base, result.facing, {}};
     result.raw_px.insert(result.raw_px.end(), side.begin(), side.end() - 1);
   }
   return result;
@@ -75,90 +72,67 @@ CubeFace face_in_image(const Camera& camera,
 
 }  // namespace
 
-CubeImage cube_in_image(const Camera& camera,
-                            const Pose& pose,
-                            const std::array<Vector3d, 8>& corners_w) {
-  std::array<Vector3d, 8> corners_c;
+CubeImage cube_in_image(const Camera& camera, const Pose& pose, const Corners& corners_w) {
+  Corners corners_c;
   for (int i = 0; i < 8; ++i) corners_c[i] = to_camera(pose, corners_w[i]);
   const double near = kNear * (corners_c[1] - corners_c[0]).norm();
   CubeImage result;
-  for (const auto& face : kFaces)
+  for (const auto& face : kCubeFaces)
     result.faces.push_back(face_in_image(camera, corners_c, face, near));
-  for (int a = 0; a < 8; ++a)
-    for (const int axis : {1, 2, 4}) {
-      const int b = a | axis;
-      if (b == a) continue;
-      const bool hidden =
-          std::none_of(result.faces.begin(), result.faces.end(), [&](const auto& f) {
-            return f.facing && contains_edge(f.corners, a, b);
-          });
-      result.edges.push_back(
-          {{a, b}, b < 4, hidden, segment_in_image(camera, corners_c[a], corners_c[b], near)});
-    }
+  for (const auto& edge : kCubeEdges) {
+    const bool hidden = std::ranges::none_of(result.faces, [&](const CubeFace& face) {
+      return face.facing && contains_edge(face.corners, edge);
+    });
+    const auto [a, b] = edge;
+    result.edges.push_back(
+        {edge, b < 4, hidden, segment_in_image(camera, corners_c[a], corners_c[b], near)});
+  }
   return result;
 }
 
-std::optional<CubeImage> estimated_cube(const Inspection& inspection,
-                                          int frame_in_window,
-                                          double side,
-                                          double height_sides) {
+std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size) {
   if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
   return cube_in_image(inspection.recording->camera,
-                         inspection.initialization->cameras[frame_in_window],
-                         cube_corners(*inspection.cube, side, height_sides));
+                         inspection.initialization->cameras[frame],
+                         cube_corners(*inspection.cube, size.side, size.height_sides));
 }
 
-std::optional<CubeImage> true_cube(const Inspection& inspection,
-                                     int frame_in_window,
-                                     double side,
-                                     double height_sides) {
+std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size) {
   if (!inspection.true_cube || !inspection.cube || !inspection.truth ||
-      !inspection.truth->cameras[frame_in_window])
+      !inspection.truth->cameras[frame])
     return std::nullopt;
-  const double true_side = side * inspection.true_cube->unit / inspection.cube->unit;
+  const double true_side = size.side * inspection.true_cube->unit / inspection.cube->unit;
   return cube_in_image(inspection.recording->camera,
-                         *inspection.truth->cameras[frame_in_window],
-                         cube_corners(*inspection.true_cube, true_side, height_sides));
+                         *inspection.truth->cameras[frame],
+                         cube_corners(*inspection.true_cube, true_side, size.height_sides));
 }
-
-namespace {
-
-std::vector<Vector2d> exaggerated(const std::vector<Vector2d>& points,
-                                  const std::vector<Vector2d>& reference,
-                                  double times) {
-  if (points.size() != reference.size()) return {};
-  std::vector<Vector2d> moved;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    moved.push_back(reference[i] + times * (points[i] - reference[i]));
-  return moved;
-}
-
-}  // namespace
 
 CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times) {
+  const auto exaggerate = [times](Outline& line, const Outline& from) {
+    if (line.size() != from.size()) return line.clear();
+    for (std::size_t i = 0; i < line.size(); ++i) line[i] = from[i] + times * (line[i] - from[i]);
+  };
   CubeImage result = cube;
   for (std::size_t i = 0; i < cube.edges.size(); ++i)
-    result.edges[i].raw_px = exaggerated(cube.edges[i].raw_px, reference.edges[i].raw_px, times);
+    exaggerate(result.edges[i].raw_px, reference.edges[i].raw_px);
   for (std::size_t i = 0; i < cube.faces.size(); ++i)
-    result.faces[i].raw_px = exaggerated(cube.faces[i].raw_px, reference.faces[i].raw_px, times);
+    exaggerate(result.faces[i].raw_px, reference.faces[i].raw_px);
   return result;
 }
 
-std::vector<std::vector<Vector2d>> contact_shadow(const Inspection& inspection,
-                                                  int frame_in_window,
-                                                  double side) {
+std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, double side) {
   constexpr int kRings = 16, kPoints = 48;
-  constexpr double kReach = 0.35;  // of the side
+  constexpr double kReach = 0.35;  // [sides]
   if (!inspection.cube || !inspection.initialization->ok) return {};
   const CubeAnchor& anchor = *inspection.cube;
   const auto base = cube_corners(anchor, side);
-  const Pose& pose = inspection.initialization->cameras[frame_in_window];
-  std::vector<std::vector<Vector2d>> rings;
+  const Pose& pose = inspection.initialization->cameras[frame];
+  std::vector<Outline> rings;
   for (int ring = kRings; ring > 0; --ring) {
     const double reach = kReach * side * ring / kRings;
-    std::vector<Vector2d> outline;
+    Outline outline;
     for (int i = 0; i < kPoints; ++i) {
-      // A square and a disc added up (Minkowski): a square with round corners.
+      // Minkowski sum of a square and a disc: a square with round corners.
       const double angle = 2 * std::numbers::pi * (i + 0.5) / kPoints;
       const double x = std::cos(angle), y = std::sin(angle);
       const Vector3d& corner = base[(x > 0 ? 1 : 0) | (y > 0 ? 2 : 0)];
@@ -173,20 +147,20 @@ std::vector<std::vector<Vector2d>> contact_shadow(const Inspection& inspection,
   return rings;
 }
 
-std::vector<std::vector<Vector2d>> horizon_in_image(const Camera& camera,
-                                                      const Pose& pose,
-                                                      const Vector3d& up_w) {
-  constexpr int kDirections = 720;  // around the whole horizon
+std::vector<Outline> horizon_in_image(const Camera& camera,
+                                        const Pose& pose,
+                                        const Vector3d& up_w) {
+  constexpr int kDirections = 720;
   constexpr double kLeastDepth = 0.05;
   const Vector3d up_c = (pose.R_wc.transpose() * up_w).normalized();
-  // Begins behind the camera, so that what it sees is in one piece.
+  // Begins behind the camera, so that the visible part is in one piece.
   Vector3d ahead = Vector3d::UnitZ() - up_c * up_c.z();
   if (ahead.norm() < 1e-9) return {};
   ahead.normalize();
   const Vector3d side = ahead.cross(up_c);
   const Eigen::AlignedBox2d inside(Vector2d(-0.5, -0.5),
                                    Vector2d(camera.width - 0.5, camera.height - 0.5));
-  std::vector<std::vector<Vector2d>> pieces(1);
+  std::vector<Outline> pieces(1);
   for (int i = 0; i <= kDirections; ++i) {
     const double angle = std::numbers::pi * (2.0 * i / kDirections - 1);
     const Vector3d direction = std::cos(angle) * ahead + std::sin(angle) * side;
@@ -198,37 +172,127 @@ std::vector<std::vector<Vector2d>> horizon_in_image(const Camera& camera,
     else if (!pieces.back().empty())
       pieces.emplace_back();
   }
-  std::erase_if(pieces, [](const auto& piece) { return piece.size() < 2; });
+  std::erase_if(pieces, [](const Outline& piece) { return piece.size() < 2; });
   return pieces;
 }
 
-std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window) {
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame) {
   const Window& window = *inspection.window;
-  const auto H = estimated_homography(inspection, frame_in_window);
+  const auto H = estimated_homography(inspection, frame);
   if (!H) return {};
   std::vector<ResidualVector> residuals;
   for (int track = 0; track < window.track_count(); ++track) {
-    if (!window.inlier[frame_in_window][track]) continue;
+    if (!window.inlier[frame][track]) continue;
     const Vector2d predicted =
         distort(inspection.recording->camera, transfer(*H, window.points_px[0].col(track)));
-    const Vector2d observed = inspection.tracks->raw_px[frame_in_window].col(track);
+    const Vector2d observed = inspection.tracks->raw_px[frame].col(track);
     if (predicted.allFinite() && observed.allFinite())
       residuals.push_back({track, observed, predicted});
   }
   return residuals;
 }
 
-std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
-                                              int frame_in_window,
-                                              const Eigen::Vector2d& raw_px,
-                                              const Plane& plane) {
+std::optional<Vector3d> point_on_plane(const Inspection& inspection,
+                                       int frame,
+                                       const Vector2d& raw_px,
+                                       const Plane& plane) {
   const auto& cameras = inspection.initialization->cameras;
-  if (frame_in_window < 0 || frame_in_window >= static_cast<int>(cameras.size()))
-    return std::nullopt;
+  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
   const Camera& camera = inspection.recording->camera;
-  const Eigen::Vector3d ray =
-      intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
-  return intersect(plane, cameras[frame_in_window], ray);
+  const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
+  return intersect(plane, cameras[frame], ray);
+}
+
+namespace {
+
+bool inside(const Triangle& triangle, const Vector2d& point) {
+  int left = 0, right = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vector2d side = triangle[(i + 1) % 3] - triangle[i], to = point - triangle[i];
+    const double turn = side.x() * to.y() - side.y() * to.x();
+    left += turn > 0;
+    right += turn < 0;
+  }
+  return left == 0 || right == 0;
+}
+
+/// Returns the triangles of a plane's tracks in which the frame is assumed to show the plane.
+std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int plane) {
+  constexpr double kLongestSide = 0.15;  // of a triangle [widths of the image]
+  const Tracks& tracks = *inspection.tracks;
+  const Camera& camera = inspection.recording->camera;
+  const cv::Rect2f image(-1, -1, camera.width + 1.0F, camera.height + 1.0F);
+  cv::Subdiv2D subdivision;
+  subdivision.initDelaunay(cv::Rect(-1, -1, camera.width + 2, camera.height + 2));
+  Outline elsewhere;
+  for (int track = 0; track < tracks.track_count(); ++track) {
+    if (!tracks.seen(frame, track)) continue;
+    const Vector2d raw_px = tracks.raw_px[frame].col(track);
+    const cv::Point2f pixel(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y()));
+    if (plane_of_track(*inspection.window, frame, track) != plane)
+      elsewhere.push_back(raw_px);
+    else if (image.contains(pixel))
+      subdivision.insert(pixel);
+  }
+  std::vector<cv::Vec6f> found;
+  subdivision.getTriangleList(found);
+  std::vector<Triangle> triangles;
+  for (const cv::Vec6f& t : found) {
+    const Triangle triangle = {Vector2d(t[0], t[1]), Vector2d(t[2], t[3]), Vector2d(t[4], t[5])};
+    double longest = 0;
+    for (int i = 0; i < 3; ++i)
+      longest = std::max(longest, (triangle[i] - triangle[(i + 1) % 3]).norm());
+    const auto contains = [&](const Vector2d& point) { return inside(triangle, point); };
+    if (longest <= kLongestSide * camera.width && std::ranges::none_of(elsewhere, contains))
+      triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+/// Whether parts of the cube are seen through the triangles and all of these are behind the plane.
+bool hides(const Plane& plane,
+           const std::vector<Triangle>& triangles,
+           const Camera& camera,
+           const Pose& pose,
+           const Corners& cube_w) {
+  constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
+  constexpr int kSteps = 6;         // of points along an edge
+  const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
+  bool some = false;
+  for (int k = 0; k < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++k) {
+    const Vector3d steps(
+        k % (kSteps + 1), k / (kSteps + 1) % (kSteps + 1), k / ((kSteps + 1) * (kSteps + 1)));
+    const Vector3d point = cube_w[0] + (steps.x() * x + steps.y() * y + steps.z() * z) / kSteps;
+    const Vector3d point_c = to_camera(pose, point);
+    if (point_c.z() <= 0) return false;
+    const Vector2d raw_px = project(camera, point_c);
+    const auto shows = [&](const Triangle& triangle) { return inside(triangle, raw_px); };
+    if (!raw_px.allFinite() || std::ranges::none_of(triangles, shows)) continue;
+    const auto on_plane = intersect(plane, pose, point_c);
+    if (!on_plane || (point - pose.p_wc).norm() < kBehind * (*on_plane - pose.p_wc).norm())
+      return false;
+    some = true;
+  }
+  return some;
+}
+
+}  // namespace
+
+std::vector<Occluder> occluders(const Inspection& inspection,
+                                int frame,
+                                const Corners& cube_corners_w) {
+  std::vector<Occluder> found;
+  for (const PlaneEstimate& estimate : inspection.initialization->planes) {
+    if (estimate.number == inspection.window->leader) continue;
+    auto triangles = triangles_of(inspection, frame, estimate.number);
+    if (hides(estimate.plane,
+              triangles,
+              inspection.recording->camera,
+              inspection.initialization->cameras[frame],
+              cube_corners_w))
+      found.push_back({estimate.number, std::move(triangles)});
+  }
+  return found;
 }
 
 }  // namespace gpo

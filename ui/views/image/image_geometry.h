@@ -14,20 +14,31 @@
 
 namespace gpo {
 
-/// An edge as a polyline in the picture; empty where it cannot be seen at all.
+/// Corners of a cube's edges and faces, in the order of `cube_corners`: each bit of an index is an
+/// axis. The first face is the base; the corners of a face are in turn.
+// clang-format off
+inline constexpr std::array<std::array<int, 2>, 12> kCubeEdges = {
+    {{0, 1}, {0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 6}, {5, 7}, {6, 7}}};
+// clang-format on
+inline constexpr std::array<std::array<int, 4>, 6> kCubeFaces = {
+    {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+
+using Outline = std::vector<Eigen::Vector2d>;
+
+/// An edge as a polyline in the image; empty if it is invisible.
 struct CubeEdge {
-  std::array<int, 2> corners;  ///< as `cube_corners` counts them
-  bool base;                   ///< of the square on the plane
-  bool hidden;                 ///< behind the cube's own faces
-  std::vector<Eigen::Vector2d> raw_px;
+  std::array<int, 2> corners;
+  bool base;    ///< of the square on the plane
+  bool hidden;  ///< behind the cube's own faces
+  Outline raw_px;
 };
 
-/// A face's outline in the picture; empty where it is not wholly in front of the camera.
+/// A face's outline in the image; empty unless all of it is in front of the camera.
 struct CubeFace {
-  std::array<int, 4> corners;  ///< around the face
+  std::array<int, 4> corners;
   bool base;
   bool facing;  ///< its outside is towards the camera
-  std::vector<Eigen::Vector2d> raw_px;
+  Outline raw_px;
 };
 
 struct CubeImage {
@@ -35,58 +46,71 @@ struct CubeImage {
   std::vector<CubeFace> faces;  ///< 6
 };
 
-/// The cube with these corners (`cube_corners`) as the camera at `pose` sees it: straight edges
-/// bend through the lens, what is behind the camera is cut off.
+/// Projects the cube with these corners (`cube_corners`) into the camera at `pose`. Straight edges
+/// are bent by the lens and clipped in front of the camera.
 CubeImage cube_in_image(const Camera& camera,
                             const Pose& pose,
                             const std::array<Eigen::Vector3d, 8>& corners_w);
 
-/// The virtual cube of this side [unit of the estimate] in a frame of the window, by the frame's
-/// estimated pose. Nothing where the initialization failed.
-std::optional<CubeImage> estimated_cube(const Inspection& inspection,
-                                          int frame_in_window,
-                                          double side,
-                                          double height_sides = 1);
+/// Size of the virtual cube.
+struct CubeSize {
+  double side;              ///< [unit of the estimate]
+  double height_sides = 1;  ///< height in sides; more than 1: a tower
+};
 
-/// The same cube on the true plane, by the true pose. Nothing where one of them is not known.
-std::optional<CubeImage> true_cube(const Inspection& inspection,
-                                     int frame_in_window,
-                                     double side,
-                                     double height_sides = 1);
+/// Projects the virtual cube into a frame of the window by the frame's estimated pose; nullopt if
+/// the initialization failed.
+std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size);
 
-/// A cube whose distance in the picture from a reference is so many times what it is. Edges and
-/// faces that only one of them shows whole are empty.
+/// The same cube on the true plane, by the true pose; nullopt if one of them is unknown.
+std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size);
+
+/// Returns the cube with its image distance from a reference multiplied by `times`. Edges and faces
+/// that are not complete in both are empty.
 CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times);
 
-/// Outlines on the estimated plane around the cube's base, each a little further out, the outermost
-/// first: where the cube keeps light off. None where one of them is not in front of the camera.
-std::vector<std::vector<Eigen::Vector2d>> contact_shadow(const Inspection& inspection,
-                                                         int frame_in_window,
-                                                         double side);
+/// Returns outlines on the estimated plane around the cube's base, in which the cube blocks light,
+/// from the outermost inwards. Empty unless all are in front of the camera.
+std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, double side);
 
-/// Where the camera sees what is level with it, bent by its lens; what is outside of the picture is
-/// left out, so that there may be several pieces, or none. `up_w` of any length, in the world.
-std::vector<std::vector<Eigen::Vector2d>> horizon_in_image(const Camera& camera,
-                                                             const Pose& pose,
-                                                             const Eigen::Vector3d& up_w);
+/// Returns the horizon in the image, bent by the lens: one or several pieces, or none. `up_w` is
+/// the up direction in the world, of any length.
+std::vector<Outline> horizon_in_image(const Camera& camera,
+                                        const Pose& pose,
+                                        const Eigen::Vector3d& up_w);
 
-/// Where a track was seen, and where plane and poses put what the reference frame saw [raw px].
+/// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
 struct ResidualVector {
   int track;
   Eigen::Vector2d observed_px;
   Eigen::Vector2d predicted_px;
 };
 
-/// Of the inliers of a frame of the window, through H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty
-/// where the initialization failed.
-std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame_in_window);
+/// Returns the residuals of the inliers of a frame of the window, through
+/// H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty if the initialization failed.
+std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
-/// Where a pixel of a frame of the window shows a plane, in the estimate's world: also the ray of
-/// the reference camera to there. Nothing where the frame has no pose, or the pixel does not show
-/// it.
+/// Intersects the ray through a pixel of a frame of the window with a plane, in the estimate's
+/// world, in which it is also a ray of the reference camera. nullopt if the frame has no pose or
+/// the ray misses the plane.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
-                                              int frame_in_window,
+                                              int frame,
                                               const Eigen::Vector2d& raw_px,
                                               const Plane& plane);
+
+using Triangle = std::array<Eigen::Vector2d, 3>;
+
+/// Parts of an image that are nearer to the camera than the cube.
+struct Occluder {
+  int plane = 0;  ///< its number in the window
+  std::vector<Triangle> triangles_raw_px;
+};
+
+/// Returns the planes of the window, except the leading one, that hide the cube in a frame. A plane
+/// is assumed to be visible in Delaunay triangles of its tracks that are small and contain no other
+/// track. It hides the cube if all of the cube seen through them is behind it.
+std::vector<Occluder> occluders(const Inspection& inspection,
+                                int frame,
+                                const std::array<Eigen::Vector3d, 8>& cube_corners_w);
 
 }  // namespace gpo

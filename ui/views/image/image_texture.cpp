@@ -9,7 +9,7 @@
 namespace gpo {
 
 void* imgui_texture(unsigned texture) {
-  // Dear ImGui names textures by pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  // Dear ImGui identifies textures by pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
   return reinterpret_cast<void*>(static_cast<std::intptr_t>(texture));
 }
 
@@ -30,10 +30,10 @@ void ImageTexture::upload(const cv::Mat& bgr) {
   ++revision_;
 }
 
-void ImageTexture::set_screen_scale(double screen_pixels_a_pixel) {
+void ImageTexture::set_screen_scale(double screen_pixels_per_pixel) {
   glBindTexture(GL_TEXTURE_2D, texture_);
   glTexParameteri(
-      GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, screen_pixels_a_pixel >= 2 ? GL_NEAREST : GL_LINEAR);
+      GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, screen_pixels_per_pixel >= 2 ? GL_NEAREST : GL_LINEAR);
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 

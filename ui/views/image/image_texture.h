@@ -6,10 +6,10 @@
 
 namespace gpo {
 
-/// An OpenGL texture as Dear ImGui names it (ImTextureID).
+/// Converts an OpenGL texture to Dear ImGui's ImTextureID.
 void* imgui_texture(unsigned texture);
 
-/// A picture in the graphics memory, owned. Needs its context to be current.
+/// An owned image in graphics memory. Needs its context to be current.
 class ImageTexture {
  public:
   ImageTexture();
@@ -17,13 +17,13 @@ class ImageTexture {
   ImageTexture(const ImageTexture&) = delete;
   ImageTexture& operator=(const ImageTexture&) = delete;
 
-  /// CV_8UC3, BGR; replaces what was there.
+  /// CV_8UC3, BGR; replaces the content.
   void upload(const cv::Mat& bgr);
-  /// How it will be drawn: pixels are squares from 200 % on, smooth below.
-  void set_screen_scale(double screen_pixels_a_pixel);
+  /// Shows pixels as squares from 200 % on, smoothed below.
+  void set_screen_scale(double screen_pixels_per_pixel);
   /// For Dear ImGui; null before the first upload.
   void* id() const;
-  /// Counts the uploads: another one, another picture.
+  /// Number of uploads: it changes with the content.
   std::size_t revision() const { return revision_; }
 
  private:

@@ -7,18 +7,13 @@
 #include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/overlay/track_colors.h"
-#include "ui/views/image/image_geometry.h"
-#include "ui/views/image/occlusion.h"
 #include "ui/views/image/image_drawing.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
@@ -28,41 +23,22 @@ using Eigen::Vector2d;
 constexpr int kTailFrames = 10;
 constexpr double kResidualMagnification = 20;
 
-/// One frame of one inspection on its way to the screen.
-struct Canvas {
-  ImDrawList& list;
-  ScreenRect rect;
+/// What the parts of the drawing share.
+struct Canvas : ImageCanvas {
   const Inspection& inspection;
-  int frame;  ///< in the window
-  ImageMapping mapping;
+  int frame;  ///< of the window
   const ViewOptions& options;
-  float scale;
   const ImageTexture* image;  ///< null: none
 
-  ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
-  std::vector<ImVec2> at(const std::vector<Vector2d>& raw_px) const {
-    std::vector<ImVec2> points;
-    points.reserve(raw_px.size());
-    for (const Vector2d& pixel : raw_px) points.push_back(at(pixel));
-    return points;
-  }
-  TrackStyle look(int frame_in_window, int track) const {
-    TrackStyle look = track_style(*inspection.window, frame_in_window, track);
+  float scale() const { return overlay_scale(); }
+  TrackStyle look(int track) const {
+    TrackStyle look = track_style(*inspection.window, frame, track);
     if (options.colors) look.rgb = options.colors->rgb(track);
     return look;
   }
-  const Camera& camera() const { return inspection.recording->camera; }
   const Pose& pose() const { return inspection.initialization->cameras[frame]; }
-  std::optional<CubeImage> estimated_cube() const {
-    return gpo::estimated_cube(
-        inspection, frame, cube_side(inspection, options.cube_side), options.cube_height_sides);
-  }
-  std::optional<CubeImage> true_cube() const {
-    return gpo::true_cube(
-        inspection, frame, cube_side(inspection, options.cube_side), options.cube_height_sides);
-  }
-  void polyline(const std::vector<ImVec2>& points, ImU32 color, float width) const {
-    list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, width * scale);
+  CubeSize cube_size() const {
+    return {cube_side(inspection, options.cube_side), options.cube_height_sides};
   }
 };
 
@@ -71,27 +47,26 @@ void draw_tails(const Canvas& canvas) {
   const int oldest = std::max(0, canvas.frame - kTailFrames);
   for (int track = 0; track < tracks.track_count(); ++track) {
     if (!tracks.seen(canvas.frame, track)) continue;
-    const std::uint32_t rgb = canvas.look(canvas.frame, track).rgb;
+    const std::uint32_t rgb = canvas.look(track).rgb;
     for (int i = oldest; i < canvas.frame; ++i) {
       const double age = static_cast<double>(canvas.frame - i) / kTailFrames;
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
                           canvas.at(tracks.raw_px[i + 1].col(track)),
                           imgui_color(rgb, 0.15 + 0.6 * (1 - age)),
-                          1.4F * canvas.scale);
+                          1.4F * canvas.scale());
     }
   }
 }
 
-void draw_track(const Canvas& canvas, int track) {
-  const auto [sign, rgb] = canvas.look(canvas.frame, track);
-  const auto& raw_px = canvas.inspection.tracks->raw_px[canvas.frame];
-  draw_sign(canvas.list, sign, canvas.at(raw_px.col(track)), rgb);
-}
-
-void draw_tracks(const Canvas& canvas) {
+/// Draws the tracks for which `chosen(track)` holds.
+template <class Chosen>
+void draw_tracks(const Canvas& canvas, const Chosen& chosen) {
   const Tracks& tracks = *canvas.inspection.tracks;
-  for (int track = 0; track < tracks.track_count(); ++track)
-    if (tracks.seen(canvas.frame, track)) draw_track(canvas, track);
+  for (int track = 0; track < tracks.track_count(); ++track) {
+    if (!tracks.seen(canvas.frame, track) || !chosen(track)) continue;
+    const auto [sign, rgb] = canvas.look(track);
+    draw_sign(canvas.list, sign, canvas.at(tracks.raw_px[canvas.frame].col(track)), rgb);
+  }
 }
 
 void draw_residuals(const Canvas& canvas) {
@@ -99,100 +74,79 @@ void draw_residuals(const Canvas& canvas) {
     const Vector2d tip = residual.observed_px +
                          kResidualMagnification * (residual.predicted_px - residual.observed_px);
     const ImVec2 from = canvas.at(residual.observed_px), to = canvas.at(tip);
-    canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * canvas.scale);
-    canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * canvas.scale);
+    canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * canvas.scale());
+    canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * canvas.scale());
   }
 }
 
-/// What the estimated cube's difference is told from.
-std::optional<CubeImage> reference_cube(const Canvas& canvas) {
-  if (auto truth = canvas.true_cube()) return truth;
-  if (canvas.options.reference == nullptr) return std::nullopt;
-  return gpo::estimated_cube(*canvas.options.reference,
-                             canvas.frame,
-                             cube_side(*canvas.options.reference, canvas.options.reference_side),
-                             canvas.options.cube_height_sides);
+/// Returns the cube from which the estimated cube's distance is exaggerated; nullopt if it is not.
+std::optional<CubeImage> exaggeration_reference(const Canvas& canvas) {
+  const ViewOptions& options = canvas.options;
+  if (options.show.exaggeration <= 1) return std::nullopt;
+  if (auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size())) return truth;
+  if (options.reference == nullptr) return std::nullopt;
+  const double side = cube_side(*options.reference, options.reference_side);
+  return estimated_cube(*options.reference, canvas.frame, {side, options.cube_height_sides});
 }
 
-bool exaggerates(const Canvas& canvas) {
-  return canvas.options.show.exaggeration > 1 && reference_cube(canvas).has_value();
-}
-
-/// What is nearer than the cube comes back over it: the picture, and the tracks that say so.
-void draw_occluders(const Canvas& canvas,
-                    const std::array<Eigen::Vector3d, 8>& corners_w,
-                    const CubeImage& cube) {
+/// Draws the image and its tracks again over the parts of the cube that nearer planes hide.
+void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
   if (canvas.image == nullptr || canvas.image->id() == nullptr) return;
-  const Tracks& tracks = *canvas.inspection.tracks;
-  const auto [low, high] = bounds(canvas.mapping, cube);
+  const auto [side, height_sides] = canvas.cube_size();
+  const auto corners_w = cube_corners(*canvas.inspection.cube, side, height_sides);
+  const auto [low, high] = bounds(canvas, cube);
   for (const Occluder& occluder : occluders(canvas.inspection, canvas.frame, corners_w)) {
     canvas.list.PushClipRect(low, high, true);
-    for (const auto& triangle : occluder.triangles_raw_px)
-      draw_part(canvas.list, canvas.camera(), *canvas.image, canvas.mapping, triangle);
+    for (const Triangle& triangle : occluder.triangles_raw_px)
+      draw_part(canvas, *canvas.image, triangle);
     canvas.list.PopClipRect();
-    if (!canvas.options.show.tracks) continue;
-    for (int track = 0; track < tracks.track_count(); ++track)
-      if (tracks.seen(canvas.frame, track) &&
-          plane_of_track(*canvas.inspection.window, canvas.frame, track) == occluder.plane)
-        draw_track(canvas, track);
+    if (canvas.options.show.tracks)
+      draw_tracks(canvas, [&](int track) {
+        return plane_of_track(*canvas.inspection.window, canvas.frame, track) == occluder.plane;
+      });
   }
 }
 
-/// As a body, or as the model that takes its place.
+/// Draws the cube as a body, or the model in its place.
 void draw_standing(const Canvas& canvas, const CubeImage& cube) {
-  const double side = cube_side(canvas.inspection, canvas.options.cube_side);
+  const double side = canvas.cube_size().side;
   const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
-  const SolidModel* model = canvas.options.model.get();
-  if (model == nullptr) {
-    draw_body(canvas.list, canvas.mapping, cube, shadow);
+  if (const SolidModel* model = canvas.options.model.get()) {
+    draw_foot(canvas, cube, shadow);
+    const auto corners = cube_corners(*canvas.inspection.cube, side);
+    draw_model(canvas, canvas.pose(), *model, placed_on(*model, corners));
   } else {
-    draw_foot(canvas.list, canvas.mapping, cube, shadow);
-    draw_model(canvas.list,
-               canvas.mapping,
-               canvas.camera(),
-               canvas.pose(),
-               *model,
-               placed_on(*model, cube_corners(*canvas.inspection.cube, side)));
+    draw_body(canvas, cube, shadow);
   }
-  draw_occluders(
-      canvas, cube_corners(*canvas.inspection.cube, side, canvas.options.cube_height_sides), cube);
+  draw_occluders(canvas, cube);
 }
 
 void draw_cubes(const Canvas& canvas) {
   const ViewOptions& options = canvas.options;
-  auto cube = canvas.estimated_cube();
-  const auto reference =
-      options.show.exaggeration > 1 ? reference_cube(canvas) : std::optional<CubeImage>();
-  const bool far_off = cube && reference;
-  if (far_off) cube = exaggerated(*cube, *reference, options.show.exaggeration);
-  // A body would hide what it is held against.
-  const bool body = !options.show.wireframe && !far_off;
+  auto cube = estimated_cube(canvas.inspection, canvas.frame, canvas.cube_size());
+  const auto reference = exaggeration_reference(canvas);
+  if (cube && reference) cube = exaggerated(*cube, *reference, options.show.exaggeration);
+  // A body would hide its reference.
+  const bool body = !options.show.wireframe && !reference;
   if (cube && body) draw_standing(canvas, *cube);
-  if (const auto truth = canvas.true_cube(); truth && options.show.truth)
-    draw_true_cube(canvas.list, canvas.mapping, *truth);
-  if (cube && !body) draw_wireframe(canvas.list, canvas.mapping, *cube);
+  if (options.show.truth)
+    if (const auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size()))
+      draw_true_cube(canvas, *truth);
+  if (cube && !body) draw_wireframe(canvas, *cube);
 }
 
-/// Of the frame, by its estimated pose; nothing where gravity is not known.
-std::vector<std::vector<Vector2d>> horizon(const Canvas& canvas) {
+/// Returns the horizon from the frame's estimated pose; empty if gravity is unknown or off.
+std::vector<Outline> horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
-  return horizon_in_image(canvas.camera(), canvas.pose(), -inspection.inertial->gravity_m_s2);
+  return horizon_in_image(canvas.camera, canvas.pose(), -inspection.inertial->gravity_m_s2);
 }
 
-void draw_horizon(const Canvas& canvas) {
-  for (const auto& piece : horizon(canvas)) {
-    const std::vector<ImVec2> points = canvas.at(piece);
-    canvas.polyline(points, imgui_color(Role::background, 0.5), 3.4F);
-    canvas.polyline(points, imgui_color(Role::gravity), 1.4F);
-  }
+std::string counted(int count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string counted(int count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
-/// How many tracks are on each plane and on none.
+/// Counts the tracks on each plane and the outliers.
 std::vector<LegendRow> track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
@@ -203,16 +157,15 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
     const auto plane = plane_of_track(window, canvas.frame, track);
     ++(plane ? on_plane[*plane] : outliers);
   }
-  std::vector<LegendRow> rows;
-  for (const auto& [plane, count] : on_plane) {
-    const bool leads = plane == window.leader;
-    const std::string text = leads ? counted(count, "inlier")
-                                   : fmt::format("{} on {}", count, plane_title(inspection, plane));
-    const LegendRow row{Sign::circle, plane_color(window, plane), text};
-    rows.insert(leads ? rows.begin() : rows.end(), row);
-  }
-  const std::string text = counted(outliers, "outlier");
-  rows.insert(rows.end(), LegendRow{Sign::cross, color_of(Role::outlier), text});
+  std::vector<LegendRow> rows = {{Sign::circle,
+                                  plane_color(window, window.leader),
+                                  counted(on_plane[window.leader], "inlier")}};
+  for (const auto& [plane, count] : on_plane)
+    if (plane != window.leader)
+      rows.push_back({Sign::circle,
+                      plane_color(window, plane),
+                      fmt::format("{} on {}", count, plane_title(inspection, plane))});
+  rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
   return rows;
 }
 
@@ -222,47 +175,48 @@ std::vector<LegendRow> legend_rows(const Canvas& canvas) {
   std::vector<LegendRow> rows;
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
-  const auto add = [&rows](Sign sign, Role role, std::string text) {
-    rows.push_back(LegendRow{sign, color_of(role), std::move(text)});
+  const auto add = [&rows](Sign sign, Role role, const std::string& text) {
+    rows.push_back({sign, color_of(role), text});
   };
   if (inspection.initialization->ok && options.show.residuals)
     add(Sign::line, Role::residual, fmt::format("residuals × {:g}", kResidualMagnification));
   if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon");
-  if (options.show.cube && inspection.cube)
+  if (!options.show.cube) return rows;
+  const bool truth = true_cube(inspection, canvas.frame, canvas.cube_size()).has_value();
+  if (inspection.cube)
     add(Sign::square,
         Role::cube_base,
         options.model ? "model on the estimated plane" : "cube on the estimated plane");
-  if (options.show.cube && !options.model_error.empty())
-    add(Sign::none, Role::warning, options.model_error);
-  if (options.show.cube && options.show.truth && canvas.true_cube())
-    add(Sign::square, Role::truth, std::string("true cube, dashed"));
-  if (options.show.cube && inspection.cube && exaggerates(canvas))
+  if (!options.model_error.empty()) add(Sign::none, Role::warning, options.model_error);
+  if (options.show.truth && truth) add(Sign::square, Role::truth, "true cube, dashed");
+  if (inspection.cube && exaggeration_reference(canvas))
     add(Sign::none,
         Role::warning,
-        fmt::format("cube's distance from {} × {}",
-                    canvas.true_cube() ? "the true one" : "the first one",
-                    options.show.exaggeration));
+        fmt::format(
+            "distance from the {} cube × {}", truth ? "true" : "first", options.show.exaggeration));
   return rows;
 }
 
-/// Everything that needs the frame to be in the window.
 void draw_results(const Canvas& canvas) {
-  const ViewOptions& options = canvas.options;
-  if (options.show.tracks && options.show.tails) draw_tails(canvas);
-  if (options.show.tracks) draw_tracks(canvas);
-  if (options.show.residuals) draw_residuals(canvas);
-  draw_horizon(canvas);
-  if (options.show.cube) draw_cubes(canvas);
+  const ViewToggles& show = canvas.options.show;
+  if (show.tracks && show.tails) draw_tails(canvas);
+  if (show.tracks) draw_tracks(canvas, [](int) { return true; });
+  if (show.residuals) draw_residuals(canvas);
+  for (const Outline& piece : horizon(canvas)) {
+    canvas.polyline(piece, imgui_color(Role::background, 0.5), 3.4F);
+    canvas.polyline(piece, imgui_color(Role::gravity), 1.4F);
+  }
+  if (show.cube) draw_cubes(canvas);
 }
 
-std::string heading(const Inspection& inspection, int frame, bool undistorted) {
-  const auto& times = inspection.recording->timestamps_ns;
-  const double seconds = static_cast<double>(times[frame] - times.front()) * 1e-9;
+std::string heading(const FrameView& view) {
+  const auto& times = view.inspection.recording->timestamps_ns;
+  const double seconds = static_cast<double>(times[view.frame] - times.front()) * 1e-9;
   return fmt::format("frame {} · {:.3f} s · {}{}",
-                     frame,
+                     view.frame,
                      seconds,
-                     inspection.settings.options.method.row().title,
-                     undistorted ? " · undistorted" : "");
+                     view.inspection.settings.options.method.row().title,
+                     view.options.show.undistorted ? " · undistorted" : "");
 }
 
 }  // namespace
@@ -274,32 +228,29 @@ double cube_side(const Inspection& inspection, double chosen) {
 
 void draw_image_view(ImDrawList& list,
                      const ScreenRect& rect,
-                     const Inspection& inspection,
-                     int frame,
+                     const FrameView& view,
                      ImageTexture* image,
-                     const ImageZoom& zoom,
-                     const ViewOptions& options) {
+                     const ImageZoom& zoom) {
+  const auto& [inspection, frame, options] = view;
   const Camera& camera = inspection.recording->camera;
-  const int first = inspection.window->start, count = inspection.window->frame_count();
-  const ImageMapping mapping = map_image(camera, rect, zoom, options.show.undistorted);
-  const Canvas canvas{
-      list, rect, inspection, frame - first, mapping, options, overlay_scale(), image};
+  const Canvas canvas{{list, camera, map_image(camera, rect, zoom, options.show.undistorted)},
+                      inspection,
+                      view.in_window(),
+                      options,
+                      image};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
-  draw_image(list, rect, camera, image, mapping);
-  const bool inside = frame >= first && frame < first + count;
+  draw_image(canvas, rect, image);
   std::vector<LegendRow> rows;
-  if (inside) {
+  if (view.inside()) {
     draw_results(canvas);
     rows = legend_rows(canvas);
-    if (frame == first) rows.push_back({Sign::none, 0, "reference frame"});
+    if (view.in_window() == 0) rows.push_back({Sign::none, 0, "reference frame"});
   } else {
-    rows.push_back(
-        {Sign::none, 0, fmt::format("outside of the window {}–{}", first, first + count - 1)});
+    const int first = inspection.window->start, last = first + inspection.window->frame_count() - 1;
+    rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});
   }
-  if (options.show.legend)
-    draw_legend(
-        list, rect, Corner::top_left, heading(inspection, frame, options.show.undistorted), rows);
-  if (inside && !inspection.initialization->ok)
+  if (options.show.legend) draw_legend(list, rect, Corner::top_left, heading(view), rows);
+  if (view.inside() && !inspection.initialization->ok)
     draw_badge(
         list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   list.PopClipRect();

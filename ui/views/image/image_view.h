@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
 #include <memory>
@@ -14,21 +14,19 @@ namespace gpo {
 
 class ImageTexture;
 
-/// Draws frame `frame` (counts in the recording) into the rectangle: the picture as it was
-/// recorded, tracks, cube, legend, and the reason where the initialization failed. `image` is
-/// null, or empty, where the recording has no pictures.
+/// Draws a frame into the rectangle: the image, tracks, cube, legend, and the reason if the
+/// initialization failed. `image` is null or empty if the recording has no images.
 void draw_image_view(ImDrawList& list,
                      const ScreenRect& rect,
-                     const Inspection& inspection,
-                     int frame,
+                     const FrameView& view,
                      ImageTexture* image,
-                     const ImageZoom& zoom,
-                     const ViewOptions& options);
+                     const ImageZoom& zoom);
 
-/// Side of the virtual cube: as chosen, or the default where `chosen` is 0 [unit of the estimate].
+/// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if it is
+/// 0.
 double cube_side(const Inspection& inspection, double chosen);
 
-/// For the views, while nothing has been computed: a recording with an empty window.
+/// Returns an inspection with an empty window, for the views until a window has been computed.
 Inspection nothing_to_show(std::shared_ptr<const Recording> recording);
 
 }  // namespace gpo

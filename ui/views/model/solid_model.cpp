@@ -34,37 +34,30 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sorting and projecting so many still leaves a frame in time.
+/// Sorting and projecting more takes too long for a frame.
 constexpr std::size_t kMostTriangles = 200'000;
 
-/// VTK prints what it does not like of a file; the user is told by the error.
-struct Unheard {
-  Unheard() { vtkObject::GlobalWarningDisplayOff(); }
-  ~Unheard() { vtkObject::SetGlobalWarningDisplay(before); }
-  Unheard(const Unheard&) = delete;
-  Unheard& operator=(const Unheard&) = delete;
+/// Suppresses VTK's messages: the error reports a bad file.
+struct MessagesOff {
+  MessagesOff() { vtkObject::GlobalWarningDisplayOff(); }
+  ~MessagesOff() { vtkObject::SetGlobalWarningDisplay(before); }
+  MessagesOff(const MessagesOff&) = delete;
+  MessagesOff& operator=(const MessagesOff&) = delete;
 
   int before = vtkObject::GetGlobalWarningDisplay();
 };
 
-/// What a file has, in its own frame.
-struct RawModel {
-  std::vector<Vector3d> points;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<std::optional<std::uint32_t>> rgb;
-};
-
-std::uint32_t mean_rgb(vtkUnsignedCharArray& colors, const std::array<vtkIdType, 3>& corners) {
+std::uint32_t mean_rgb(vtkUnsignedCharArray& colors, const vtkIdType* corners) {
   std::uint32_t rgb = 0;
   for (int channel = 0; channel < 3; ++channel) {
     unsigned sum = 0;
-    for (const vtkIdType corner : corners) sum += colors.GetTypedComponent(corner, channel);
+    for (int k = 0; k < 3; ++k) sum += colors.GetTypedComponent(corners[k], channel);
     rgb = (rgb << 8) | (sum / 3);
   }
   return rgb;
 }
 
-/// VTK does not hold them against the points that there are.
+/// Throws if a corner is not a point: VTK does not check this.
 void check_corners(vtkPolyData& mesh) {
   for (vtkCellArray* cells : {mesh.GetPolys(), mesh.GetStrips()}) {
     vtkIdType count = 0;
@@ -73,11 +66,11 @@ void check_corners(vtkPolyData& mesh) {
       for (vtkIdType i = 0; i < count; ++i)
         if (ids[i] < 0 || ids[i] >= mesh.GetNumberOfPoints())
           throw InputError(fmt::format(
-              "a triangle's corner is point {} of {}", ids[i] + 1, mesh.GetNumberOfPoints()));
+              "a triangle refers to point {} of {}", ids[i] + 1, mesh.GetNumberOfPoints()));
   }
 }
 
-void append(RawModel& model, vtkPolyData* mesh) {
+void append(SolidModel& model, vtkPolyData* mesh) {
   if (mesh == nullptr || mesh->GetPoints() == nullptr) return;
   check_corners(*mesh);
   vtkNew<vtkTriangleFilter> split;
@@ -95,30 +88,19 @@ void append(RawModel& model, vtkPolyData* mesh) {
   const vtkIdType* ids = nullptr;
   for (cells->InitTraversal(); cells->GetNextCell(count, ids) != 0;) {
     if (count != 3) continue;
-    const std::array<vtkIdType, 3> corners = {ids[0], ids[1], ids[2]};
-    model.triangles.push_back({first + static_cast<int>(corners[0]),
-                               first + static_cast<int>(corners[1]),
-                               first + static_cast<int>(corners[2])});
-    model.rgb.push_back(colors == nullptr ? std::nullopt
-                                          : std::optional(mean_rgb(*colors, corners)));
+    auto& corners = model.triangles.emplace_back();
+    for (int k = 0; k < 3; ++k) corners[k] = first + static_cast<int>(ids[k]);
+    model.rgb.push_back(colors ? std::optional(mean_rgb(*colors, ids)) : std::nullopt);
   }
 }
 
 template <class Reader>
-RawModel read_mesh(const std::string& file) {
+SolidModel read_mesh(const std::string& file) {
   vtkNew<Reader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
-  RawModel model;
-  append(model, reader->GetOutput());
-  return model;
-}
-
-RawModel read_gltf(const std::string& file) {
-  vtkNew<vtkGLTFReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  RawModel model;
+  SolidModel model;
+  append(model, vtkPolyData::SafeDownCast(reader->GetOutputDataObject(0)));
   auto* parts = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   if (parts == nullptr) return model;
   const auto part = vtk::TakeSmartPointer(parts->NewIterator());
@@ -127,12 +109,12 @@ RawModel read_gltf(const std::string& file) {
   return model;
 }
 
-RawModel robot() {
+SolidModel robot() {
   vtkNew<vtkPLYReader> reader;
   reader->ReadFromInputStringOn();
   reader->SetInputString(std::string(gpo_robot, gpo_robot_end));
   reader->Update();
-  RawModel model;
+  SolidModel model;
   append(model, reader->GetOutput());
   return model;
 }
@@ -140,17 +122,17 @@ RawModel robot() {
 struct FileType {
   std::string_view extension;
   bool y_up;
-  RawModel (*read)(const std::string& file);
+  SolidModel (*read)(const std::string& file);
 };
 constexpr std::array kFileTypes = {FileType{".obj", true, read_mesh<vtkOBJReader>},
                                    FileType{".ply", false, read_mesh<vtkPLYReader>},
-                                   FileType{".gltf", true, read_gltf},
-                                   FileType{".glb", true, read_gltf}};
+                                   FileType{".gltf", true, read_mesh<vtkGLTFReader>},
+                                   FileType{".glb", true, read_mesh<vtkGLTFReader>}};
 
-/// The axes of files whose y is up: their front, +z, looks at who looks at them.
+/// Converts the axes of files whose y is up: their front, +z, faces the viewer.
 Vector3d with_z_up(const Vector3d& point) { return {point.x(), -point.z(), point.y()}; }
 
-/// From the viewer's left above, as over the cube.
+/// Returns the light on a triangle, from the viewer's upper left, as for the cube.
 double light_on(const SolidModel& model, const std::array<int, 3>& triangle) {
   constexpr double kAmbient = 0.5;
   const Vector3d towards_light = Vector3d(-0.35, -0.6, 0.72).normalized();
@@ -160,25 +142,21 @@ double light_on(const SolidModel& model, const std::array<int, 3>& triangle) {
   return kAmbient + (1 - kAmbient) * std::max(0.0, normal.dot(towards_light));
 }
 
-/// Checked, on its foot, a side wide.
-SolidModel stood(RawModel raw, const std::string& name) {
+/// Checks the model of a file and moves it into the frame of `SolidModel`.
+SolidModel normalized(SolidModel model, const std::string& name) {
   const auto refuse = [&name](const std::string& why) { throw InputError(name + ": " + why); };
-  if (raw.triangles.empty()) refuse("no triangles could be read");
-  if (raw.triangles.size() > kMostTriangles)
-    refuse(
-        fmt::format("{} triangles, at most {} can be shown", raw.triangles.size(), kMostTriangles));
+  if (model.triangles.empty()) refuse("no triangles found");
+  if (model.triangles.size() > kMostTriangles)
+    refuse(fmt::format(
+        "it has {} triangles, at most {} can be shown", model.triangles.size(), kMostTriangles));
   Eigen::AlignedBox3d box;
-  for (const auto& triangle : raw.triangles)
-    for (const int corner : triangle) box.extend(raw.points[corner]);
+  for (const auto& triangle : model.triangles)
+    for (const int corner : triangle) box.extend(model.points[corner]);
   const double width = std::max(box.sizes().x(), box.sizes().y());
   if (!box.sizes().allFinite() || !(width > 0)) refuse("its points have no finite extent");
   const Vector3d foot(box.center().x(), box.center().y(), box.min().z());
-  for (Vector3d& point : raw.points) point = (point - foot) / width;
-  SolidModel model{.points = std::move(raw.points),
-                   .triangles = std::move(raw.triangles),
-                   .rgb = std::move(raw.rgb),
-                   .light = {},
-                   .height_sides = box.sizes().z() / width};
+  for (Vector3d& point : model.points) point = (point - foot) / width;
+  model.height_sides = box.sizes().z() / width;
   for (const auto& triangle : model.triangles) model.light.push_back(light_on(model, triangle));
   return model;
 }
@@ -193,28 +171,28 @@ std::string lower_extension(const std::string& file) {
 }  // namespace
 
 SolidModel read_solid_model(const std::string& name) {
-  if (name == "robot") return stood(robot(), name);
+  if (name == "robot") return normalized(robot(), name);
   const auto type =
       std::ranges::find(kFileTypes, std::string_view(lower_extension(name)), &FileType::extension);
   if (type == kFileTypes.end()) throw InputError(name + ": expected .obj, .ply, .gltf or .glb");
   std::error_code none;
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");
-  RawModel raw;
+  SolidModel model;
   try {
-    const Unheard messages;
-    raw = type->read(name);
+    const MessagesOff messages;
+    model = type->read(name);
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
   }
-  if (type->y_up) std::ranges::transform(raw.points, raw.points.begin(), with_z_up);
-  return stood(std::move(raw), name);
+  if (type->y_up) std::ranges::transform(model.points, model.points.begin(), with_z_up);
+  return normalized(std::move(model), name);
 }
 
 std::vector<Vector3d> placed_on(const SolidModel& model,
                                 const std::array<Vector3d, 8>& cube_corners_w) {
   const auto& corner = cube_corners_w;
   const Vector3d middle = (corner[0] + corner[1] + corner[2] + corner[3]) / 4;
-  // x cross y of the cube's edges points into the plane: the model's y is the other way.
+  // x cross y of the cube's edges points into the plane: the model's y is opposite.
   Eigen::Matrix3d axes;
   axes << corner[1] - corner[0], corner[0] - corner[2], corner[4] - corner[0];
   std::vector<Vector3d> placed;
@@ -223,10 +201,9 @@ std::vector<Vector3d> placed_on(const SolidModel& model,
   return placed;
 }
 
-double light_above_ground(double height_sides) {
-  constexpr double kAtFoot = 0.6;
-  const double height = std::clamp(height_sides, 0.0, 1.0);
-  return kAtFoot + (1 - kAtFoot) * (1 - (1 - height) * (1 - height));
+double light_above_ground(double height_sides, double at_foot) {
+  const double depth = 1 - std::clamp(height_sides, 0.0, 1.0);
+  return at_foot + (1 - at_foot) * (1 - depth * depth);
 }
 
 std::uint32_t lit_rgb(const SolidModel& model,

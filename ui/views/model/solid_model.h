@@ -12,29 +12,29 @@
 
 namespace gpo {
 
-/// A body of triangles that stands in the cube's place. Its frame is right-handed, z is up, y away
-/// from who looks at it; the middle of its foot is the origin, its longer horizontal side 1 side of
-/// the cube.
+/// A triangle mesh in the cube's place. Its frame is right-handed: z is up, y away from the viewer,
+/// the origin at the middle of its foot; its longer horizontal side is 1 side of the cube.
 struct SolidModel {
   std::vector<Eigen::Vector3d> points;            ///< [sides of the cube]
   std::vector<std::array<int, 3>> triangles;      ///< indices of points
-  std::vector<std::optional<std::uint32_t>> rgb;  ///< by triangle; nothing: the cube's
+  std::vector<std::optional<std::uint32_t>> rgb;  ///< by triangle; nullopt: the cube's color
   std::vector<double> light;                      ///< by triangle, 0 (none) to 1
   double height_sides = 1;
 };
 
-/// "robot", which the program carries with it, or a file: .obj, .gltf, .glb (y is up), .ply (z is
-/// up, colors by vertex). Throws InputError that names the file.
+/// Reads "robot", which is embedded in the program, or a file: .obj, .gltf, .glb (y is up), .ply (z
+/// is up, colors by vertex). Throws InputError with the file's name.
 SolidModel read_solid_model(const std::string& name);
 
-/// Its points where the cube of these corners (`cube_corners`, of one side's height) stands.
+/// Returns the model's points in place of the cube with these corners (`cube_corners`, of one
+/// side's height).
 std::vector<Eigen::Vector3d> placed_on(const SolidModel& model,
                                        const std::array<Eigen::Vector3d, 8>& cube_corners_w);
 
-/// How much of the light reaches a point at this height: the ground keeps some off its foot.
-double light_above_ground(double height_sides);
+/// Returns the share of the light that reaches a point: the ground blocks some, `at_foot` is left.
+double light_above_ground(double height_sides, double at_foot = 0.6);
 
-/// A triangle's color in its light, of which so much reaches it.
+/// Returns a triangle's color in its light, multiplied by `above_ground`.
 std::uint32_t lit_rgb(const SolidModel& model,
                       std::size_t triangle,
                       std::uint32_t cube_rgb,

@@ -13,46 +13,21 @@
 namespace gpo {
 namespace {
 
-constexpr int kImage_px = 768;
-/// So that what is drawn over the map stands out.
-constexpr double kDimmed = 0.8;
-constexpr float kLeastRange_px = 0.05F;
-
-/// From the least to what most of the disc stays below.
+/// Returns the color range, from the lowest RMS to the 90 % quantile.
 std::pair<float, float> range_of(const std::vector<float>& rms) {
+  constexpr float kLeast_px = 0.05F;
   std::vector<float> known;
   std::ranges::copy_if(rms, std::back_inserter(known), [](float v) { return std::isfinite(v); });
   if (known.empty()) return {0.1F, 1};
   std::ranges::sort(known);
-  const float low = std::max(kLeastRange_px, known.front());
+  const float low = std::max(kLeast_px, known.front());
   return {low, std::max(2 * low, known[(known.size() - 1) * 9 / 10])};
 }
 
-cv::Vec3b shaded(const cv::Vec3b& bgr, double share) {
-  cv::Vec3b result;
-  for (int i = 0; i < 3; ++i) result[i] = cv::saturate_cast<uchar>(share * bgr[i]);
-  return result;
-}
-
-cv::Vec3b bgr_of(std::uint32_t rgb) {
-  return {static_cast<uchar>(rgb), static_cast<uchar>(rgb >> 8), static_cast<uchar>(rgb >> 16)};
-}
-
-/// Logarithms of the cells, and which of them are known.
+/// Logarithms of the cells, and a mask of the known ones.
 struct LogField {
   cv::Mat1f value, known;
 };
-
-/// Beside what is known goes on what is there, so that its border does not shine.
-float beside(const cv::Mat1f& value, const cv::Mat1f& known, int row, int column) {
-  float sum = 0, count = 0;
-  for (int i = std::max(0, row - 1); i <= std::min(row + 1, value.rows - 1); ++i)
-    for (int j = std::max(0, column - 1); j <= std::min(column + 1, value.cols - 1); ++j) {
-      sum += known(i, j) * value(i, j);
-      count += known(i, j);
-    }
-  return count > 0 ? sum / count : 0;
-}
 
 LogField log_field(const std::vector<float>& rms, int side) {
   LogField field{cv::Mat1f(side, side), cv::Mat1f(side, side)};
@@ -61,15 +36,16 @@ LogField log_field(const std::vector<float>& rms, int side) {
     field.value(k / side, k % side) = finite ? std::log10(std::max(rms[k], 1e-3F)) : 0;
     field.known(k / side, k % side) = finite ? 1.0F : 0.0F;
   }
-  const LogField before{field.value.clone(), field.known};
-  for (int k = 0; k < side * side; ++k)
-    if (!std::isfinite(rms[k]))
-      field.value(k / side, k % side) = beside(before.value, before.known, k / side, k % side);
+  // Unknown cells take the mean of known neighbors, so that interpolation adds no bright border.
+  cv::Mat1f sum, count;
+  cv::boxFilter(field.value, sum, -1, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
+  cv::boxFilter(field.known, count, -1, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
+  cv::Mat1f(sum / cv::max(count, 1)).copyTo(field.value, field.known == 0);
   return field;
 }
 
-/// Where a level crosses the edges between four cells, appended as pieces of lines (marching
-/// squares; of the two ways to join four crossings the first).
+/// Appends the level's lines between the centers of four cells (marching squares; of the two ways
+/// to join four crossings the first).
 void cross_square(const LogField& field, int row, int column, float level, Contours& contours) {
   constexpr std::array<std::array<int, 2>, 5> kAround = {{{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}}};
   std::vector<Eigen::Vector2d> crossings;
@@ -88,7 +64,7 @@ void cross_square(const LogField& field, int row, int column, float level, Conto
     contours.emplace_back(crossings[k], crossings[k + 1]);
 }
 
-/// At 1, 2 and 5 times powers of ten within the range.
+/// Returns contours at 1, 2 and 5 times powers of ten within the range.
 Contours contours_of(const LogField& field, float low, float high) {
   Contours contours;
   const int first = static_cast<int>(std::floor(std::log10(low)));
@@ -103,28 +79,30 @@ Contours contours_of(const LogField& field, float low, float high) {
   return contours;
 }
 
-/// Colors on a logarithmic scale.
+/// Returns an image of the disc in colors on a logarithmic scale.
 cv::Mat image_of(const LogField& field, float low, float high) {
+  constexpr int kSide_px = 768;
+  constexpr double kDimmed = 0.8;  // to set off the drawings over the map
+  const auto color = [](Role role) {
+    const std::uint32_t rgb = color_of(role);
+    return cv::Scalar(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
+  };
   cv::Mat1f value, known;
-  const cv::Size size(kImage_px, kImage_px);
-  cv::resize(field.value, value, size, 0, 0, cv::INTER_LINEAR);
-  cv::resize(field.known, known, size, 0, 0, cv::INTER_LINEAR);
-  const float from = std::log10(low), to = std::log10(high);
-  cv::Mat1b levels(size);
-  for (int i = 0; i < kImage_px * kImage_px; ++i) {
-    const float v = (value(i) - from) / (to - from);
-    levels(i) = static_cast<uchar>(std::lround(255 * std::clamp(v, 0.0F, 1.0F)));
-  }
-  cv::Mat3b colors;
-  cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
-  cv::Mat3b image(size, bgr_of(color_of(Role::scene_bottom)));
-  for (int y = 0; y < kImage_px; ++y)
-    for (int x = 0; x < kImage_px; ++x) {
-      const double u = (2.0 * x + 1) / kImage_px - 1, v = (2.0 * y + 1) / kImage_px - 1;
-      if (u * u + v * v > 1) continue;
-      image(y, x) =
-          known(y, x) < 0.5F ? bgr_of(color_of(Role::raised)) : shaded(colors(y, x), kDimmed);
+  cv::resize(field.value, value, {kSide_px, kSide_px}, 0, 0, cv::INTER_LINEAR);
+  cv::resize(field.known, known, {kSide_px, kSide_px}, 0, 0, cv::INTER_LINEAR);
+  const double from = std::log10(low), per_level = (std::log10(high) - from) / 255;
+  cv::Mat levels, image;
+  value.convertTo(levels, CV_8U, 1 / per_level, -from / per_level);
+  cv::applyColorMap(levels, image, cv::COLORMAP_VIRIDIS);
+  image.convertTo(image, -1, kDimmed);
+  image.setTo(color(Role::raised), known < 0.5);
+  cv::Mat1b inside(image.size());
+  for (int y = 0; y < kSide_px; ++y)
+    for (int x = 0; x < kSide_px; ++x) {
+      const double u = (2.0 * x + 1) / kSide_px - 1, v = (2.0 * y + 1) / kSide_px - 1;
+      inside(y, x) = u * u + v * v > 1 ? 0 : 255;
     }
+  image.setTo(color(Role::scene_bottom), inside == 0);
   return image;
 }
 

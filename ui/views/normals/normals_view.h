@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/studies/normal_study.h"
-#include "ui/look/normals_zoom.h"
 #include "ui/look/palette.h"
+#include "ui/look/zoom.h"
 #include "ui/views/image/image_texture.h"
 
 #include <cstdint>
@@ -17,31 +17,32 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// What a method says the normal is.
+/// A method's estimate of the normal.
 struct NormalAnswer {
   std::string name;  ///< of its configuration, for people
   std::uint32_t rgb = 0;
-  std::shared_ptr<const Inspection> inspection;  ///< of an initialization that is ok
+  std::shared_ptr<const Inspection> inspection;  ///< its initialization is ok
   bool current = false;
 
   const Eigen::Vector3d& normal() const { return inspection->initialization->plane.normal; }
 };
 
-/// Pieces of lines on the disc.
+/// Line segments on the disc.
 using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 
-/// The map of a study up to a frame, in the graphics memory. Needs its context.
+/// The map of a study up to a frame, in graphics memory. Needs its context.
 class NormalsMap {
  public:
-  /// Brings the map of the window's first frames into the texture, where it is not there yet.
+  /// Uploads the map of the window's first frames if it has changed.
   void update(const std::shared_ptr<const NormalStudy>& study, int frames);
 
   const ImageTexture& texture() const { return texture_; }
-  /// Lines of the same RMS: 1, 2 and 5 times powers of ten [px].
+  /// Lines of equal RMS: 1, 2 and 5 times powers of ten [px].
   const Contours& contours() const { return contours_; }
-  /// RMS that a plane of the normal at this place of the disc leaves [px]; NaN where there is none.
+  /// Returns the RMS of planes with the normal at this place of the disc [px]; NaN if undefined,
+  /// infinite if tracks would be behind a camera.
   float rms_at(const Eigen::Vector2d& disc) const;
-  /// The colors' range [px]: that of the whole window, so that frames compare.
+  /// Color range [px]: that of the whole window, so that frames compare.
   float low_px() const { return low_px_; }
   float high_px() const { return high_px_; }
 
@@ -55,29 +56,31 @@ class NormalsMap {
   ImageTexture texture_;
 };
 
-/// What is drawn; the study is of the inspection's window.
+/// Content of the view; the study is of the inspection's window.
 struct NormalsContent {
   const Inspection& inspection;
   std::shared_ptr<const NormalStudy> study;
   std::vector<NormalAnswer> answers;  ///< the current one first
-  int frame = 0;                      ///< counts in the recording
+  int frame = 0;                      ///< counted in the recording
 
-  /// Of the window, up to the shown one: 1 to all.
+  /// Returns the number of frames of the window up to the shown one, at least 2 of 2 or more.
   int frames() const;
+  /// Returns the current answer's further planes, without the leading one.
+  std::vector<PlaneEstimate> further_planes() const;
 };
 
-/// The part of the rectangle in which the disc is drawn, zoomed and hovered.
+/// Returns the part of the rectangle that the disc uses.
 ScreenRect disc_rect(const ScreenRect& rect);
 
-/// Draws the hemisphere of normals that a camera can see as a disc: what a plane of each would
-/// cost, the candidates of the frames, clusters, the solver's path, the answers and the truth.
+/// Draws the hemisphere of visible normals as a disc: the reprojection error of each, the frames'
+/// homography decompositions, clusters, the solver's path, the answers and the truth.
 void draw_normals_view(ImDrawList& list,
                        const ScreenRect& rect,
                        NormalsMap& map,
                        const NormalsContent& content,
                        const NormalsZoom& zoom);
 
-/// What is known of the normal at a place of the disc, some lines; empty off the disc.
+/// Describes the normal at a place of the disc, in some lines; empty outside of the disc.
 std::string normal_text(const NormalsMap& map,
                         const NormalsContent& content,
                         const Eigen::Vector2d& disc);

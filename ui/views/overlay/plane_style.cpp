@@ -2,19 +2,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/plane_style.h"
 
+#include "engine/inspection/studies/track_life.h"
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
-
 namespace {
 
-/// Okabe-Ito's that stand for nothing else among tracks and planes: orange, reddish purple, blue;
-/// and ochre.
+/// Okabe and Ito's colors without other meaning for tracks and planes: orange, reddish purple,
+/// blue; and ochre.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+
+std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
+  if (coloring == Coloring::residual) return rms_residual_px(life);
+  if (coloring == Coloring::depth) return life.depth;
+  return static_cast<double>(life.frames.size());
+}
+
+double quantile(std::vector<double> sorted, double share) {
+  if (sorted.empty()) return 0;
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+std::string text_of(Coloring coloring, double value) {
+  if (coloring == Coloring::residual) return fmt::format("{:.2f} px", value);
+  if (coloring == Coloring::depth) return fmt::format("{:.2f} d", value);
+  return fmt::format("{:.0f} frames", value);
+}
 
 }  // namespace
 
@@ -66,9 +88,8 @@ std::string verdict_text(const Verdict& verdict) {
     text += ", rotation alone leaves " + number_text(*verdict.rotation_rms_px, 2) + " px";
     if (verdict.noise_px) text += " where noise is " + number_text(*verdict.noise_px, 2) + " px";
   }
-  if (verdict.largest_translation) {
+  if (verdict.largest_translation)
     text += ", moved " + number_text(*verdict.largest_translation, 3) + " d";
-  }
   return text;
 }
 
@@ -89,6 +110,52 @@ std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth) {
     runs.back().last = i + 1;
   }
   return runs;
+}
+
+std::uint32_t ramp_color(double share) {
+  static const cv::Mat3b table = [] {
+    cv::Mat1b levels(1, 256);
+    std::iota(levels.begin(), levels.end(), std::uint8_t{0});
+    cv::Mat3b colors;
+    cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
+    return colors;
+  }();
+  constexpr double kDarkest = 0.3;
+  const double level = kDarkest + (1 - kDarkest) * std::clamp(share, 0.0, 1.0);
+  const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * level)));
+  return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
+}
+
+std::uint32_t TrackColors::rgb(int column) const {
+  const auto& value = values[column];
+  if (!value) return color_of(Role::text_dim);
+  return ramp_color(high > low ? (*value - low) / (high - low) : 0.5);
+}
+
+std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring) {
+  if (coloring == Coloring::plane) return nullptr;
+  TrackColors colors{.coloring = coloring, .values = {}};
+  std::vector<double> known;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    colors.values.push_back(value_of(track_life(inspection, column), coloring));
+    if (colors.values.back()) known.push_back(*colors.values.back());
+  }
+  std::ranges::sort(known);
+  colors.low = quantile(known, 0.05);
+  colors.high = quantile(known, 0.95);
+  return std::make_shared<const TrackColors>(std::move(colors));
+}
+
+std::vector<LegendRow> legend_rows(const TrackColors& colors) {
+  const char* quantity = colors.coloring == Coloring::residual ? "residual"
+                         : colors.coloring == Coloring::depth  ? "depth"
+                                                               : "seen in";
+  const bool known =
+      std::ranges::any_of(colors.values, [](const auto& v) { return v.has_value(); });
+  if (!known) return {{Sign::disc, color_of(Role::text_dim), fmt::format("{} unknown", quantity)}};
+  const std::string low = text_of(colors.coloring, colors.low);
+  return {{Sign::disc, ramp_color(0), fmt::format("{} {}", quantity, low)},
+          {Sign::disc, ramp_color(1), text_of(colors.coloring, colors.high)}};
 }
 
 }  // namespace gpo

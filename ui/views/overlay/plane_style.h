@@ -3,9 +3,11 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/look/view_toggles.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,49 +15,67 @@
 
 namespace gpo {
 
-/// The leading plane's is that of an inlier; the others have theirs in the order of their support.
+/// Returns a plane's color: the inliers' for the leading plane, one by order of support for others.
 std::uint32_t plane_color(const Window& window, int plane);
 
-/// Numbers of the window's planes that do not lead.
+/// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
 
-/// Number of the plane that the track lies on in the frame; nothing: on none.
+/// Returns the number of the plane that the track is an inlier of in the frame; nullopt for
+/// outliers.
 std::optional<int> plane_of_track(const Window& window, int frame, int column);
 
 struct TrackStyle {
   Sign sign;
   std::uint32_t rgb;
 };
-/// A circle in the color of its plane, or an outlier's cross.
+/// A circle in the color of the track's plane, or an outlier's cross.
 TrackStyle track_style(const Window& window, int frame, int column);
 
-/// What the setting `plane` must be for the plane of the track of this id to lead; nothing where it
-/// lies on none, or on the one that leads.
+/// Returns the value of the setting `plane` with which the plane of this track is the leading one;
+/// nullopt if the track is on no plane, or on the leading one already.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
-/// How a verdict looks wherever it is shown: by word, shape and color, never by color alone.
+/// Sign and color of a verdict; its word is `to_string`.
 struct ReadinessStyle {
   Sign sign = Sign::none;
   std::uint32_t rgb = 0;
 };
 ReadinessStyle style_of(Readiness readiness);
 
-/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.100 d": what
-/// is known of it.
+/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.100 d",
+/// without the parts that are unknown.
 std::string verdict_text(const Verdict& verdict);
 
-/// The verdicts of windows of 2, 3, ... frames; that of the whole one is its result's, where there
+/// Returns the verdicts on windows of 2, 3, ... frames; for the whole window its result's, if there
 /// is one.
 std::vector<Verdict> shown_growth(const Inspection& inspection);
 
 /// Windows of consecutive lengths with the same verdict.
 struct VerdictRun {
-  int first, last;  ///< frames of the window at which the first and the last of them end
+  int first, last;  ///< last frames of the shortest and the longest of these windows
   Readiness readiness;
   bool operator==(const VerdictRun&) const = default;
 };
-
-/// Of the verdicts of windows of 2, 3, ... frames, which end at frames 1, 2, ...
 std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
+
+/// Returns viridis without its darkest part, which would vanish on dark images. `share` in 0..1.
+std::uint32_t ramp_color(double share);
+
+/// A number per track and its color. Immutable.
+struct TrackColors {
+  Coloring coloring = Coloring::residual;
+  std::vector<std::optional<double>> values;  ///< by column; nullopt if unknown
+  double low = 0, high = 0;                   ///< 5 % and 95 % quantile: ends of the color scale
+
+  /// Returns the color of a column; gray if its value is unknown.
+  std::uint32_t rgb(int column) const;
+};
+
+/// Null for `Coloring::plane`, whose colors come from the window.
+std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring);
+
+/// Returns the ends of the color scale with their values and units.
+std::vector<LegendRow> legend_rows(const TrackColors& colors);
 
 }  // namespace gpo

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/image_zoom.h"
+#include "engine/inspection/inspection.h"
 #include "ui/look/view_toggles.h"
+#include "ui/look/zoom.h"
 
 #include <memory>
 #include <optional>
@@ -11,27 +12,36 @@
 
 namespace gpo {
 
-struct Inspection;
 struct SolidModel;
 struct TrackColors;
 
-/// What the views show, and how.
+/// Content and style of the views.
 struct ViewOptions {
   ViewToggles show = {};
   double cube_side = 0;                            ///< 0: the default [unit of the estimate]
   double cube_height_sides = 1;                    ///< more: a tower
   std::shared_ptr<const SolidModel> model = {};    ///< in the cube's place; null: none
-  std::string model_error = {};                    ///< why it could not be read; empty: it was
+  std::string model_error = {};                    ///< why it cannot be read; empty if it can
   std::shared_ptr<const TrackColors> colors = {};  ///< of tracks and points; null: by their planes
-  /// Of the same window: its cube is the reference of `ViewToggles::exaggeration` in the picture
-  /// where there is no true one. Null: none.
+  /// Result for the same window whose cube is the reference of `ViewToggles::exaggeration` in the
+  /// image if the true cube is unknown. Null: none.
   const Inspection* reference = nullptr;
-  double reference_side = 0;  ///< of its cube, as `cube_side`
-  bool moving = false;        ///< the scene is being dragged: coarser, so that it keeps up
-  std::optional<ImageZoom> compare_zoom = {};  ///< of all columns; nothing: around the cubes
-  bool top_line = true;  ///< of the comparison: the frame, and what the cubes' colors mean
+  double reference_side = 0;  ///< of its cube, like `cube_side`
+  bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
+  std::optional<ImageZoom> compare_zoom = {};  ///< of all columns; nullopt: around the cubes
+  bool top_line = true;  ///< of the comparison: the frame, and the meaning of the cubes' colors
 
   bool operator==(const ViewOptions&) const = default;
+};
+
+/// One frame of an inspection, to be drawn with these options.
+struct FrameView {
+  const Inspection& inspection;
+  int frame;  ///< counted in the recording; may be outside of the window
+  const ViewOptions& options;
+
+  int in_window() const { return frame - inspection.window->start; }
+  bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
 };
 
 }  // namespace gpo

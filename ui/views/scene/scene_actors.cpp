@@ -4,6 +4,7 @@
 
 #include "ui/look/palette.h"
 
+#include <array>
 #include <cmath>
 
 #include <Eigen/Core>
@@ -33,15 +34,14 @@ void Shapes::color(std::uint32_t rgb, double alpha) {
   colors_->InsertNextTypedTuple(rgba.data());
 }
 
-void Shapes::line(const Vector3d& a, const Vector3d& b, std::uint32_t rgb, double alpha) {
-  const std::array<vtkIdType, 2> ends = {add(a), add(b)};
-  lines_->InsertNextCell(2, ends.data());
-  color(rgb, alpha);
+void Shapes::line(const Vector3d& a, const Vector3d& b, std::uint32_t rgb) {
+  lines_->InsertNextCell({add(a), add(b)});
+  color(rgb);
 }
 
-void Shapes::lines(std::span<const Vector3d> points, bool closed, std::uint32_t rgb, double alpha) {
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) line(points[i], points[i + 1], rgb, alpha);
-  if (closed) line(points.back(), points.front(), rgb, alpha);
+void Shapes::lines(std::span<const Vector3d> points, bool closed, std::uint32_t rgb) {
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) line(points[i], points[i + 1], rgb);
+  if (closed) line(points.back(), points.front(), rgb);
 }
 
 void Shapes::face(std::span<const Vector3d> corners, std::uint32_t rgb, double alpha) {
@@ -51,9 +51,8 @@ void Shapes::face(std::span<const Vector3d> corners, std::uint32_t rgb, double a
 }
 
 void Shapes::point(const Vector3d& point, std::uint32_t rgb) {
-  const vtkIdType id = add(point);
-  vertices_->InsertNextCell(1, &id);
-  color(rgb, 1);
+  vertices_->InsertNextCell({add(point)});
+  color(rgb);
 }
 
 vtkSmartPointer<vtkActor> Shapes::actor(double size_px) const {
@@ -75,11 +74,9 @@ vtkSmartPointer<vtkActor> Shapes::actor(double size_px) const {
 }
 
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera) {
-  const Eigen::Vector3d position = eye(camera);
-  const Eigen::Vector3d up = -view_axes(camera).col(1);
-  vtk.SetPosition(position.x(), position.y(), position.z());
-  vtk.SetFocalPoint(camera.target.x(), camera.target.y(), camera.target.z());
-  vtk.SetViewUp(up.x(), up.y(), up.z());
+  vtk.SetPosition(eye(camera).eval().data());
+  vtk.SetFocalPoint(camera.target.data());
+  vtk.SetViewUp((-view_axes(camera).col(1)).eval().data());
   vtk.SetViewAngle(camera.view_angle_deg);
 }
 

@@ -4,45 +4,120 @@
 
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/plane_patches.h"
+#include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
-#include "ui/views/scene/plane_grid.h"
-#include "ui/views/scene/uncertainty_geometry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Line = std::vector<Vector3d>;
 
 Similarity inverted(const Similarity& T) {
-  const Eigen::Matrix3d R = T.R_ab.transpose();
+  const Matrix3d R = T.R_ab.transpose();
   return {1 / T.scale, R, R * (-T.t_ab / T.scale)};
 }
 
-/// The true plane's distance from the true reference camera [m].
+/// Returns the true plane's distance from the true reference camera [m].
 std::optional<double> true_distance(const WindowTruth& truth) {
   if (!truth.plane || !truth.cameras.front()) return std::nullopt;
   return std::abs(plane_in_camera(*truth.plane, *truth.cameras.front()).distance);
 }
 
-Pose moved(const Similarity& T, const Pose& pose) { return {T.R_ab * pose.R_wc, T * pose.p_wc}; }
-
-void add_frusta(const Inspection& inspection, std::vector<Vector3d>& extent) {
+void add_frusta(const Inspection& inspection, Line& extent) {
   const double depth = frustum_depth(inspection);
   const auto add = [&](const Pose& pose) {
-    for (const Vector3d& corner : frustum(inspection.recording->camera, pose, depth))
-      extent.push_back(corner);
+    std::ranges::copy(frustum(inspection.recording->camera, pose, depth),
+                      std::back_inserter(extent));
   };
-  for (const Pose& pose : found_cameras(*inspection.initialization)) add(pose);
+  std::ranges::for_each(found_cameras(*inspection.initialization), add);
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
-  for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i)
+  for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i)
     if (const auto pose = true_camera(inspection, *T_est_true, i)) add(*pose);
+}
+
+/// Returns the range of the values, without the outermost percents, which may be gross errors.
+std::array<double, 2> usual_range(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t cut = values.size() / 25;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
+/// Returns the grid's unit [m]: from the truth, else from the accelerometer, else 1.
+double grid_unit_m(const Inspection& inspection) {
+  if (inspection.evaluation && inspection.evaluation->scale) return *inspection.evaluation->scale;
+  return known_scale(inspection).value_or(1);
+}
+
+/// Returns the semi-axes of x' C^-1 x = chi_square as columns, the longest last.
+Matrix3d semi_axes(const Matrix3d& covariance, double chi_square) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
+  const Vector3d lengths = (chi_square * eigen.eigenvalues().cwiseMax(0)).cwiseSqrt();
+  return eigen.eigenvectors() * lengths.asDiagonal();
+}
+
+/// Returns the ellipse with these semi-axes, around zero.
+Line ellipse(const Vector3d& a, const Vector3d& b, int sides) {
+  Line line;
+  for (int k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    line.emplace_back(std::cos(angle) * a + std::sin(angle) * b);
+  }
+  return line;
+}
+
+/// Rotates a unit normal towards `turn` [rad], which is perpendicular to it, by at most a right
+/// angle.
+Vector3d tilted(const Vector3d& normal, const Vector3d& turn) {
+  const double angle = std::min(turn.norm(), std::numbers::pi / 2);
+  if (angle < 1e-12) return normal;
+  return std::cos(angle) * normal + std::sin(angle) * turn.normalized();
+}
+
+/// The leading plane is the ground unless gravity contradicts; then up is opposite to gravity.
+Vector3d up_of(const Inspection& inspection) {
+  const auto name = plane_name(inspection, inspection.window->leader);
+  const bool ground = !name || name->name == "floor" || name->name == "table";
+  return ground ? inspection.initialization->plane.normal
+                : Vector3d(-inspection.inertial->gravity_m_s2.normalized());
+}
+
+OrbitCamera fitted_to_all(const OrbitCamera& camera,
+                          const Inspection& inspection,
+                          double cube_side,
+                          double aspect) {
+  Line extent = scene_extent(inspection, cube_side);
+  for (const PlanePatch& patch : plane_patches(inspection))
+    extent.insert(extent.end(), patch.corners.begin(), patch.corners.end());
+  return fitted(camera, extent, aspect, {.bottom = 0.24});
+}
+
+/// Views the scene through a camera of the window, high enough to show its whole image.
+OrbitCamera through_camera(const Inspection& inspection, double aspect, int frame) {
+  const auto& cameras = inspection.initialization->cameras;
+  const int last = static_cast<int>(cameras.size()) - 1;
+  const Pose& pose = cameras[std::clamp(frame - inspection.window->start, 0, last)];
+  const Camera& lens = inspection.recording->camera;
+  const double half_height =
+      std::max(lens.height / (2 * lens.fy), lens.width / (2 * lens.fx) / aspect);
+  OrbitCamera camera;
+  camera.up = -pose.R_wc.col(1);
+  camera.front = pose.R_wc.col(2);
+  camera.pitch_deg = 0;
+  camera.distance = plane_in_camera(inspection.initialization->plane, pose).distance;
+  camera.target = pose.p_wc + camera.distance * camera.front;
+  camera.view_angle_deg = 2 * std::atan(half_height) * 180 / std::numbers::pi;
+  return camera;
 }
 
 }  // namespace
@@ -60,22 +135,22 @@ std::optional<Similarity> estimate_from_truth(const Inspection& inspection) {
   if (!truth.cameras.front()) return std::nullopt;
   const double estimated =
       inspection.initialization->ok ? inspection.initialization->plane.distance : 1;
-  std::optional<double> meters_a_unit = evaluation ? evaluation->scale : std::nullopt;
-  if (const auto distance = true_distance(truth); !meters_a_unit && distance)
-    meters_a_unit = *distance / estimated;
-  if (!meters_a_unit || !(*meters_a_unit > 0)) return std::nullopt;
+  std::optional<double> scale = evaluation ? evaluation->scale : std::nullopt;
+  if (const auto distance = true_distance(truth); !scale && distance) scale = *distance / estimated;
+  if (!scale || !(*scale > 0)) return std::nullopt;
   const Pose& reference = *truth.cameras.front();
-  return inverted({*meters_a_unit, reference.R_wc, reference.p_wc});
+  return inverted({*scale, reference.R_wc, reference.p_wc});
 }
 
 std::optional<Pose> true_camera(const Inspection& inspection,
                                 const Similarity& T_est_true,
                                 int frame_in_window) {
   const auto& pose = inspection.truth->cameras[frame_in_window];
-  return pose ? std::optional(moved(T_est_true, *pose)) : std::nullopt;
+  if (!pose) return std::nullopt;
+  return Pose{T_est_true.R_ab * pose->R_wc, T_est_true * pose->p_wc};
 }
 
-std::array<Vector3d, 6> frustum(const Camera& camera, const Pose& pose, double depth) {
+Frustum frustum(const Camera& camera, const Pose& pose, double depth) {
   const auto corner = [&](double u, double v) -> Vector3d {
     const Vector3d ray((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1);
     return to_world(pose, depth * ray);
@@ -94,12 +169,9 @@ double frustum_depth(const Inspection& inspection) {
   const std::vector<Pose>& cameras = found_cameras(estimate);
   if (cameras.empty()) return 0.08;
   const double distance = estimate.ok ? estimate.plane.distance : estimate.refused->plane.distance;
-  Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();
-  for (const Pose& pose : cameras) {
-    low = low.cwiseMin(pose.p_wc);
-    high = high.cwiseMax(pose.p_wc);
-  }
-  return std::clamp(0.3 * (high - low).norm(), 0.09 * distance, 0.14 * distance);
+  Eigen::AlignedBox3d box(Vector3d::Zero().eval());
+  for (const Pose& pose : cameras) box.extend(pose.p_wc);
+  return std::clamp(0.3 * box.diagonal().norm(), 0.09 * distance, 0.14 * distance);
 }
 
 double axes_length(const Inspection& inspection) { return 1.6 * frustum_depth(inspection); }
@@ -108,82 +180,152 @@ int frustum_stride(const Inspection& inspection) {
   return std::max(1, (inspection.window->frame_count() + 5) / 10);
 }
 
-std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_side) {
-  std::vector<Vector3d> extent;
+double nice_length(double length) {
+  const double power = std::pow(10, std::floor(std::log10(length)));
+  for (const double step : {5, 2})
+    if (step * power <= length * (1 + 1e-12)) return step * power;
+  return power;
+}
+
+std::array<Vector3d, 4> PlaneGrid::corners(double margin) const {
+  const double i0 = low[0] - margin, i1 = high[0] + margin;
+  const double j0 = low[1] - margin, j1 = high[1] + margin;
+  return {at(i0, j0), at(i1, j0), at(i1, j1), at(i0, j1)};
+}
+
+PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
+  const Plane& plane = inspection.initialization->plane;
+  const auto& cube = inspection.cube;
+  PlaneGrid grid;
+  grid.normal = plane.normal;
+  const Vector3d along = cube ? Vector3d(cube->axes.col(0)) : Vector3d::UnitX();
+  grid.x = (along - grid.normal * grid.normal.dot(along)).normalized();
+  grid.y = grid.normal.cross(grid.x);
+  grid.origin = cube ? cube->origin : Vector3d(-plane.distance * plane.normal);
+  std::vector<double> xs, ys;
+  const auto add = [&](const Vector3d& point) {
+    xs.push_back(grid.x.dot(point - grid.origin));
+    ys.push_back(grid.y.dot(point - grid.origin));
+  };
+  for (const MapPoint& point : inspection.initialization->points) add(point.position);
+  if (xs.empty()) add(grid.origin);
+  std::array<double, 2> x = usual_range(xs), y = usual_range(ys);
+  if (cube)
+    for (const Vector3d& corner : cube_corners(*cube, cube_side)) {
+      const double cx = grid.x.dot(corner - grid.origin), cy = grid.y.dot(corner - grid.origin);
+      x = {std::min(x[0], cx), std::max(x[1], cx)};
+      y = {std::min(y[0], cy), std::max(y[1], cy)};
+    }
+  constexpr double kCellsAcross = 8;  // about
+  const double unit = grid_unit_m(inspection);
+  const double size = std::max({x[1] - x[0], y[1] - y[0], 0.5 * plane.distance});
+  grid.cell = nice_length(unit * size / kCellsAcross) / unit;
+  const auto below = [&](double value) { return static_cast<int>(std::floor(value / grid.cell)); };
+  grid.low = {below(x[0]), below(y[0])};
+  grid.high = {below(x[1]) + 1, below(y[1]) + 1};
+  return grid;
+}
+
+std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspection,
+                                                         const Similarity& T_est_true,
+                                                         const PlaneGrid& grid) {
+  if (!inspection.truth->plane) return std::nullopt;
+  const Plane& plane = *inspection.truth->plane;
+  const Vector3d normal = T_est_true.R_ab * plane.normal;
+  const Vector3d on_plane = T_est_true * Vector3d(-plane.distance * plane.normal);
+  const double slope = normal.dot(grid.normal);
+  if (std::abs(slope) < 0.1) return std::nullopt;
+  std::array<Vector3d, 4> border = grid.corners(0.5);
+  for (Vector3d& corner : border) corner -= grid.normal * (normal.dot(corner - on_plane) / slope);
+  return border;
+}
+
+std::array<Line, 3> confidence_ellipsoid(const Vector3d& center,
+                                         const Matrix3d& covariance,
+                                         double enlarged) {
+  const Matrix3d axes = enlarged * semi_axes(covariance, kChiSquare3);
+  std::array<Line, 3> lines;
+  for (int k = 0; k < 3; ++k) {
+    lines[k] = ellipse(axes.col(k), axes.col((k + 1) % 3), 48);
+    for (Vector3d& point : lines[k]) point += center;
+  }
+  return lines;
+}
+
+NormalArrow normal_arrow(const Inspection& inspection, const PlaneGrid& grid) {
+  const auto& cameras = inspection.initialization->cameras;
+  Vector3d center = Vector3d::Zero();
+  for (const Pose& pose : cameras)
+    center += pose.p_wc / std::max<double>(1, static_cast<double>(cameras.size()));
+  const auto [i0, j0] = grid.low;
+  const auto [i1, j1] = grid.high;
+  const double i = (i0 + i1) / 2.0, j = (j0 + j1) / 2.0;
+  const std::array<Vector3d, 4> edges = {
+      grid.at(i0, j), grid.at(i1, j), grid.at(i, j0), grid.at(i, j1)};
+  const double length = 0.4 * grid.cell * std::min(i1 - i0, j1 - j0);
+  NormalArrow arrow;
+  arrow.base = *std::ranges::max_element(
+      edges, {}, [&](const Vector3d& edge) { return (edge - center).norm(); });
+  arrow.tip = arrow.base + length * grid.normal;
+  const Vector3d back = arrow.tip - 0.14 * length * grid.normal;
+  const Vector3d x = 0.05 * length * grid.x, y = 0.05 * length * grid.y;
+  arrow.head = {back + x, back - x, back + y, back - y};
+  return arrow;
+}
+
+Line confidence_rim(const NormalArrow& arrow, const Matrix3d& normal_covariance, double enlarged) {
+  const Vector3d along = arrow.tip - arrow.base;
+  // The first axis is along the normal, of variance zero.
+  const Matrix3d axes = enlarged * semi_axes(normal_covariance, kChiSquare2);
+  Line rim = ellipse(axes.col(1), axes.col(2), 48);
+  for (Vector3d& turn : rim) turn = arrow.base + along.norm() * tilted(along.normalized(), turn);
+  return rim;
+}
+
+std::vector<Vector2d> circle_on_disc(const Vector3d& normal, double radius_deg) {
+  const Vector3d a = radians(radius_deg) * normal.unitOrthogonal();
+  std::vector<Vector2d> line;
+  for (const Vector3d& turn : ellipse(a, normal.cross(a), 72))
+    line.push_back(disc_from_normal(tilted(normal, turn)));
+  return line;
+}
+
+std::vector<Vector2d> confidence_on_disc(const Vector3d& normal, const Matrix3d& covariance) {
+  const Matrix3d axes = semi_axes(covariance, kChiSquare2);
+  std::vector<Vector2d> line;
+  for (const Vector3d& turn : ellipse(axes.col(1), axes.col(2), 72))
+    line.push_back(disc_from_normal(tilted(normal, turn)));
+  return line;
+}
+
+Line scene_extent(const Inspection& inspection, double cube_side) {
+  Line extent;
+  const auto add = [&extent](const auto& points) {
+    extent.insert(extent.end(), points.begin(), points.end());
+  };
   add_frusta(inspection, extent);
   for (int axis = 0; axis < 3; ++axis)
     extent.push_back(axes_length(inspection) * Vector3d::Unit(axis));
-  if (const auto patch = refused_patch(inspection))
-    extent.insert(extent.end(), patch->corners.begin(), patch->corners.end());
+  if (const auto patch = refused_patch(inspection)) add(patch->corners);
   if (!inspection.initialization->ok) return extent;
   const PlaneGrid grid = plane_grid(inspection, cube_side);
-  for (const int i : {grid.low[0], grid.high[0]})
-    for (const int j : {grid.low[1], grid.high[1]}) extent.push_back(grid.at(i, j));
+  add(grid.corners());
   if (inspection.initialization->uncertainty) extent.push_back(normal_arrow(inspection, grid).tip);
   if (const auto T_est_true = estimate_from_truth(inspection))
-    if (const auto border = true_plane_border(inspection, *T_est_true, grid))
-      extent.insert(extent.end(), border->begin(), border->end());
-  if (inspection.cube)
-    for (const Vector3d& corner : cube_corners(*inspection.cube, cube_side))
-      extent.push_back(corner);
+    if (const auto border = true_plane_border(inspection, *T_est_true, grid)) add(*border);
+  if (inspection.cube) add(cube_corners(*inspection.cube, cube_side));
   return extent;
 }
-
-namespace {
-
-/// The leading plane is the ground, as the method sees it; where gravity says that it is none, the
-/// scene stands upright by gravity.
-Vector3d up_of(const Inspection& inspection) {
-  const auto name = plane_name(inspection, inspection.window->leader);
-  const bool ground = !name || name->name == "floor" || name->name == "table";
-  return ground ? inspection.initialization->plane.normal
-                : Vector3d(-inspection.inertial->gravity_m_s2.normalized());
-}
-
-}  // namespace
-
-namespace {
-
-OrbitCamera fitted_to_all(const OrbitCamera& camera,
-                          const Inspection& inspection,
-                          double cube_side,
-                          double aspect) {
-  std::vector<Vector3d> extent = scene_extent(inspection, cube_side);
-  for (const PlanePatch& patch : plane_patches(inspection))
-    extent.insert(extent.end(), patch.corners.begin(), patch.corners.end());
-  return fitted(camera, extent, aspect, {.bottom = 0.24});
-}
-
-/// Where a camera of the window is, with a picture as high as it takes to show all of its own.
-OrbitCamera through_camera(const Inspection& inspection, double aspect, int frame) {
-  const auto& cameras = inspection.initialization->cameras;
-  const int last = static_cast<int>(cameras.size()) - 1;
-  const Pose& pose = cameras[std::clamp(frame - inspection.window->start, 0, last)];
-  const Camera& lens = inspection.recording->camera;
-  const double half_height =
-      std::max(lens.height / (2 * lens.fy), lens.width / (2 * lens.fx) / aspect);
-  OrbitCamera camera;
-  camera.up = -pose.R_wc.col(1);
-  camera.front = pose.R_wc.col(2);
-  camera.yaw_deg = 0;
-  camera.pitch_deg = 0;
-  camera.distance = plane_in_camera(inspection.initialization->plane, pose).distance;
-  camera.target = pose.p_wc + camera.distance * camera.front;
-  camera.view_angle_deg = 2 * std::atan(half_height) * 180 / std::numbers::pi;
-  return camera;
-}
-
-}  // namespace
 
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect) {
   OrbitCamera camera;
   camera.up = inspection.initialization->ok ? up_of(inspection) : Vector3d(-Vector3d::UnitY());
-  // Forward along the plane as the reference camera sees it; where it looks straight down, up.
+  // Forward along the plane as the reference camera sees it; upwards if it looks straight down.
   Vector3d ahead = Vector3d::UnitZ() - camera.up * camera.up.z();
   if (ahead.norm() < 0.2) ahead = -Vector3d::UnitY() + camera.up * camera.up.y();
   camera.front = ahead.normalized();
   camera.yaw_deg = 35;
-  // A plane seen at a slant is wide and low: the taller the view, the steeper it is looked upon.
+  // A slanted plane is wide and low: taller views need a steeper pitch.
   camera.pitch_deg = std::clamp(42 - 13 * aspect, 25.0, 32.0);
   return fitted_to_all(camera, inspection, cube_side, aspect);
 }

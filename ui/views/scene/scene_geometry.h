@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/view_choices.h"
+#include "ui/look/view_toggles.h"
 
 #include <array>
 #include <optional>
@@ -14,40 +14,98 @@
 
 namespace gpo {
 
-/// Brings the truth into the estimate's world: by the aligned paths where they determine it, else
-/// by the reference camera and a scale (the alignment's, or the plane's true distance). Nothing
-/// where neither is known.
+/// Returns the transformation from the truth to the estimate's world: by the aligned paths if they
+/// determine it, otherwise by the reference camera and a scale (the alignment's, or the plane's
+/// true distance). nullopt if neither is known.
 std::optional<Similarity> estimate_from_truth(const Inspection& inspection);
 
-/// The true camera of a frame of the window in the estimate's world.
+/// Returns the true camera of a frame of the window in the estimate's world; nullopt if unknown.
 std::optional<Pose> true_camera(const Inspection& inspection,
                                 const Similarity& T_est_true,
                                 int frame_in_window);
 
-/// The camera's center, the corners of its picture at that depth (top-left, top-right,
-/// bottom-right, bottom-left), and the tip of a mark above the upper edge.
-std::array<Eigen::Vector3d, 6> frustum(const Camera& camera, const Pose& pose, double depth);
+/// The camera's center, the corners of its image at that depth (top-left, top-right, bottom-right,
+/// bottom-left), and the tip of a mark above the upper edge.
+using Frustum = std::array<Eigen::Vector3d, 6>;
+Frustum frustum(const Camera& camera, const Pose& pose, double depth);
 
-/// Those of the estimate, or of what was refused; empty where there is neither.
+/// Returns the cameras of the estimate or of the rejected solution; empty without either.
 const std::vector<Pose>& found_cameras(const Initialization& estimate);
 
-/// How deep the frusta are drawn, so that they neither hide each other nor vanish.
+/// Returns the depth at which frusta neither hide each other nor are too small.
 double frustum_depth(const Inspection& inspection);
 
-/// Of the world's axes, as they are drawn.
+/// Returns the length of the world's axes in the scene.
 double axes_length(const Inspection& inspection);
 
-/// Every so many frames a frustum is drawn, so that some ten make the path.
+/// Returns the step between frames with a frustum, of which a path has about ten.
 int frustum_stride(const Inspection& inspection);
 
-/// Where the cameras (also the true ones), the plane and the cube are: what a view must contain.
+/// Returns the largest number that is 1, 2 or 5 times a power of ten and not above `length`.
+double nice_length(double length);
+
+/// A rectangular part of a plane, divided into cells.
+struct PlaneGrid {
+  Eigen::Vector3d origin;        ///< on the plane
+  Eigen::Vector3d x, y;          ///< unit, along the plane
+  Eigen::Vector3d normal;        ///< unit, towards the cameras
+  double cell = 0.1;             ///< a nice length, in meters if the scale is known
+  std::array<int, 2> low, high;  ///< cells from the origin along x and y
+
+  Eigen::Vector3d at(double i, double j) const { return origin + cell * (i * x + j * y); }
+  /// Returns the corners, in turn, `margin` cells outside.
+  std::array<Eigen::Vector3d, 4> corners(double margin = 0) const;
+};
+
+/// Returns the part of the estimated plane around map points and cube. Requires a result that is
+/// ok.
+PlaneGrid plane_grid(const Inspection& inspection, double cube_side);
+
+/// Returns the border of the true plane in the estimate's world: opposite to the estimate's grid,
+/// half a cell wider to show a tilt. nullopt if the true plane is unknown.
+std::optional<std::array<Eigen::Vector3d, 4>> true_plane_border(const Inspection& inspection,
+                                                                const Similarity& T_est_true,
+                                                                const PlaneGrid& grid);
+
+/// 95 % quantiles of chi-square for two and three degrees of freedom.
+constexpr double kChiSquare2 = 5.991, kChiSquare3 = 7.815;
+
+/// Returns the 95 % ellipsoid of a point as three closed lines, its sections through two axes each,
+/// magnified by `enlarged` about its center.
+std::array<std::vector<Eigen::Vector3d>, 3> confidence_ellipsoid(const Eigen::Vector3d& center,
+                                                                 const Eigen::Matrix3d& covariance,
+                                                                 double enlarged);
+
+/// The plane's normal as an arrow on the plane.
+struct NormalArrow {
+  Eigen::Vector3d base, tip;
+  std::array<Eigen::Vector3d, 4> head = {};  ///< ends of the lines of its head
+};
+/// Places the arrow in the middle of the grid's edge that is farthest from the cameras. Requires a
+/// result that is ok.
+NormalArrow normal_arrow(const Inspection& inspection, const PlaneGrid& grid);
+
+/// Returns the border of the 95 % region of the arrow's tip; its angles [rad] are magnified by
+/// `enlarged`, to at most a right angle.
+std::vector<Eigen::Vector3d> confidence_rim(const NormalArrow& arrow,
+                                            const Eigen::Matrix3d& normal_covariance,
+                                            double enlarged);
+
+/// Returns the closed line on the disc of normals (`disc_from_normal`) with this angle from a
+/// normal.
+std::vector<Eigen::Vector2d> circle_on_disc(const Eigen::Vector3d& normal, double radius_deg);
+/// Returns the border on the disc of a normal's 95 % region, from its covariance [rad^2].
+std::vector<Eigen::Vector2d> confidence_on_disc(const Eigen::Vector3d& normal,
+                                                const Eigen::Matrix3d& covariance);
+
+/// Returns points that a view must contain: (true) cameras, plane and cube.
 std::vector<Eigen::Vector3d> scene_extent(const Inspection& inspection, double cube_side);
 
-/// From behind the reference camera, above and beside it, everything in view.
+/// Views the whole scene from behind the reference camera, above and beside it.
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect);
 
-/// From a viewpoint, everything in view; through the camera of a frame (counts in the recording;
-/// the nearest of the window): all of its picture.
+/// Views the whole scene from a viewpoint, or the whole image of a frame (counted in the recording;
+/// the nearest of the window) through its camera.
 OrbitCamera scene_camera(
     const Inspection& inspection, double cube_side, double aspect, Viewpoint viewpoint, int frame);
 

@@ -8,15 +8,12 @@
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/overlay/track_colors.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/scene/plane_grid.h"
 #include "ui/views/scene/scene_actors.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/views/scene/uncertainty_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <vtkRenderer.h>
 
@@ -25,36 +22,54 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One inspection on its way to the renderer. Sizes in pixels grow with the font.
+/// Dims a color towards the background; opaque, so that depth is right.
+std::uint32_t dimmed(std::uint32_t rgb, double share) {
+  return mixed_rgb(color_of(Role::scene_bottom), rgb, share);
+}
+
+/// What the parts of the scene share.
 struct Stage {
   vtkRenderer& renderer;
   const Inspection& inspection;
   const ViewOptions& options;
-  double scale;
+  double scale;  ///< of sizes in pixels
 
+  double side() const { return cube_side(inspection, options.cube_side); }
   std::uint32_t color(const MapPoint& point, std::uint32_t by_plane) const {
     return options.colors ? options.colors->rgb(point.track) : by_plane;
   }
-  void add(const Shapes& shapes, double size_px) const {
+  void add(const Shapes& shapes, double size_px = 1) const {
     renderer.AddActor(shapes.actor(size_px * scale));
+  }
+  /// Adds a face and its border.
+  void add_polygon(std::span<const Vector3d> corners,
+                   std::uint32_t rgb,
+                   double alpha,
+                   std::uint32_t border_rgb) const {
+    Shapes border, face;
+    border.lines(corners, true, border_rgb);
+    face.face(corners, rgb, alpha);
+    add(face);
+    add(border, 1.8);
   }
 };
 
-void add_frustum(Shapes& shapes, const std::array<Vector3d, 6>& corners, std::uint32_t rgb) {
+void add_frustum(Shapes& shapes, const Frustum& corners, std::uint32_t rgb) {
   for (int k = 1; k <= 4; ++k) shapes.line(corners[0], corners[k], rgb);
   shapes.lines(std::span(corners).subspan(1, 4), true, rgb);
 }
 
-/// Its picture as a face, and which edge of it is up.
-void add_reference(const Stage& stage, const std::array<Vector3d, 6>& corners) {
+/// Adds the reference camera with its image as a face and a mark above it.
+void add_reference(const Stage& stage, const Frustum& corners) {
+  const std::uint32_t rgb = color_of(Role::reference);
   Shapes lines, face;
-  add_frustum(lines, corners, color_of(Role::reference));
+  add_frustum(lines, corners, rgb);
   const std::array<Vector3d, 3> mark = {corners[1], corners[2], corners[5]};
-  lines.lines(mark, true, color_of(Role::reference));
-  face.face(std::span(corners).subspan(1, 4), color_of(Role::reference), 0.12);
-  face.face(mark, color_of(Role::reference), 0.24);
+  lines.lines(mark, true, rgb);
+  face.face(std::span(corners).subspan(1, 4), rgb, 0.12);
+  face.face(mark, rgb, 0.24);
   stage.add(lines, 1.8);
-  stage.add(face, 1);
+  stage.add(face);
 }
 
 void add_cameras(const Stage& stage) {
@@ -69,12 +84,10 @@ void add_cameras(const Stage& stage) {
   const int stride = frustum_stride(inspection);
   Shapes frusta, path;
   std::vector<Vector3d> centers;
-  for (int i = 0; i < static_cast<int>(cameras.size()); ++i) {
+  for (int i = 0; i < std::ssize(cameras); ++i) {
     centers.push_back(cameras[i].p_wc);
     if (i % stride == 0 && i != 0)
-      add_frustum(frusta,
-                  frustum(camera, cameras[i], depth),
-                  mixed_rgb(color_of(Role::scene_bottom), rgb, 0.75));
+      add_frustum(frusta, frustum(camera, cameras[i], depth), dimmed(rgb, 0.75));
   }
   path.lines(centers, false, mixed_rgb(rgb, color_of(Role::text), 0.35));
   stage.add(frusta, 1.2);
@@ -86,45 +99,41 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
   const Inspection& inspection = stage.inspection;
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
-  const std::uint32_t dim = mixed_rgb(color_of(Role::scene_bottom), color_of(Role::truth), 0.6);
+  const std::uint32_t rgb = color_of(Role::truth);
   const double depth = 0.75 * frustum_depth(inspection);
   const int stride = frustum_stride(inspection);
-  Shapes frusta, path;
+  Shapes frusta, path, plane;
   std::vector<Vector3d> centers;
-  for (int i = 0; i < static_cast<int>(inspection.truth->cameras.size()); ++i) {
+  for (int i = 0; i < std::ssize(inspection.truth->cameras); ++i) {
     const auto pose = true_camera(inspection, *T_est_true, i);
     if (!pose) continue;
     centers.push_back(pose->p_wc);
     if (i % stride == 0)
-      add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dim);
+      add_frustum(frusta, frustum(inspection.recording->camera, *pose, depth), dimmed(rgb, 0.6));
   }
-  path.lines(centers, false, color_of(Role::truth));
+  path.lines(centers, false, rgb);
   stage.add(frusta, 1);
   stage.add(path, 1.6);
   if (!grid) return;
   if (const auto border = true_plane_border(inspection, *T_est_true, *grid)) {
-    Shapes plane;
-    plane.lines(*border, true, color_of(Role::truth));
+    plane.lines(*border, true, rgb);
     stage.add(plane, 1.8);
   }
 }
 
-/// The lines lie on the face; the face moves a hair away from the eye.
+/// The face is a little farther from the eye than the lines on it.
 void add_plane(const Stage& stage, const PlaneGrid& grid, bool above) {
   Shapes lines, border, face;
-  const std::uint32_t rgb = mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.42);
+  const std::uint32_t rgb = color_of(Role::plane);
   const auto [i0, j0] = grid.low;
   const auto [i1, j1] = grid.high;
-  for (int i = i0 + 1; i < i1; ++i) lines.line(grid.at(i, j0), grid.at(i, j1), rgb);
-  for (int j = j0 + 1; j < j1; ++j) lines.line(grid.at(i0, j), grid.at(i1, j), rgb);
-  const std::array<Vector3d, 4> corners = {
-      grid.at(i0, j0), grid.at(i1, j0), grid.at(i1, j1), grid.at(i0, j1)};
-  border.lines(corners, true, mixed_rgb(color_of(Role::scene_bottom), color_of(Role::plane), 0.8));
-  const Vector3d away = (above ? -0.02 : 0.02) * grid.cell * grid.normal;
-  std::array<Vector3d, 4> behind;
-  for (int k = 0; k < 4; ++k) behind[k] = corners[k] + away;
-  face.face(behind, color_of(Role::plane), 0.1);
-  stage.add(face, 1);
+  for (int i = i0 + 1; i < i1; ++i) lines.line(grid.at(i, j0), grid.at(i, j1), dimmed(rgb, 0.42));
+  for (int j = j0 + 1; j < j1; ++j) lines.line(grid.at(i0, j), grid.at(i1, j), dimmed(rgb, 0.42));
+  auto corners = grid.corners();
+  border.lines(corners, true, dimmed(rgb, 0.8));
+  for (Vector3d& corner : corners) corner += (above ? -0.02 : 0.02) * grid.cell * grid.normal;
+  face.face(corners, rgb, 0.1);
+  stage.add(face);
   stage.add(lines, 1.1);
   stage.add(border, 1.8);
 }
@@ -134,71 +143,46 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
   for (const MapPoint& point : stage.inspection.initialization->points) {
     const Vector3d from = point.position - grid.origin;
     const double i = grid.x.dot(from) / grid.cell, j = grid.y.dot(from) / grid.cell;
-    // Single wrong points far away are not the map.
+    // Points outside of the grid are gross errors.
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
       points.point(point.position, stage.color(point, color_of(Role::map_point)));
   }
   stage.add(points, stage.options.show.point_size_px);
 }
 
-/// The planes beside the leading one, each with its tracks in its color.
+/// Adds the planes other than the leading one, each with its tracks in its color.
 void add_patches(const Stage& stage) {
   for (const PlanePatch& patch : plane_patches(stage.inspection)) {
     const std::uint32_t rgb = plane_color(*stage.inspection.window, patch.number);
-    Shapes border, face, points;
-    border.lines(patch.corners, true, mixed_rgb(color_of(Role::scene_bottom), rgb, 0.8));
-    face.face(patch.corners, rgb, 0.12);
+    stage.add_polygon(patch.corners, rgb, 0.12, dimmed(rgb, 0.8));
+    Shapes points;
     for (const MapPoint& point : patch.points)
       points.point(point.position, stage.color(point, rgb));
-    stage.add(face, 1);
-    stage.add(border, 1.8);
     stage.add(points, stage.options.show.point_size_px);
   }
 }
 
-/// The plane of a solution that was not believed.
-void add_refused(const Stage& stage) {
-  const auto patch = refused_patch(stage.inspection);
-  if (!patch) return;
-  Shapes border, face;
-  border.lines(patch->corners, true, color_of(Role::bad));
-  face.face(patch->corners, color_of(Role::bad), 0.08);
-  stage.add(face, 1);
-  stage.add(border, 1.8);
-}
-
 void add_cube(const Stage& stage) {
-  const Inspection& inspection = stage.inspection;
-  const auto corners = cube_corners(*inspection.cube,
-                                    cube_side(inspection, stage.options.cube_side),
-                                    stage.options.cube_height_sides);
+  const auto corners =
+      cube_corners(*stage.inspection.cube, stage.side(), stage.options.cube_height_sides);
   Shapes base, edges, faces;
-  for (int a = 0; a < 8; ++a)
-    for (const int axis : {1, 2, 4}) {
-      const int b = a | axis;
-      if (b == a) continue;
-      if (b < 4)
-        base.line(corners[a], corners[b], color_of(Role::cube_base));
-      else
-        edges.line(corners[a], corners[b], color_of(Role::cube_edge));
-    }
-  const std::array<std::array<int, 4>, 5> sides = {
-      {{4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
-  for (const auto& side : sides) {
-    const std::array<Vector3d, 4> face = {
-        corners[side[0]], corners[side[1]], corners[side[2]], corners[side[3]]};
+  for (const auto& [a, b] : kCubeEdges)
+    if (b < 4)
+      base.line(corners[a], corners[b], color_of(Role::cube_base));
+    else
+      edges.line(corners[a], corners[b], color_of(Role::cube_edge));
+  for (const auto& [a, b, c, d] : std::span(kCubeFaces).subspan(1)) {
+    const std::array<Vector3d, 4> face = {corners[a], corners[b], corners[c], corners[d]};
     faces.face(face, color_of(Role::cube_face), 0.14);
   }
-  stage.add(faces, 1);
+  stage.add(faces);
   stage.add(edges, 1.8);
   stage.add(base, 3);
 }
 
-/// In the cube's place; its light is its own.
+/// Adds the model in the cube's place, with its own light.
 void add_model(const Stage& stage, const SolidModel& model) {
-  const Inspection& inspection = stage.inspection;
-  const auto corners =
-      cube_corners(*inspection.cube, cube_side(inspection, stage.options.cube_side));
+  const auto corners = cube_corners(*stage.inspection.cube, stage.side());
   const std::vector<Vector3d> points = placed_on(model, corners);
   Shapes base, faces;
   const std::array<Vector3d, 4> foot = {corners[0], corners[1], corners[3], corners[2]};
@@ -208,33 +192,33 @@ void add_model(const Stage& stage, const SolidModel& model) {
     const std::array<Vector3d, 3> face = {points[a], points[b], points[c]};
     faces.face(face, lit_rgb(model, i, color_of(Role::cube_face)), 1);
   }
-  stage.add(faces, 1);
+  stage.add(faces);
   stage.add(base, 3);
 }
 
-/// Of the cameras that are drawn, and of the normal.
+/// Adds the uncertainty of the cameras with a frustum, and of the normal.
 void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   const Initialization& estimate = *stage.inspection.initialization;
   const auto& uncertainty = *estimate.uncertainty;
+  const std::uint32_t rgb = color_of(Role::uncertain);
   const double enlarged = stage.options.show.uncertainty;
   const int stride = frustum_stride(stage.inspection);
   Shapes lines, arrow_line, face;
   const auto count = std::min(estimate.cameras.size(), uncertainty.center_covariances.size());
-  for (int i = stride; i < static_cast<int>(count); i += stride) {
-    const auto ellipsoid =
-        confidence_ellipsoid(estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged);
-    for (const auto& line : ellipsoid) lines.lines(line, true, color_of(Role::uncertain));
-  }
+  for (int i = stride; i < static_cast<int>(count); i += stride)
+    for (const auto& line : confidence_ellipsoid(
+             estimate.cameras[i].p_wc, uncertainty.center_covariances[i], enlarged))
+      lines.lines(line, true, rgb);
   const NormalArrow arrow = normal_arrow(stage.inspection, grid);
   const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
   arrow_line.line(arrow.base, arrow.tip, color_of(Role::plane));
   for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, color_of(Role::plane));
-  lines.lines(rim, true, color_of(Role::uncertain));
+  lines.lines(rim, true, rgb);
   for (std::size_t k = 0; k < rim.size(); ++k) {
     const std::array<Vector3d, 3> side = {arrow.base, rim[k], rim[(k + 1) % rim.size()]};
-    face.face(side, color_of(Role::uncertain), 0.1);
+    face.face(side, rgb, 0.1);
   }
-  stage.add(face, 1);
+  stage.add(face);
   stage.add(lines, 1.2);
   stage.add(arrow_line, 2.4);
 }
@@ -243,11 +227,11 @@ void build(const Stage& stage, bool above) {
   const Inspection& inspection = stage.inspection;
   stage.renderer.RemoveAllViewProps();
   std::optional<PlaneGrid> grid;
-  if (inspection.initialization->ok)
-    grid = plane_grid(inspection, cube_side(inspection, stage.options.cube_side));
+  if (inspection.initialization->ok) grid = plane_grid(inspection, stage.side());
   if (stage.options.show.truth) add_truth(stage, grid);
   if (!grid) {
-    add_refused(stage);
+    if (const auto patch = refused_patch(inspection))
+      stage.add_polygon(patch->corners, color_of(Role::bad), 0.08, color_of(Role::bad));
     add_cameras(stage);
     return;
   }
@@ -264,33 +248,23 @@ void build(const Stage& stage, bool above) {
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
-/// Returns the toggles on which shapes depend; the others have their defaults.
-ViewToggles toggles_of_shapes(const ViewToggles& show) {
-  return {.cube = show.cube,
-          .truth = show.truth,
-          .uncertainty = show.uncertainty,
-          .point_size_px = show.point_size_px};
-}
-
-/// Whether both draw the same shapes, moving or not.
+/// Whether both options draw the same shapes, moving or not.
 bool same_shapes(ViewOptions a, ViewOptions b) {
   for (ViewOptions* options : {&a, &b}) {
     options->moving = false;
-    options->show = toggles_of_shapes(options->show);
+    const ViewToggles& show = options->show;
+    options->show = ViewToggles{.cube = show.cube,
+                                .truth = show.truth,
+                                .uncertainty = show.uncertainty,
+                                .point_size_px = show.point_size_px};
   }
   return a == b;
 }
 
-/// Whether the eye is on the side of the plane where the cameras are.
+/// Whether the eye is on the same side of the plane as the cameras.
 bool is_above(const Inspection& inspection, const OrbitCamera& camera) {
   const Plane& plane = inspection.initialization->plane;
   return !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
-}
-
-bool same(const OrbitCamera& a, const OrbitCamera& b) {
-  return a.target == b.target && a.up == b.up && a.front == b.front && a.yaw_deg == b.yaw_deg &&
-         a.pitch_deg == b.pitch_deg && a.distance == b.distance &&
-         a.view_angle_deg == b.view_angle_deg;
 }
 
 void set_background(vtkRenderer& renderer) {
@@ -306,11 +280,8 @@ bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options)
          inspection.initialization->uncertainty.has_value();
 }
 
-constexpr int kSamples = 4;              // a pixel
-constexpr double kDetailOfMotion = 0.5;  // pixels of the texture a screen pixel
-
-/// VTK's objects, and what they show now. The inspection's parts are held, so that a new one cannot
-/// lie at the address of an old one and be taken for it.
+/// VTK's objects and their present content. It shares the inspection's parts: while it holds them,
+/// equal addresses mean equal content.
 struct SceneView::Pipeline {
   vtkSmartPointer<VtkWindow> window = make_vtk_window();
   vtkNew<vtkRenderer> renderer;
@@ -340,20 +311,21 @@ SceneView::SceneView() : pipeline_(std::make_unique<Pipeline>()) {
 SceneView::~SceneView() { pipeline_->window->Finalize(); }
 
 unsigned SceneView::render(const Inspection& inspection,
-                           const OrbitCamera& camera,
                            const ViewOptions& options,
-                           int width,
-                           int height) {
+                           const OrbitCamera& camera,
+                           cv::Size size) {
+  constexpr int kSamples = 4;  // per pixel
+  constexpr double kMovingDetail = 0.5;
   Pipeline& now = *pipeline_;
-  // Without a graphics card pixels are what costs time.
-  const double detail = options.moving ? kDetailOfMotion : 1;
-  const cv::Size size(static_cast<int>(detail * width), static_cast<int>(detail * height));
+  // Without a graphics card the number of pixels decides on the time.
+  const double detail = options.moving ? kMovingDetail : 1;
+  size = {static_cast<int>(detail * size.width), static_cast<int>(detail * size.height)};
   const double scale = detail * overlay_scale();
   const bool above = is_above(inspection, camera);
   const bool built = now.texture != 0 && now.shows(inspection) &&
                      same_shapes(now.options, options) && now.above == above &&
                      now.scale == scale && now.theme == current_theme();
-  if (built && same(now.camera, camera) && now.options.moving == options.moving && now.size == size)
+  if (built && now.camera == camera && now.options.moving == options.moving && now.size == size)
     return now.texture;
   now.inspection = inspection;
   now.camera = camera;
@@ -363,7 +335,7 @@ unsigned SceneView::render(const Inspection& inspection,
   now.scale = scale;
   now.theme = current_theme();
   set_background(*now.renderer);
-  // Another camera alone takes what is built: an orbit is to be smooth without a graphics card.
+  // The shapes are kept if only the camera moves: fast enough without a graphics card.
   if (!built) build({*now.renderer, inspection, options, scale}, above);
   now.window->SetMultiSamples(options.moving ? 0 : kSamples);
   set_camera_from_orbit(*now.renderer->GetActiveCamera(), camera);

@@ -4,19 +4,21 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/rect.h"
+#include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
 #include <memory>
+
+#include <opencv2/core.hpp>
 
 struct ImDrawList;
 
 namespace gpo {
 
-/// Whether it is asked for and known.
+/// Whether the uncertainty is switched on and known.
 bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options);
 
-/// The estimate in 3-D, by VTK. Needs the context in which it was made to be current.
+/// The estimate in 3-D, rendered by VTK. Needs the context in which it was created to be current.
 class SceneView {
  public:
   SceneView();
@@ -24,15 +26,14 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  /// The texture of the rendered scene, bottom row first; 0 for an empty size. Renders only when
-  /// something has changed since the last call; what belongs to a single frame is not in it.
+  /// Returns the texture of the scene, bottom row first; 0 for an empty size. Renders only after a
+  /// change. Items of a single frame are not included.
   unsigned render(const Inspection& inspection,
-                  const OrbitCamera& camera,
                   const ViewOptions& options,
-                  int width,
-                  int height);
+                  const OrbitCamera& camera,
+                  cv::Size size);
 
-  /// How often something had changed.
+  /// Number of renderings.
   std::size_t renders() const;
 
  private:
@@ -41,13 +42,11 @@ class SceneView {
 };
 
 /// Draws the scene into the rectangle (whole pixels), and over it the frame's camera, labels,
-/// legend and scale bar. `frame` counts in the recording.
+/// legend and scale bar.
 void draw_scene_view(ImDrawList& list,
                      const ScreenRect& rect,
-                     SceneView& view,
-                     const Inspection& inspection,
-                     int frame,
-                     const OrbitCamera& camera,
-                     const ViewOptions& options);
+                     const FrameView& view,
+                     SceneView& scene,
+                     const OrbitCamera& camera);
 
 }  // namespace gpo

@@ -8,10 +8,10 @@
 namespace gpo {
 namespace {
 
-/// The rectangle that a text covers [px].
-cv::Rect covered(const Text& text) {
-  const cv::Mat image =
-      drawn_image({1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text); });
+/// Returns the rectangle that a text covers [px].
+cv::Rect covered(const std::string& text, const Eigen::Vector2d& at, const TextStyle& style) {
+  const cv::Mat image = drawn_image(
+      {1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text, at, style); });
   cv::Mat gray;
   cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   return cv::boundingRect(gray < 250);
@@ -20,27 +20,25 @@ cv::Rect covered(const Text& text) {
 TEST(CairoDrawing, TextIsAsWideAsMeasured) {
   for (const bool bold : {false, true})
     for (const char* text : {"Plane normal error", "\u03c3 [\u00b0]", "H"}) {
-      const cv::Rect box = covered({text, {100, 150}, 100, 0, Anchor::begin, bold});
+      const TextStyle style{.size = 100, .anchor = Anchor::begin, .bold = bold};
+      const cv::Rect box = covered(text, {100, 150}, style);
       EXPECT_NEAR(box.x, 100, 12) << text;
       EXPECT_NEAR(box.br().x, 100 + width_of(text, 100, bold), 12) << text;
     }
-  EXPECT_TRUE(covered({" ", {100, 150}, 100}).empty());
+  EXPECT_TRUE(covered(" ", {100, 150}, {100}).empty());
+  EXPECT_FALSE(covered("\xFF recording", {700, 150}, {50}).empty()) << "not UTF-8";
 }
 
 TEST(CairoDrawing, TextIsAroundItsAnchor) {
-  const cv::Rect capital = covered({"H", {700, 150}, 100});
+  const cv::Rect capital = covered("H", {700, 150}, {100});
   EXPECT_NEAR(capital.y + capital.height / 2.0, 150, 1);
   EXPECT_NEAR(capital.x + capital.width / 2.0, 700, 1);
-  EXPECT_NEAR(covered({"HHH", {700, 150}, 100, 0, Anchor::end}).br().x, 700, 12);
-  const cv::Rect upwards = covered({"HHH", {700, 150}, 50, 0, Anchor::middle, false, true});
+  EXPECT_NEAR(covered("HHH", {700, 150}, {100, 0, Anchor::end}).br().x, 700, 12);
+  const cv::Rect upwards = covered("HHH", {700, 150}, {.size = 50, .upwards = true});
   EXPECT_GT(upwards.height, 2 * upwards.width);
 }
 
-TEST(CairoDrawing, TextThatIsNotUtf8IsDrawn) {
-  EXPECT_FALSE(covered({"\xFF recording", {700, 150}, 50}).empty());
-}
-
-TEST(CairoDrawing, WordsWrapIntoTheRoom) {
+TEST(CairoDrawing, WrapsWordsIntoTheRoom) {
   const std::string text = "median and quartiles over the windows that all of them solved";
   const std::vector<std::string> lines = wrapped(text, 10, false, 120);
   EXPECT_GT(lines.size(), 2U);

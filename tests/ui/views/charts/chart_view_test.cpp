@@ -25,8 +25,8 @@ Chart chart_of(std::vector<double> x, std::vector<double> y, bool logarithmic = 
   return {"Error", "frame", "error [px]", logarithmic, {{"gpo", kRed, false, x, y, {}, {}}}};
 }
 
-/// The middle of what is as red as the curve [px], the corner of a pixel being its origin. Not of
-/// the edge, which is smoothed on one side of a point only.
+/// Returns the center of the pixels of the curve's color [px], from the image's corner. Leaves out
+/// edges, which are smoothed on one side of a point only.
 Eigen::Vector2d middle_of_red(const cv::Mat& image) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
@@ -37,15 +37,14 @@ Eigen::Vector2d middle_of_red(const cv::Mat& image) {
       sum += Eigen::Vector2d(x + 0.5, y + 0.5);
       ++count;
     }
-  EXPECT_GT(count, 4) << "nothing is red";
+  EXPECT_GT(count, 4) << "no red pixels";
   return sum / std::max(1, count);
 }
 
 ChartRequest request_of(const Chart& chart) { return {chart, {kWidth, kHeight}, 1, true}; }
 
-TEST(WindowChart, APointIsDrawnWhereTheMappingSays) {
+TEST(WindowChart, DrawsAPointWhereTheMappingPutsIt) {
   for (const bool logarithmic : {false, true}) {
-    // The gaps stretch the x axis, and the y axis is known from the first point alone.
     const ChartImage drawn =
         draw_window_chart(request_of(chart_of({2, 7, 9}, {NAN, 30, NAN}, logarithmic)));
     keep(logarithmic ? "chart-log" : "chart", drawn.bgr);
@@ -53,7 +52,7 @@ TEST(WindowChart, APointIsDrawnWhereTheMappingSays) {
   }
 }
 
-TEST(WindowChart, TheMappingCanBeTurnedRound) {
+TEST(WindowChart, MappingIsInvertible) {
   for (const bool logarithmic : {false, true}) {
     const ChartMapping to =
         draw_window_chart(request_of(chart_of({1, 5}, {0.1, 20}, logarithmic))).mapping;
@@ -66,8 +65,8 @@ TEST(WindowChart, TheMappingCanBeTurnedRound) {
   }
 }
 
-/// Three that lie upon one another, the second but at some places; a fourth that only crosses.
-TEST(WindowChart, EqualCurvesAreToldApart) {
+/// Three curves are equal, the second only in part; a fourth crosses them.
+TEST(WindowChart, ShowsEqualCurvesAsDashes) {
   Chart chart = chart_of({1, 2, 3, 4, 5}, {1, 4, 3, 3, 5});
   constexpr std::uint32_t kGreen = 0x00FF00, kBlue = 0x0000FF, kYellow = 0xFFFF00;
   chart.curves.push_back({"pba", kGreen, false, {2, 3, 4, 5}, {4, 3, 3, 5}, {}, {}});
@@ -77,14 +76,14 @@ TEST(WindowChart, EqualCurvesAreToldApart) {
   request.legend = false;
   const auto [image, to] = draw_window_chart(request);
   keep("chart-equal", image);
-  // Half of the line is the lowest one's, a quarter is each of the others'.
+  // The lowest one has half of the line, the others a quarter each.
   const cv::Mat right = image.colRange(static_cast<int>(to.px(3, 3).x()), kWidth);
   const double alone = count_pixels(right, kYellow, 40);
   for (const std::uint32_t rgb : {kRed, kGreen, kBlue})
     EXPECT_GT(count_pixels(right, rgb, 40), 0.2 * alone) << std::hex << rgb;
 }
 
-TEST(WindowChart, PointsOfFewWindowsAreHollow) {
+TEST(WindowChart, HasHollowPointsForFewWindows) {
   Chart chart = chart_of({1, 2, 3}, {3, 3, 3});
   for (const int count : {9, 1}) {
     chart.curves[0].counts = {9, count, 9};
@@ -96,7 +95,7 @@ TEST(WindowChart, PointsOfFewWindowsAreHollow) {
   }
 }
 
-TEST(WindowChart, IsDrawnInBothThemesAndAnyScale) {
+TEST(WindowChart, HasThemesAndScales) {
   ChartRequest request = request_of(chart_of({1, 2, 3}, {1, 3, 2}));
   for (const Theme theme : {Theme::dark, Theme::light}) {
     request.theme = theme;
@@ -109,7 +108,7 @@ TEST(WindowChart, IsDrawnInBothThemesAndAnyScale) {
   EXPECT_EQ(draw_window_chart(request).mapping.left, 2 * left);
 }
 
-TEST_F(ChartViewTest, DrawsOnlyWhatHasChanged) {
+TEST_F(ChartViewTest, DrawsOnlyAfterAChange) {
   OffscreenContext context(kWidth, kHeight);
   context.bind();
   ChartView view;
@@ -130,7 +129,7 @@ TEST_F(ChartViewTest, DrawsOnlyWhatHasChanged) {
   EXPECT_EQ(revision(request), first + 4);
 }
 
-/// With Dear ImGui around it: titles, legend, and where the values are on the screen.
+/// A chart in a window.
 struct Drawn {
   cv::Mat image;
   ChartMapping to;
@@ -153,7 +152,7 @@ Drawn draw(const Chart& chart, float scale) {
   return drawn;
 }
 
-TEST_F(ChartViewTest, TheMappingOfTheScreenKnowsWhereTheChartStands) {
+TEST_F(ChartViewTest, MapsValuesToTheScreen) {
   for (const float scale : {1.0F, 2.0F}) {
     Chart chart = chart_of({2, 7, 9}, {NAN, 30, NAN});
     const Drawn drawn = draw(chart, scale);
@@ -162,18 +161,18 @@ TEST_F(ChartViewTest, TheMappingOfTheScreenKnowsWhereTheChartStands) {
   }
 }
 
-TEST_F(ChartViewTest, LegendAndEmptyChartHaveTheirPlace) {
+TEST_F(ChartViewTest, MakesRoomForALegend) {
   Chart chart = chart_of({1, 7, 9}, {3, 4, 5});
   const double low = draw(chart, 1).to.height;
   for (const char* name : {"bound of what is possible", "another long name", "a third one"})
     chart.curves.push_back({name, 0x00FF00, true, {1, 9}, {6, 6}, {}, {}});
   const Drawn drawn = draw(chart, 1);
   keep("chart-legend", drawn.image);
-  EXPECT_GT(drawn.to.height, low) << "the legend is above the axes, which are lower then";
+  EXPECT_GT(drawn.to.height, low) << "the legend is above the axes";
   keep("chart-empty", draw(chart_of({}, {}), 1).image);
 }
 
-TEST(ChartValues, AreThoseOfTheNearestPoint) {
+TEST(ChartValues, AreOfTheNearestPoint) {
   Chart chart = chart_of({1, 2, 3}, {4, 5, NAN});
   chart.curves.push_back({"ba", 0, false, {1, 3}, {7, 8}, {}, {}});
   EXPECT_EQ(chart_values_at(chart, 1.2), "frame: 1\nerror [px]\ngpo: 4\nba: 7");
@@ -183,6 +182,15 @@ TEST(ChartValues, AreThoseOfTheNearestPoint) {
   const Chart steps = chart_of({0, 1, 1, 2}, {4, 4, 5, 5});
   EXPECT_EQ(chart_values_at(steps, 0.9), "frame: 1\nerror [px]\ngpo: 4");
   EXPECT_EQ(chart_values_at(steps, 1.1), "frame: 1\nerror [px]\ngpo: 5");
+}
+
+TEST(ChartCsv, HasALinePerPointWithUnits) {
+  Chart chart{"", "frames", "error, all [px]", false, {}};
+  chart.curves.push_back({.name = "gpo", .x = {1, 2.5}, .y = {0.25, 3}, .lower = {}, .upper = {}});
+  EXPECT_EQ(to_csv(chart), "curve,frames,error; all [px]\ngpo,1,0.25\ngpo,2.5,3\n");
+  chart.curves.push_back({.name = "ba", .x = {1}, .y = {NAN}, .lower = {0.5}, .upper = {2}});
+  EXPECT_EQ(to_csv(chart),
+            "curve,frames,error; all [px],lower,upper\ngpo,1,0.25,,\ngpo,2.5,3,,\nba,1,,0.5,2\n");
 }
 
 }  // namespace

@@ -2,21 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare/compare_view.h"
 
-#include "engine/experiment/configuration.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/gui.h"
-#include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/views/snapshot.h"
 
-#include <filesystem>
 #include <set>
 #include <utility>
 
 #include <gtest/gtest.h>
 #include <imgui.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -40,20 +36,20 @@ std::shared_ptr<const Inspection> made(const MadeOptions& options,
   return inspection;
 }
 
-/// As it is, wrong by 3 degrees, failed.
+/// Returns a true estimate, one wrong by 3 degrees, and a failed one.
 Inspections three() {
   return {made({}),
           made({.estimate_error = 3}, {.ransac = false}),
           made({.ok = false}, {.rotations = RotationSource::averaging})};
 }
 
-/// The part of a picture of `three()` that belongs to one of them.
+/// Returns the part of an image of `three()` with one of them.
 cv::Mat column(const cv::Mat& image, int index) {
   const int width = image.cols / 3;
   return image.colRange(index * width, (index + 1) * width);
 }
 
-/// How many are side by side, and how many one below the other.
+/// Returns the numbers of columns and rows.
 std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspect) {
   std::set<double> xs, ys;
   for (const ColumnPlace& place : compare_places({{0, 0}, size}, count, aspect, true)) {
@@ -63,9 +59,9 @@ std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspec
   return {static_cast<int>(xs.size()), static_cast<int>(ys.size())};
 }
 
-TEST_F(CompareView, RowsAndColumnsMakeTheImagesLargest) {
+TEST_F(CompareView, ArrangesColumnsForTheLargestImages) {
   const OffscreenContext context(64, 64);
-  Gui gui;  // sizes are those of its font
+  Gui gui;  // its font determines sizes
   gui.begin_frame(64, 64);
   EXPECT_EQ(grid_of({1600, 1000}, 4, 16.0 / 9), std::pair(2, 2));
   EXPECT_EQ(grid_of({1900, 450}, 4, 16.0 / 9), std::pair(4, 1));
@@ -75,7 +71,7 @@ TEST_F(CompareView, RowsAndColumnsMakeTheImagesLargest) {
   ImGui::EndFrame();
 }
 
-TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
+TEST_F(CompareView, ColumnsHaveTheirColorAndTheirCubeOrReason) {
   const Inspections inspections = three();
   const cv::Mat image = snapshot_compare(inspections, kFrame);
   keep("compare", image);
@@ -91,21 +87,20 @@ TEST_F(CompareView, EachColumnHasItsColorAndItsCubeOrItsReason) {
   }
 }
 
-TEST_F(CompareView, AllColumnsShowTheSamePartOfTheImage) {
+TEST_F(CompareView, ColumnsShowTheSamePartOfTheImage) {
   const cv::Mat image = snapshot_compare(three(), kFrame);
-  const int width = image.cols / 3;
-  // The upper left corner of the floor, without a cube.
+  // A part of the floor without a cube.
   const cv::Rect corner(20, 100, 60, 60);
   for (int i = 1; i < 3; ++i)
     EXPECT_TRUE(same_bytes(image(corner), image(corner + cv::Point(i * 492, 0))))
-        << "column " << i << " of " << width << " pixels";
+        << "column " << i;
 }
 
 TEST_F(CompareView, AMovedCubeChangesOnlyItsColumn) {
   Inspections inspections = three();
   const cv::Mat before = snapshot_compare(inspections, kFrame);
   auto moved = std::make_shared<Inspection>(*inspections[0]);
-  // Within the true one, so that all columns still show the same part of the picture.
+  // Within the true cube, so that all columns still show the same part of the image.
   moved->cube->axes *= 0.8;
   moved->cube->origin += 0.01 * moved->cube->axes.col(0);
   inspections[0] = moved;
@@ -115,7 +110,7 @@ TEST_F(CompareView, AMovedCubeChangesOnlyItsColumn) {
   EXPECT_TRUE(same_bytes(column(before, 2), column(after, 2)));
 }
 
-TEST_F(CompareView, MoreThanFourWrapIntoRows) {
+TEST_F(CompareView, WrapsMoreThanFourColumnsIntoRows) {
   Inspections seven;
   for (int i = 0; i < 7; ++i) seven.push_back(made({.estimate_error = 0.4 * i}));
   const cv::Size size = default_compare_size(seven);
@@ -129,8 +124,7 @@ TEST_F(CompareView, MoreThanFourWrapIntoRows) {
             490 * 400);
 }
 
-/// As many as there will be methods, each with its verdict.
-TEST_F(CompareView, NineStandInThreeRows) {
+TEST_F(CompareView, ArrangesNineColumnsInThreeRows) {
   Inspections nine;
   for (int i = 0; i < 9; ++i)
     nine.push_back(made({.ok = i != 8, .estimate_error = 0.4 * i, .normal_sigma_deg = 0.3}));
@@ -143,7 +137,7 @@ TEST_F(CompareView, NineStandInThreeRows) {
   EXPECT_GT(count_pixels(last, color_of(Role::bad)), 8);     // degenerate
 }
 
-TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {
+TEST_F(CompareView, DrawsIncompleteResultsWithoutMessages) {
   keep("compare_blind",
        snapshot_compare(Inspections{made({.images = false, .truth = false})}, kFrame));
   keep("compare_outside", snapshot_compare(three(), 38));
@@ -152,8 +146,8 @@ TEST_F(CompareView, DrawsWhatIsMissingWithoutComplaint) {
   keep("compare_small", snapshot_compare(three(), kFrame, cv::Size(900, 330)));
 }
 
-TEST_F(CompareView, SameBytesAgain) {
-  if (!on_llvmpipe()) GTEST_SKIP() << "same bytes are promised for llvmpipe only";
+TEST_F(CompareView, GivesTheSameBytesAgain) {
+  if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";
   EXPECT_TRUE(same_bytes(snapshot_compare(three(), kFrame), snapshot_compare(three(), kFrame)));
 }
 

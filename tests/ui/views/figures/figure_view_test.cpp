@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <tinyxml2.h>
 
 namespace gpo {
@@ -23,14 +21,16 @@ using ::testing::HasSubstr;
 constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442;
 const cv::Size kSmall(500, 480);
 
-std::filesystem::path figure_file(const std::string& name) {
-  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  return std::filesystem::path(GPO_TEST_OUTPUT_DIR) / name;
+Curve curve_of(const std::string& name, std::uint32_t rgb) {
+  Curve curve;
+  curve.name = name;
+  curve.rgb = rgb;
+  return curve;
 }
 
-/// A method whose error falls with the window's length.
+/// Returns a method's error over the window's length.
 Curve falling(const std::string& name, std::uint32_t rgb, double level) {
-  Curve curve{name, rgb, false, {}, {}, {}, {}};
+  Curve curve = curve_of(name, rgb);
   for (int length = 5; length <= 60; length += 5) {
     const double median = level * (1 + 20.0 / length) * (1 + 0.1 * std::sin(length + level));
     curve.x.push_back(length);
@@ -43,55 +43,55 @@ Curve falling(const std::string& name, std::uint32_t rgb, double level) {
 
 Figure paper_figure() {
   Figure figure{"window-length", "desk: median and quartiles over 12 windows", {}};
-  const std::vector<std::pair<std::string, std::uint32_t>> methods = {{"GPO", kGreen},
-                                                                      {"PnP", 0xE69F00},
-                                                                      {"DBSCAN", kYellow},
-                                                                      {"BA", kVermilion},
-                                                                      {"PnP + BA", 0xCC79A7},
-                                                                      {"PBA", 0x8B5A2B},
-                                                                      {"FPBA", 0x999999},
-                                                                      {"closed form", 0x56B4E9},
-                                                                      {"GPO joint", 0x0072B2}};
-  const std::array<std::pair<const char*, const char*>, 3> metrics = {
-      {{"ATE", "ATE [mm]"}, {"PNE", "PNE [°]"}, {"PDE", "PDE [mm]"}}};
-  for (const auto& [title, label] : metrics) {
-    Chart chart{title, "window length [frames]", label, true, {}};
-    double level = std::string(title) == "PNE" ? 0.05 : 1.3;
+  // clang-format off
+  const std::vector<std::pair<std::string, std::uint32_t>> methods = {
+      {"GPO", kGreen}, {"PnP", 0xE69F00}, {"DBSCAN", kYellow}, {"BA", kVermilion},
+      {"PnP + BA", 0xCC79A7}, {"PBA", 0x8B5A2B}, {"FPBA", 0x999999}, {"closed form", 0x56B4E9},
+      {"GPO joint", 0x0072B2}};
+  // clang-format on
+  for (const std::string title : {"ATE", "PNE", "PDE"}) {
+    const bool angle = title == "PNE";
+    Chart& chart = figure.charts.emplace_back();
+    chart.title = title;
+    chart.x_label = "window length [frames]";
+    chart.y_label = title + (angle ? " [°]" : " [mm]");
+    chart.logarithmic = true;
+    double level = angle ? 0.05 : 1.3;
     for (const auto& [name, rgb] : methods)
       chart.curves.push_back(falling(name, rgb, level *= 1.5));
-    if (std::string(title) == "PNE") {
-      Curve bound = falling("bound (Cramér-Rao)", 0x333333, 0.01);
-      bound.dotted = true;
-      bound.lower.clear();
-      bound.upper.clear();
-      chart.curves.push_back(bound);
-    }
-    figure.charts.push_back(chart);
+    if (!angle) continue;
+    Curve bound = falling("bound (Cramér-Rao)", 0x333333, 0.01);
+    bound.dotted = true;
+    bound.lower.clear();
+    bound.upper.clear();
+    chart.curves.push_back(bound);
   }
   return figure;
 }
 
-/// One chart, linear, from (0, 0): every value of y is at a place that is known.
-Figure small_figure(std::vector<double> y, bool band = false, bool dotted = false) {
-  Curve curve{"GPO", kGreen, dotted, {}, y, {}, {}};
-  for (std::size_t i = 0; i < y.size(); ++i) curve.x.push_back(static_cast<double>(i));
-  if (band)
-    for (const double value : y) {
-      curve.lower.push_back(0.5 * value);
-      curve.upper.push_back(1.5 * value);
-    }
+/// Returns one linear chart with axes from (0, 0).
+Figure small_figure(const std::vector<double>& y, bool band = false, bool dotted = false) {
+  Curve curve = curve_of("GPO", kGreen);
+  curve.dotted = dotted;
+  curve.y = y;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    curve.x.push_back(static_cast<double>(i));
+    if (!band) continue;
+    curve.lower.push_back(0.5 * y[i]);
+    curve.upper.push_back(1.5 * y[i]);
+  }
   return {"small", "", {{"chart", "x [-]", "y [-]", false, {curve}}}};
 }
 
-/// Anti-aliased curves are thin.
+/// Counts pixels of nearly a color: thin curves are anti-aliased.
 int colored(const cv::Mat& image, std::uint32_t rgb) { return count_pixels(image, rgb, 12); }
 
-/// Within the axes of a figure with one chart, above the legend.
+/// Returns the area within the axes of a figure with one chart.
 cv::Mat plot_area(const cv::Mat& image) {
   return image(cv::Rect(93, 48, image.cols - 93 - 20, image.rows - 48 - 100));
 }
 
-/// Of the method's green in each of `columns` equal parts of the plot.
+/// Counts the green pixels in each of `columns` equal parts of the plot.
 std::vector<int> green_by_column(const cv::Mat& image, int columns) {
   std::vector<int> pixels;
   const cv::Mat area = plot_area(image);
@@ -101,10 +101,10 @@ std::vector<int> green_by_column(const cv::Mat& image, int columns) {
   return pixels;
 }
 
-TEST(FigureView, DrawsEveryMethodInItsColorInEveryChart) {
+TEST(FigureView, DrawsEveryMethodInItsColor) {
   const Figure figure = paper_figure();
   const cv::Mat image = draw_figure(figure, {1500, 480});
-  cv::imwrite(figure_file("figure.png").string(), image);
+  keep("figure", image);
   ASSERT_EQ(image.size(), cv::Size(1500, 480));
   EXPECT_EQ(image.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
   for (int chart = 0; chart < 3; ++chart)
@@ -123,11 +123,11 @@ TEST(FigureView, SameFigureGivesTheSameBytes) {
   EXPECT_EQ(figure_pdf(figure, sheet), figure_pdf(figure, sheet));
 }
 
-TEST(FigureView, BandLiesBetweenTheQuartiles) {
+TEST(FigureView, BandIsBetweenTheQuartiles) {
   const cv::Mat image = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
-  cv::imwrite(figure_file("figure_band.png").string(), image);
+  keep("figure_band", image);
   const cv::Mat area = plot_area(image);
-  // From 0 to 3.15 up the plot; between two points, beside the grid.
+  // The axis is from 0 to 3.15. The column is between points and grid lines.
   const int column = area.cols / 2 + 18;
   const auto at = [&](double y) {
     const int row = static_cast<int>(std::lround(area.rows * (1 - y / 3.15)));
@@ -144,7 +144,7 @@ TEST(FigureView, NanLeavesAGap) {
   const double nan = std::nan("");
   const cv::Mat image =
       draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
-  cv::imwrite(figure_file("figure_gap.png").string(), image);
+  keep("figure_gap", image);
   const std::vector<int> green = green_by_column(image, 11);
   EXPECT_GT(green[1], 20);
   EXPECT_EQ(green[5], 0);
@@ -154,45 +154,45 @@ TEST(FigureView, NanLeavesAGap) {
   EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
 }
 
-TEST(FigureView, OnePointBetweenGapsIsDrawn) {
+TEST(FigureView, DrawsSinglePointsBetweenGaps) {
   const double nan = std::nan("");
   const cv::Mat image = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
-  cv::imwrite(figure_file("figure_points.png").string(), image);
+  keep("figure_points", image);
   EXPECT_GT(green_by_column(image, 5)[2], 20);
 }
 
 TEST(FigureView, BoundIsDotted) {
   const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
   const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
-  cv::imwrite(figure_file("figure_bound.png").string(), dotted);
+  keep("figure_bound", dotted);
   const int dots = colored(plot_area(dotted), kGreen);
   EXPECT_GT(dots, 30);
   EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
 }
 
-TEST(FigureView, LogarithmicAxisLeavesOutWhatIsNotPositive) {
+TEST(FigureView, LogarithmicAxisLeavesOutValuesThatAreNotPositive) {
   Figure figure = small_figure({1, 0, -1, 10, 100});
   figure.charts[0].logarithmic = true;
   const cv::Mat image = draw_figure(figure, kSmall);
   EXPECT_GT(colored(plot_area(image), kGreen), 30);
 }
 
-TEST(FigureView, EmptyFiguresSaySo) {
+TEST(FigureView, EmptyFiguresHaveAText) {
   Figure nothing{"none", "a title", {}};
-  cv::imwrite(figure_file("figure_none.png").string(), draw_figure(nothing, kSmall));
+  keep("figure_none", draw_figure(nothing, kSmall));
   const Figure no_values = small_figure({std::nan(""), std::nan("")});
-  const cv::Mat said = draw_figure(no_values, kSmall);
-  cv::imwrite(figure_file("figure_no_values.png").string(), said);
-  const cv::Mat middle = plot_area(said)(cv::Rect(100, 100, 180, 130));
+  const cv::Mat image = draw_figure(no_values, kSmall);
+  keep("figure_no_values", image);
+  const cv::Mat middle = plot_area(image)(cv::Rect(100, 100, 180, 130));
   EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
   figure_svg(nothing, screen_sheet(nothing, kSmall));
   figure_pdf(no_values, screen_sheet(no_values, kSmall));
 }
 
-TEST(FigureView, SvgParsesAndNamesWhatItShows) {
+TEST(FigureView, SvgNamesItsContent) {
   const Figure figure = paper_figure();
   const std::string svg = figure_svg(figure, screen_sheet(figure, {1500, 480}));
-  std::ofstream(figure_file("figure.svg")) << svg;
+  std::ofstream(GPO_TEST_OUTPUT_DIR "/figure.svg") << svg;
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
   const tinyxml2::XMLElement* root = document.RootElement();
@@ -208,7 +208,7 @@ TEST(FigureView, SvgParsesAndNamesWhatItShows) {
   EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 1125 360\""));
 }
 
-/// How often an SVG fills or strokes with this style, in the spelling of any version of Cairo.
+/// Counts the uses of a style in an SVG, in the spelling of any version of Cairo.
 int styles_of(std::string svg, const std::string& style) {
   std::erase_if(svg, [](char c) { return c == ' ' || c == '"' || c == ';'; });
   std::ranges::replace(svg, '=', ':');
@@ -218,7 +218,7 @@ int styles_of(std::string svg, const std::string& style) {
   return found;
 }
 
-TEST(FigureView, PrintedTypeHasSevenPointsAndStaysOnThePage) {
+TEST(FigureView, PrintedTextHasSevenPointsAndStaysOnThePage) {
   Figure figure = paper_figure();
   figure.note =
       "Dotted: a bound that takes more than one line to explain, even on a wide page, "
@@ -232,22 +232,22 @@ TEST(FigureView, PrintedTypeHasSevenPointsAndStaysOnThePage) {
       EXPECT_GE(size * sheet.unit_mm / 25.4 * 72, 7 - 1e-9);
     const std::string name = width_mm < 100 ? "figure_85mm" : "figure_175mm";
     const cv::Mat image = figure_image(figure, sheet, sheet.unit_mm / 25.4 * 300);
-    cv::imwrite(figure_file(name + ".png").string(), image);
-    std::ofstream(figure_file(name + ".pdf")) << figure_pdf(figure, sheet);
+    keep(name, image);
+    std::ofstream(GPO_TEST_OUTPUT_DIR "/" + name + ".pdf") << figure_pdf(figure, sheet);
     const cv::Rect inside(2, 2, image.cols - 4, image.rows - 4);
     cv::Mat edge = image.clone();
     edge(inside).setTo(cv::Scalar::all(255));
-    EXPECT_EQ(cv::countNonZero(edge.reshape(1) != 255), 0) << "nothing is cut off at " << width_mm;
+    EXPECT_EQ(cv::countNonZero(edge.reshape(1) != 255), 0) << "cut off at " << width_mm;
   }
 }
 
-TEST(FigureView, PageOfPdfHasTheFiguresSizeAndItsFonts) {
+TEST(FigureView, PdfHasTheFiguresSizeAndItsFonts) {
   const Figure figure = paper_figure();
   const std::string pdf = figure_pdf(figure, printed_sheet(figure, 175));
   EXPECT_THAT(pdf, ::testing::StartsWith("%PDF-1.4\n"));
   EXPECT_THAT(pdf, ::testing::EndsWith("%%EOF\n"));
   EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 496.06"));
-  // Text can be selected: its fonts are embedded.
+  // Embedded fonts: text can be selected.
   EXPECT_THAT(pdf, HasSubstr("+Inter-Regular"));
   EXPECT_THAT(pdf, HasSubstr("+Inter-SemiBold"));
 }
@@ -264,7 +264,7 @@ TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
   const int sheets = styles_of(svg_of(), white);
   EXPECT_EQ(keys_of().back().text, "GPO");
   figure.charts[0].curves[0].counts = {9, 9, 4, 3, 1};
-  // Two on the curve, one in the legend, which explains them.
+  // Two on the curve, one in the legend.
   EXPECT_EQ(styles_of(svg_of(), white), sheets + 3);
   EXPECT_EQ(keys_of().back().text, "fewer than 4 windows");
   const cv::Mat image = draw_figure(figure, kSmall);
@@ -272,7 +272,7 @@ TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
   constexpr std::uint32_t kBand = 0xD1ECE3;
   EXPECT_GT(colored(area.colRange(0, area.cols / 2), kBand), 1000);
   EXPECT_LT(colored(area.colRange(area.cols / 2 + 5, area.cols), kBand), 50)
-      << "edges of lines only";
+      << "only edges of lines";
 }
 
 TEST(FigureView, ManyBandsAreOutlined) {
@@ -285,11 +285,12 @@ TEST(FigureView, ManyBandsAreOutlined) {
   EXPECT_EQ(outlines(6), 3 * 6 * 2);
 }
 
-TEST(CurveStyles, OfOneMethodDifferInDashesAndLookUnlike) {
+TEST(CurveStyles, OfOneMethodDifferInDashesAndColors) {
   Figure figure{"", "", {{"", "", "", false, {}}}};
-  // GPO, anchored, with a gyroscope, consistent and without RANSAC, as mixed with GPO's green.
+  // The mixed colors of GPO, anchored, with a gyroscope, consistent and without RANSAC.
   for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558}) {
-    Curve curve{std::to_string(rgb), rgb, false, {1}, {1}, {}, {}};
+    Curve curve = curve_of(std::to_string(rgb), rgb);
+    curve.x = curve.y = {1};
     curve.marker = 0;
     figure.charts[0].curves.push_back(curve);
   }
@@ -311,7 +312,7 @@ TEST(CurveStyles, DifferWithoutTheirColors) {
     EXPECT_EQ(std::ranges::count(seen, own), 0) << style.name;
     seen.push_back(own);
   }
-  EXPECT_EQ(seen.size(), 10U);  // nine methods and the bound
+  EXPECT_EQ(seen.size(), 10U) << "nine methods and the bound";
 }
 
 }  // namespace

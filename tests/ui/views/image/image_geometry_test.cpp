@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_geometry.h"
 
+#include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
+#include "ui/views/image/image_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
@@ -21,7 +25,7 @@ using Eigen::Vector3d;
 const Camera kCamera{
     640, 480, 500, 510, 322, 236, Distortion::radial_tangential, {-.3, .1, .001, -.002, .01}};
 
-/// OpenCV's own projection, raw pixels.
+/// Projects with OpenCV, to raw pixels.
 std::vector<Vector2d> project_with_opencv(const Camera& camera,
                                           const Pose& pose,
                                           const std::vector<Vector3d>& points_w) {
@@ -54,7 +58,6 @@ void expect_cube_agrees_with_opencv(const Camera& camera) {
     ASSERT_EQ(cube.edges.size(), 12u);
     for (const CubeEdge& edge : cube.edges) {
       ASSERT_GT(edge.raw_px.size(), 10u);
-      // Ends and every point between.
       std::vector<Vector3d> points;
       const auto last = static_cast<double>(edge.raw_px.size() - 1);
       for (std::size_t i = 0; i < edge.raw_px.size(); ++i)
@@ -67,51 +70,46 @@ void expect_cube_agrees_with_opencv(const Camera& camera) {
   }
 }
 
-TEST(ImageGeometry, CubeAgreesWithOpenCvThroughBrownsLens) {
+TEST(ImageGeometry, CubeAgreesWithOpenCv) {
   expect_cube_agrees_with_opencv(kCamera);
+  Camera fisheye = kCamera;
+  fisheye.distortion = Distortion::equidistant;
+  fisheye.coefficients = {-0.03, 0.01, -0.004, 0.001};
+  expect_cube_agrees_with_opencv(fisheye);
 }
 
-TEST(ImageGeometry, CubeAgreesWithOpenCvThroughAFisheye) {
-  Camera camera = kCamera;
-  camera.distortion = Distortion::equidistant;
-  camera.coefficients = {-0.03, 0.01, -0.004, 0.001};
-  expect_cube_agrees_with_opencv(camera);
+const Camera kPinhole{640, 480, 500, 510, 322, 236, Distortion::none, {}};
+
+auto hidden_edges(const CubeImage& cube) {
+  return std::ranges::count_if(cube.edges, &CubeEdge::hidden);
 }
 
-TEST(ImageGeometry, CubeSeenFromAboveHidesItsFarEdges) {
-  // Straight ahead and from above: the base's far edge and the two edges that rise from its ends.
+TEST(ImageGeometry, CubeHidesItsFarEdges) {
+  // Straight ahead from above two faces are visible, top and front.
   const Inspection inspection = made_inspection({.distorted = false});
-  const CubeImage cube =
+  const CubeImage above =
       cube_in_image(inspection.recording->camera, Pose(), cube_corners(*inspection.cube, 0.2));
-  int hidden = 0;
-  for (const CubeEdge& edge : cube.edges) hidden += edge.hidden;
-  EXPECT_EQ(hidden, 5);  // two faces are seen: top and front
-  for (const CubeFace& face : cube.faces) EXPECT_FALSE(face.base && face.facing);
-}
-
-TEST(ImageGeometry, CubeSeenAtItsCornerHidesThreeEdges) {
+  EXPECT_EQ(hidden_edges(above), 5);
+  for (const CubeFace& face : above.faces) EXPECT_FALSE(face.base && face.facing);
+  // At its corner, from (4, 3, 2) towards the origin, three are.
   CubeAnchor anchor;
   anchor.axes << 1, 0, 0, 0, -1, 0, 0, 0, 1;
-  Pose pose;  // from (4, 3, 2), looking at the origin
+  Pose pose;
   pose.p_wc = Vector3d(4, 3, 2);
   const Vector3d z = -pose.p_wc.normalized(), x = z.cross(Vector3d::UnitZ()).normalized();
   pose.R_wc << x, z.cross(x), z;
-  Camera camera = kCamera;
-  camera.distortion = Distortion::none;
-  const CubeImage cube = cube_in_image(camera, pose, cube_corners(anchor, 1));
-  int hidden = 0;
-  for (const CubeEdge& edge : cube.edges) hidden += edge.hidden;
-  EXPECT_EQ(hidden, 3);
+  EXPECT_EQ(hidden_edges(cube_in_image(kPinhole, pose, cube_corners(anchor, 1))), 3);
 }
 
-TEST(ImageGeometry, CubeBehindTheCameraIsNotDrawnAndOneBesideItIsCutOff) {
+TEST(ImageGeometry, CubeIsClippedInFrontOfTheCamera) {
   CubeAnchor anchor;
-  anchor.origin = Vector3d(0, 0, -5);
-  for (const CubeEdge& edge : cube_in_image(kCamera, Pose(), cube_corners(anchor, 1)).edges)
-    EXPECT_TRUE(edge.raw_px.empty());
-  anchor.origin = Vector3d(0, 0.5, -0.5);  // reaches from behind to 0.5 in front
+  const auto edges_at = [&](const Vector3d& origin) {
+    anchor.origin = origin;
+    return cube_in_image(kCamera, Pose(), cube_corners(anchor, 1)).edges;
+  };
+  for (const CubeEdge& edge : edges_at({0, 0, -5})) EXPECT_TRUE(edge.raw_px.empty());
   int drawn = 0;
-  for (const CubeEdge& edge : cube_in_image(kCamera, Pose(), cube_corners(anchor, 1)).edges) {
+  for (const CubeEdge& edge : edges_at({0, 0.5, -0.5})) {  // from behind to 0.5 in front
     drawn += !edge.raw_px.empty();
     for (const Vector2d& pixel : edge.raw_px) EXPECT_TRUE(pixel.allFinite());
   }
@@ -129,47 +127,41 @@ TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {
     // Two coordinates, noise 0.4 px in this frame and in the reference frame.
     EXPECT_NEAR(std::sqrt(sum / (2.0 * residuals.size())), 0.4 * std::sqrt(2), 0.15);
   }
-}
-
-TEST(ImageGeometry, ResidualsOfAFailedInitializationAreNone) {
   EXPECT_TRUE(residual_vectors(made_inspection({.ok = false}), 3).empty());
 }
 
-TEST(Horizon, OfALevelPinholeIsARowAndTurnsWithTheCamera) {
-  Camera pinhole = kCamera;
-  pinhole.distortion = Distortion::none;
-  pinhole.coefficients = {};
-  const auto level = horizon_in_image(pinhole, Pose{}, -Vector3d::UnitY());
+TEST(Horizon, OfALevelPinholeIsARowAndMovesWithTheCamera) {
+  const auto level = horizon_in_image(kPinhole, Pose{}, -Vector3d::UnitY());
   ASSERT_EQ(level.size(), 1U);
   EXPECT_LT(level[0].front().x(), 15);
   EXPECT_GT(level[0].back().x(), 625);
-  for (const Vector2d& pixel : level[0]) EXPECT_NEAR(pixel.y(), pinhole.cy, 1e-9);
-  // Looking down by 10 degrees raises it, rolled by 90 it stands.
+  for (const Vector2d& pixel : level[0]) EXPECT_NEAR(pixel.y(), kPinhole.cy, 1e-9);
+  // Pitch of 10 degrees downwards raises it, roll of 90 degrees makes it vertical.
+  const double pitch = 10 * std::numbers::pi / 180;
   Pose down;
-  down.R_wc = Eigen::AngleAxisd(-10 * std::numbers::pi / 180, Vector3d::UnitX()).toRotationMatrix();
-  const auto raised = horizon_in_image(pinhole, down, -Vector3d::UnitY());
+  down.R_wc = Eigen::AngleAxisd(-pitch, Vector3d::UnitX()).toRotationMatrix();
+  const auto raised = horizon_in_image(kPinhole, down, -Vector3d::UnitY());
   for (const Vector2d& pixel : raised.at(0))
-    EXPECT_NEAR(pixel.y(), pinhole.cy - pinhole.fy * std::tan(10 * std::numbers::pi / 180), 1e-9);
-  const auto upright = horizon_in_image(pinhole, Pose{}, Vector3d::UnitX());
-  for (const Vector2d& pixel : upright.at(0)) EXPECT_NEAR(pixel.x(), pinhole.cx, 1e-9);
-  EXPECT_TRUE(horizon_in_image(pinhole, Pose{}, Vector3d::UnitZ()).empty());
+    EXPECT_NEAR(pixel.y(), kPinhole.cy - kPinhole.fy * std::tan(pitch), 1e-9);
+  const auto upright = horizon_in_image(kPinhole, Pose{}, Vector3d::UnitX());
+  for (const Vector2d& pixel : upright.at(0)) EXPECT_NEAR(pixel.x(), kPinhole.cx, 1e-9);
+  EXPECT_TRUE(horizon_in_image(kPinhole, Pose{}, Vector3d::UnitZ()).empty());
 }
 
-TEST(Horizon, BendsThroughTheLensAsOpenCvSays) {
+TEST(Horizon, IsBentByTheLensAsByOpenCv) {
   const Vector3d up = Vector3d(0.1, -1, 0.2).normalized();
   const auto pieces = horizon_in_image(kCamera, Pose{}, up);
   ASSERT_FALSE(pieces.empty());
-  for (const auto& piece : pieces)
+  for (const Outline& piece : pieces)
     for (const Vector2d& raw_px : piece) {
       const Vector2d pixel = undistort(kCamera, raw_px);
       const Vector3d ray = intrinsic_matrix(kCamera).inverse() * pixel.homogeneous();
       EXPECT_NEAR(ray.normalized().dot(up), 0, 1e-6);
-      const auto again = project_with_opencv(kCamera, Pose{}, {ray});
-      EXPECT_LT((again[0] - raw_px).norm(), 1e-4);
+      EXPECT_LT((project_with_opencv(kCamera, Pose{}, {ray})[0] - raw_px).norm(), 1e-4);
     }
 }
 
-TEST(TowerInImage, StandsOnTheCubesBase) {
+TEST(TowerInImage, HasTheCubesBase) {
   const Inspection inspection = made_inspection();
   const auto cube = cube_corners(*inspection.cube, 0.3);
   const auto tower = cube_corners(*inspection.cube, 0.3, 5);
@@ -178,15 +170,15 @@ TEST(TowerInImage, StandsOnTheCubesBase) {
     EXPECT_LT((tower[k + 4] - tower[k] - 5 * (cube[k + 4] - cube[k])).norm(), 1e-12);
   }
   const auto base_px = [&](double height) {
-    return estimated_cube(inspection, 20, 0.3, height)->edges.front().raw_px;
+    return estimated_cube(inspection, 20, {0.3, height})->edges.front().raw_px;
   };
   EXPECT_EQ(base_px(1), base_px(5));
 }
 
-TEST(ExaggeratedCube, IsSoManyTimesAsFarFromItsReference) {
+TEST(ExaggeratedCube, MultipliesTheDistanceFromItsReference) {
   const Inspection inspection = made_inspection({.estimate_error = 0.1});
-  const auto cube = estimated_cube(inspection, 20, 0.3);
-  const auto truth = true_cube(inspection, 20, 0.3);
+  const auto cube = estimated_cube(inspection, 20, {0.3});
+  const auto truth = true_cube(inspection, 20, {0.3});
   ASSERT_TRUE(cube && truth);
   const CubeImage far = exaggerated(*cube, *truth, 20);
   ASSERT_EQ(far.edges.size(), 12U);
@@ -207,28 +199,121 @@ TEST(ExaggeratedCube, IsSoManyTimesAsFarFromItsReference) {
   EXPECT_TRUE(exaggerated(*cube, cut, 20).edges[0].raw_px.empty());
 }
 
-TEST(ContactShadow, LiesOnThePlaneAroundTheCubesBase) {
+TEST(ContactShadow, IsOnThePlaneAroundTheCubesBase) {
   const Inspection inspection = made_inspection();
   const double side = 0.3;
   const auto rings = contact_shadow(inspection, 20, side);
   ASSERT_FALSE(rings.empty());
   double farther = 1e9;
-  for (const auto& ring : rings) {
+  for (const Outline& ring : rings) {
     double farthest = 0;
     for (const Vector2d& pixel : ring) {
       const auto point = point_on_plane(inspection, 20, pixel, inspection.initialization->plane);
       ASSERT_TRUE(point.has_value());
-      const Vector3d from = *point - inspection.cube->origin;
-      EXPECT_LT(std::abs(from.dot(inspection.cube->axes.col(2))), 1e-4);
-      const double x = std::abs(from.dot(inspection.cube->axes.col(0)));
-      const double y = std::abs(from.dot(inspection.cube->axes.col(1)));
-      EXPECT_GE(std::max(x, y), side / 2 - 1e-4) << "outside of the base";
-      farthest = std::max({farthest, x, y});
+      const Vector3d from = inspection.cube->axes.transpose() * (*point - inspection.cube->origin);
+      EXPECT_LT(std::abs(from.z()), 1e-4);
+      const double reach = from.head<2>().cwiseAbs().maxCoeff();
+      EXPECT_GE(reach, side / 2 - 1e-4) << "outside of the base";
+      farthest = std::max(farthest, reach);
     }
     EXPECT_LT(farthest, farther);
     farther = farthest;
   }
   EXPECT_TRUE(contact_shadow(made_inspection({.ok = false}), 20, side).empty());
+}
+
+using CubeCorners = std::array<Vector3d, 8>;
+
+CubeCorners cube_of(const Inspection& inspection) {
+  return cube_corners(*inspection.cube, cube_side(inspection, 0));
+}
+
+Vector3d middle_of(const CubeCorners& corners) { return (corners[0] + corners[7]) / 2; }
+
+Vector2d seen_at(const Inspection& inspection, const Vector3d& point_w) {
+  const Eigen::Matrix3d K = inspection.window->K;
+  return (K * to_camera(inspection.initialization->cameras[0], point_w)).hnormalized();
+}
+
+/// Adds a plane across the reference camera's view, `times_as_far` as the cube. Its inliers are the
+/// tracks with `on_it(track, cube)`, of their places in the image [px].
+template <class OnIt>
+Inspection with_plane_across(double times_as_far, OnIt&& on_it) {
+  Inspection inspection = made_inspection();
+  const Vector3d middle = middle_of(cube_of(inspection));
+  auto window = std::make_shared<Window>(*inspection.window);
+  window->planes.resize(2);
+  std::vector<bool> agrees(window->track_count());
+  for (int j = 0; j < window->track_count(); ++j) {
+    agrees[j] = on_it(Vector2d(window->points_px[0].col(j)), seen_at(inspection, middle));
+    if (agrees[j]) window->planes[1].tracks.push_back(j);
+  }
+  window->planes[1].inlier.assign(window->frame_count(), agrees);
+  for (auto& inlier : window->inlier)
+    for (const int j : window->planes[1].tracks) inlier[j] = false;
+  window->planes[0].inlier = window->inlier;
+  auto initialization = std::make_shared<Initialization>(*inspection.initialization);
+  initialization->planes.resize(2);
+  initialization->planes[1].number = 1;
+  initialization->planes[1].plane = {-Vector3d::UnitZ(), times_as_far * middle.z()};
+  inspection.window = window;
+  inspection.initialization = initialization;
+  return inspection;
+}
+
+bool around(const Vector2d& track, const Vector2d& cube) { return (track - cube).norm() < 150; }
+
+TEST(Occluders, AreNearerPlanesBetweenTheirTracks) {
+  const Inspection nearer = with_plane_across(0.5, around);
+  const auto found = occluders(nearer, 0, cube_of(nearer));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].plane, 1);
+  ASSERT_FALSE(found[0].triangles_raw_px.empty());
+  const auto& all_px = nearer.tracks->raw_px[0];
+  for (const auto& triangle : found[0].triangles_raw_px) {
+    for (int k = 0; k < 3; ++k) {
+      const auto is_corner = [&](int track) {
+        return (all_px.col(track) - triangle[k]).norm() < 1e-3;
+      };
+      EXPECT_TRUE(std::ranges::any_of(nearer.window->planes[1].tracks, is_corner));
+      EXPECT_LE((triangle[k] - triangle[(k + 1) % 3]).norm(),
+                0.15 * nearer.recording->camera.width + 1e-3);
+    }
+  }
+}
+
+TEST(Occluders, LeaveOutTrianglesWithOtherTracks) {
+  int count = 0;
+  const Inspection gaps =
+      with_plane_across(0.5, [&count](const Vector2d& track, const Vector2d& cube) {
+        return around(track, cube) && count++ % 3 != 0;
+      });
+  const auto found = occluders(gaps, 0, cube_of(gaps));
+  ASSERT_EQ(found.size(), 1U);
+  const auto contains = [](const std::array<Vector2d, 3>& t, const Vector2d& p) {
+    Eigen::Matrix2d sides;
+    sides << t[1] - t[0], t[2] - t[0];
+    const Vector2d weights = sides.inverse() * (p - t[0]);
+    return weights.x() > 1e-3 && weights.y() > 1e-3 && weights.sum() < 1 - 1e-3;
+  };
+  for (int track = 0; track < gaps.tracks->track_count(); ++track) {
+    if (gaps.window->planes[1].inlier[0][track] || !gaps.tracks->seen(0, track)) continue;
+    for (const auto& triangle : found[0].triangles_raw_px)
+      EXPECT_FALSE(contains(triangle, gaps.tracks->raw_px[0].col(track))) << track;
+  }
+}
+
+TEST(Occluders, AreNotPlanesBehindBesideOrThroughTheCube) {
+  for (const double times_as_far : {3.0, 1.0}) {
+    const Inspection inspection = with_plane_across(times_as_far, around);
+    EXPECT_TRUE(occluders(inspection, 0, cube_of(inspection)).empty()) << times_as_far;
+  }
+  const Inspection beside = with_plane_across(
+      0.5, [](const Vector2d& track, const Vector2d& cube) { return track.x() < cube.x() - 120; });
+  ASSERT_GE(beside.window->planes[1].tracks.size(), 3U);
+  EXPECT_TRUE(occluders(beside, 0, cube_of(beside)).empty());
+  const Inspection alone = made_inspection();
+  EXPECT_TRUE(occluders(alone, 0, cube_of(alone)).empty());
 }
 
 }  // namespace

@@ -27,20 +27,15 @@ Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points) {
 }
 
 std::string error_of(const std::string& file) {
-  try {
-    read_solid_model(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_of([&] { read_solid_model(file); });
 }
 
-/// A wedge 4 wide (x), 2 deep and 3 high, whose front at z = 2 is low; y is up.
+/// A wedge 4 wide (x), 2 deep and 3 high, with a low front at z = 2; y is up.
 constexpr const char* kWedgeObj =
     "v 10 5 0\nv 14 5 0\nv 14 5 2\nv 10 5 2\nv 10 8 0\nv 14 8 0\n"
     "f 1 2 3 4\nf 1 5 6 2\nf 4 3 6 5\nf 1 4 5\nf 2 6 3\n";
 
-TEST(SolidModel, StandsOnItsFootASideWide) {
+TEST(SolidModel, StandsOnItsFootAndIsOneSideWide) {
   const test::TestFolder folder;
   write_file(folder.path() / "wedge.obj", kWedgeObj);
   const SolidModel model = read_solid_model(folder.path() / "wedge.obj");
@@ -50,7 +45,7 @@ TEST(SolidModel, StandsOnItsFootASideWide) {
   EXPECT_LT((box.max() - Vector3d(0.5, 0.25, 0.75)).norm(), 1e-6);
   EXPECT_NEAR(model.height_sides, 0.75, 1e-6);
   for (const Vector3d& point : model.points)
-    EXPECT_TRUE(point.z() < 0.5 || point.y() > 0) << "z to the viewer: the low front is at -y";
+    EXPECT_TRUE(point.z() < 0.5 || point.y() > 0) << "the low front, z of the file, is at -y";
   EXPECT_EQ(lit_rgb(model, 0, 0xFFFFFF) >> 16, lit_rgb(model, 0, 0xFFFFFF) & 0xFF);
 }
 
@@ -64,7 +59,7 @@ TEST(SolidModel, IsNotMirroredOnThePlane) {
     for (const auto& [a, b, c] : model.triangles) sum += points[a].dot(points[b].cross(points[c]));
     return sum / 6;
   };
-  EXPECT_GT(volume(model.points), 0) << "triangles turn counterclockwise, seen from outside";
+  EXPECT_GT(volume(model.points), 0) << "triangles are counterclockwise from outside";
   EXPECT_NEAR(volume(placed), 0.3 * 0.3 * 0.3 * volume(model.points), 1e-6);
   const Plane& plane = inspection.initialization->plane;
   double lowest = 1, highest = 0;
@@ -77,7 +72,7 @@ TEST(SolidModel, IsNotMirroredOnThePlane) {
   EXPECT_NEAR(highest, 0.3 * model.height_sides, 1e-9);
 }
 
-TEST(SolidModel, OfAPlyHasItsColorsAndZUp) {
+TEST(SolidModel, ReadsColorsOfAPlyWithZUp) {
   const test::TestFolder folder;
   write_file(folder.path() / "one.ply",
              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -90,7 +85,7 @@ TEST(SolidModel, OfAPlyHasItsColorsAndZUp) {
   EXPECT_EQ(model.rgb[0], 0xFF0009U);
 }
 
-/// A triangle with its binary part, as glTF 2.0 lays a .glb out; a node lifts and doubles it.
+/// Returns a .glb (glTF 2.0) with a triangle that a node moves and scales.
 std::string small_glb() {
   const std::array<float, 9> points = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   std::string json =
@@ -113,7 +108,7 @@ std::string small_glb() {
          json + word(36) + std::string("BIN\0", 4) + binary;
 }
 
-TEST(SolidModel, OfAGltfStandsAsItsNodesSay) {
+TEST(SolidModel, AppliesTheNodesOfAGltf) {
   const test::TestFolder folder;
   write_file(folder.path() / "one.glb", small_glb());
   const SolidModel model = read_solid_model(folder.path() / "one.glb");
@@ -121,7 +116,7 @@ TEST(SolidModel, OfAGltfStandsAsItsNodesSay) {
   EXPECT_NEAR(model.height_sides, 2, 1e-6);
 }
 
-TEST(SolidModel, WhatCannotBeReadSaysWhy) {
+TEST(SolidModel, ReportsWhyAFileCannotBeRead) {
   const test::TestFolder folder;
   const auto in_folder = [&](const std::string& name, const std::string& text) {
     write_file(folder.path() / name, text);
@@ -130,12 +125,12 @@ TEST(SolidModel, WhatCannotBeReadSaysWhy) {
   EXPECT_THAT(error_of("statue.stl"), HasSubstr("statue.stl: expected .obj, .ply, .gltf or .glb"));
   EXPECT_THAT(error_of("nowhere.obj"), HasSubstr("nowhere.obj: no such file"));
   for (const char* name : {"empty.obj", "empty.ply", "empty.gltf", "empty.glb"})
-    EXPECT_THAT(error_of(in_folder(name, "")), HasSubstr("no triangles could be read")) << name;
+    EXPECT_THAT(error_of(in_folder(name, "")), HasSubstr("no triangles found")) << name;
   for (const char* name : {"text.obj", "text.ply", "text.gltf", "text.glb"})
     EXPECT_THAT(error_of(in_folder(name, "what is this?\n")), HasSubstr("no triangles")) << name;
   EXPECT_THAT(error_of(in_folder("point.obj", "v 1 1 1\nf 1 1 1\n")), HasSubstr("point.obj: "));
   EXPECT_THAT(error_of(in_folder("hole.obj", "v 1 1 1\nf 1 2 99\n")),
-              HasSubstr("hole.obj: a triangle's corner is point 2 of 1"));
+              HasSubstr("hole.obj: a triangle refers to point 2 of 1"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/residual_charts.h"
+#include "ui/views/charts/study_charts.h"
 
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/track_life.h"
@@ -14,12 +14,12 @@
 namespace gpo {
 namespace {
 
-/// Of a step curve: every bin has two points.
+/// Sums the bins of a histogram; each has two points.
 double sum_of_bins(const Curve& curve) {
   return std::accumulate(curve.y.begin(), curve.y.end(), 0.0) / 2;
 }
 
-TEST(ResidualCharts, HistogramHoldsAllResidualsOfTheWindowAndOfTheFrame) {
+TEST(ResidualCharts, HistogramsHaveAllResidualsOfWindowAndFrame) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   const WindowResiduals residuals = window_residuals(inspection);
   const int start = inspection.window->start;
@@ -32,11 +32,11 @@ TEST(ResidualCharts, HistogramHoldsAllResidualsOfTheWindowAndOfTheFrame) {
   EXPECT_NE(chart.curves[1].name.find(std::to_string(start + 9)), std::string::npos);
   EXPECT_NE(chart.curves[1].name.find(std::to_string(residuals[9].size())), std::string::npos);
   EXPECT_EQ(residual_histogram(residuals, inspection, start).curves.size(), 1U)
-      << "the reference frame predicts the others";
+      << "the reference frame";
   EXPECT_EQ(residual_histogram(residuals, inspection, start - 1).curves.size(), 1U);
 }
 
-TEST(ResidualCharts, LastBinHoldsWhatIsBeyondHoweverFar) {
+TEST(ResidualCharts, LastBinIncludesLargerResiduals) {
   const Inspection inspection = made_inspection();
   WindowResiduals residuals(3, std::vector<double>(300, 0.5));
   residuals[1].front() = 1e12;
@@ -48,7 +48,7 @@ TEST(ResidualCharts, LastBinHoldsWhatIsBeyondHoweverFar) {
   EXPECT_NEAR(chart.curves[1].y.back(), 100 * 2 / 300.0, 1e-9);
 }
 
-TEST(ResidualCharts, RmsIsThatOfTheEngineAndTheTrackIsItsOwn) {
+TEST(ResidualCharts, HaveTheEnginesRmsAndTheTracksResiduals) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
   const WindowResiduals residuals = window_residuals(inspection);
   const TrackLife track = track_life(inspection, 3);
@@ -68,6 +68,24 @@ TEST(ResidualCharts, AreEmptyWithoutAResult) {
   EXPECT_TRUE(residuals.empty());
   EXPECT_TRUE(residual_histogram(residuals, inspection, 10).curves.empty());
   EXPECT_TRUE(rms_chart(residuals, inspection, nullptr).curves.empty());
+}
+
+TEST(SolverCharts, HaveACurvePerRun) {
+  SolverReport report, direct;
+  report.trace = {{8, 4, 0, {}}, {2, 1, 0.5, {}}, {1, 0.1, 0.25, {}}};
+  const std::array runs = {SolverRun{"gpo", 0x00FF00, &report}, SolverRun{"dbscan", 0, &direct}};
+  const auto charts = solver_charts(runs);
+  for (const Chart& chart : charts) {
+    EXPECT_TRUE(chart.logarithmic);
+    ASSERT_EQ(chart.curves.size(), 1U) << "runs without iterations are left out";
+    EXPECT_EQ(chart.curves[0].name, "gpo");
+    EXPECT_EQ(chart.curves[0].rgb, 0x00FF00U);
+    EXPECT_EQ(chart.curves[0].x, (std::vector<double>{0, 1, 2}));
+    EXPECT_NE(chart.y_label.find('['), std::string::npos) << "a unit";
+  }
+  EXPECT_EQ(charts[0].curves[0].y, (std::vector<double>{8, 2, 1}));
+  EXPECT_EQ(charts[1].curves[0].y, (std::vector<double>{4, 1, 0.1}));
+  EXPECT_EQ(charts[2].curves[0].y, (std::vector<double>{0, 0.5, 0.25}));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/image_zoom.h"
+#include "ui/look/zoom.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMostZoom = 64;
+constexpr double kLargestImageZoom = 64;
+constexpr double kDiscMargin = 1.13;  // share of the radius that disc and labels take
 
 Vector2d size_of(const Camera& camera) { return Vector2d(camera.width, camera.height); }
 
@@ -27,14 +28,12 @@ ImageMapping map_image(const Camera& camera,
   const double scale = fitting_scale(camera, rect) * zoom.factor;
   const Vector2d corner =
       rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
-  return {Vector2d(std::round(corner.x()), std::round(corner.y())),
-          scale,
-          undistorted ? &camera : nullptr};
+  return {corner.array().round(), scale, undistorted ? &camera : nullptr};
 }
 
-Vector2d to_screen(const ImageMapping& mapping, const Vector2d& image_px) {
+Vector2d to_screen(const ImageMapping& mapping, const Vector2d& raw_px) {
   const Vector2d shown_px =
-      mapping.undistorted != nullptr ? undistort(*mapping.undistorted, image_px) : image_px;
+      mapping.undistorted != nullptr ? undistort(*mapping.undistorted, raw_px) : raw_px;
   return mapping.origin + mapping.scale * (shown_px + Vector2d::Constant(0.5));
 }
 
@@ -49,7 +48,7 @@ ImageZoom zoom_about(const ImageZoom& zoom,
                        const Vector2d& pointer,
                        double by) {
   ImageZoom result = zoom;
-  result.factor = std::clamp(zoom.factor * by, 1.0, kMostZoom);
+  result.factor = std::clamp(zoom.factor * by, 1.0, kLargestImageZoom);
   // center + (pointer - middle) / (scale size) is the same point before and after.
   const double fit = fitting_scale(camera, rect);
   const Vector2d from_middle =
@@ -66,8 +65,38 @@ ImageZoom pan(const ImageZoom& zoom,
   const double scale = fitting_scale(camera, rect) * zoom.factor;
   result.center -= by.cwiseQuotient(scale * size_of(camera));
   result.center = result.center.cwiseMax(0.0).cwiseMin(1.0);
-  if (result.factor <= 1) result.center = Vector2d::Constant(0.5);
+  if (result.factor <= 1) result.center.setConstant(0.5);
   return result;
+}
+
+NormalsZoom within_limits(NormalsZoom zoom) {
+  zoom.factor = std::clamp(zoom.factor, 1.0, kLargestNormalsZoom);
+  if (zoom.center.norm() > 1) zoom.center.normalize();
+  if (zoom.factor == 1) zoom.center.setZero();
+  return zoom;
+}
+
+DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom) {
+  const double radius = zoom.factor * rect.size.minCoeff() / 2 / kDiscMargin;
+  return {rect.min + rect.size / 2 - radius * zoom.center, radius};
+}
+
+NormalsZoom zoom_about(const NormalsZoom& zoom,
+                       const ScreenRect& rect,
+                       const Vector2d& pointer,
+                       double by) {
+  const Vector2d under = map_disc(rect, zoom).to_disc(pointer);
+  NormalsZoom zoomed = zoom;
+  zoomed.factor = std::clamp(zoom.factor * by, 1.0, kLargestNormalsZoom);
+  const double radius = map_disc(rect, zoomed).radius;
+  zoomed.center = under - (pointer - rect.min - rect.size / 2) / radius;
+  return within_limits(zoomed);
+}
+
+NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Vector2d& by) {
+  NormalsZoom moved = zoom;
+  moved.center -= by / map_disc(rect, zoom).radius;
+  return within_limits(moved);
 }
 
 }  // namespace gpo

@@ -1,0 +1,295 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/image/pointing.h"
+
+#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/plane_patches.h"
+#include "engine/window/tracks.h"
+#include "ui/context/theme.h"
+#include "ui/look/numbers.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/plane_style.h"
+#include "ui/views/image/image_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// The nearest of the places that are added.
+struct Nearest {
+  Vector2d to;
+  double distance;  ///< initially the largest allowed one
+  std::optional<int> index = {};
+
+  void add(int candidate, const std::optional<Vector2d>& at) {
+    if (!at || (*at - to).norm() > distance) return;
+    distance = (*at - to).norm();
+    index = candidate;
+  }
+};
+
+/// Draws a thick ring that stands out on any ground.
+void draw_ring(ImDrawList& list, const Vector2d& at, double radius, Role role) {
+  const float s = overlay_scale();
+  const auto r = static_cast<float>(radius) * s;
+  list.AddCircle(to_imgui(at), r, imgui_color(Role::background, 0.8), 32, 4.5F * s);
+  list.AddCircle(to_imgui(at), r, imgui_color(role), 32, 2.2F * s);
+}
+
+void draw_path(ImDrawList& list,
+               const Tracks& tracks,
+               int column,
+               const ImageMapping& mapping,
+               double alpha) {
+  std::vector<ImVec2> points;
+  for (int i = 0; i < tracks.frame_count(); ++i)
+    if (tracks.seen(i, column))
+      points.push_back(to_imgui(to_screen(mapping, tracks.raw_px[i].col(column))));
+  const auto count = static_cast<int>(points.size());
+  const float s = overlay_scale();
+  list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.6 * alpha), 0, 4.2F * s);
+  list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
+}
+
+/// Draws a highlight into the scene.
+struct SceneHighlight {
+  ImDrawList& list;
+  const ScreenRect& rect;
+  const FrameView& view;
+  const OrbitCamera& camera;
+
+  const std::vector<Pose>& cameras() const { return view.inspection.initialization->cameras; }
+  std::optional<Vector2d> at(const Vector3d& point) const { return on_screen(camera, point, rect); }
+  /// Returns the map point of a track; null if it has none.
+  const Vector3d* point_of(int column) const {
+    const auto& points = view.inspection.initialization->points;
+    const auto found = std::ranges::find(points, column, &MapPoint::track);
+    return found == points.end() ? nullptr : &found->position;
+  }
+
+  void draw_rays(int column, const Vector2d& point) const {
+    for (int i = 0; i < std::ssize(cameras()); ++i) {
+      const auto center = at(cameras()[i].p_wc);
+      if (!view.inspection.tracks->seen(i, column) || !center) continue;
+      const bool now = i == view.in_window();
+      const Role role = view.inspection.window->inlier[i][column] ? Role::inlier : Role::outlier;
+      list.AddLine(to_imgui(point),
+                   to_imgui(*center),
+                   imgui_color(role, now ? 1 : 0.35),
+                   (now ? 2.0F : 1.0F) * overlay_scale());
+    }
+  }
+  void draw_point(int column, double radius, Role role, bool rays) const {
+    const Vector3d* point = point_of(column);
+    const auto pixel = point != nullptr ? at(*point) : std::nullopt;
+    if (!pixel) return;
+    if (rays) draw_rays(column, *pixel);
+    draw_ring(list, *pixel, radius, role);
+  }
+  void draw_distance(int column_a, int column_b) const {
+    const Vector3d *a = point_of(column_a), *b = point_of(column_b);
+    if (a == nullptr || b == nullptr) return;
+    const auto from = at(*a), to = at(*b);
+    if (!from || !to) return;
+    const float s = overlay_scale();
+    list.AddLine(to_imgui(*from), to_imgui(*to), imgui_color(Role::selected), 1.6F * s);
+    const std::string text = distance_text(view.inspection, *a, *b);
+    const Vector2d corner = (*from + *to) / 2 + Vector2d(8 * s, 4 * s);
+    const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
+    list.AddRectFilled(
+        to_imgui(corner), to_imgui(corner + size), imgui_color(Role::background, 0.8));
+    write_text(list, Font::small, corner + Vector2d(4 * s, 2 * s), text);
+  }
+};
+
+std::string color_text(const cv::Mat& bgr, const Vector2d& raw_px) {
+  const cv::Point pixel(static_cast<int>(std::lround(raw_px.x())),
+                        static_cast<int>(std::lround(raw_px.y())));
+  if (bgr.empty() || !cv::Rect({0, 0}, bgr.size()).contains(pixel)) return "";
+  const auto& at = bgr.at<cv::Vec3b>(pixel);
+  if (at[0] == at[1] && at[1] == at[2]) return fmt::format("   gray {}", at[0]);
+  return fmt::format("   RGB {} {} {}", at[2], at[1], at[0]);
+}
+
+/// Returns the number of the plane that the nearest track is on.
+std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
+  const Tracks& tracks = *inspection.tracks;
+  double nearest = 0.05 * inspection.recording->camera.width;
+  std::optional<int> plane;
+  for (int column = 0; column < tracks.track_count(); ++column) {
+    if (!tracks.seen(frame, column)) continue;
+    const double distance = (tracks.raw_px[frame].col(column) - raw_px).norm();
+    const auto on = plane_of_track(*inspection.window, frame, column);
+    if (distance >= nearest || !on) continue;
+    nearest = distance;
+    plane = on;
+  }
+  return plane;
+}
+
+/// Formats the distance of the plane under the pixel from the frame's camera, along the ray.
+std::string plane_text(const Inspection& inspection, int frame, const Vector2d& raw_px) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok || frame < 0 || frame >= std::ssize(result.cameras)) return "";
+  const auto number = plane_near(inspection, frame, raw_px);
+  if (!number) return "";
+  const std::string title = plane_title(inspection, *number);
+  const auto estimated = std::ranges::find(result.planes, *number, &PlaneEstimate::number);
+  const bool leads = *number == inspection.window->leader;
+  if (!leads && estimated == result.planes.end()) return "   on " + title;
+  const Plane& plane = leads ? result.plane : estimated->plane;
+  const auto point = point_on_plane(inspection, frame, raw_px, plane);
+  if (!point) return "   on " + title;
+  const double away = (*point - result.cameras[frame].p_wc).norm();
+  const auto meters = known_scale(inspection);
+  return fmt::format("   {} away on {}",
+                     meters ? length_text(*meters * away) : fmt::format("{:.2f} d", away),
+                     title);
+}
+
+}  // namespace
+
+std::optional<int> track_at(const Inspection& inspection,
+                            int frame_in_window,
+                            const ImageMapping& mapping,
+                            const Vector2d& screen_px,
+                            double reach) {
+  const Tracks& tracks = *inspection.tracks;
+  if (frame_in_window < 0 || frame_in_window >= tracks.frame_count()) return std::nullopt;
+  Nearest nearest{screen_px, reach};
+  for (int column = 0; column < tracks.track_count(); ++column)
+    if (tracks.seen(frame_in_window, column))
+      nearest.add(column, to_screen(mapping, tracks.raw_px[frame_in_window].col(column)));
+  return nearest.index;
+}
+
+std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach) {
+  Nearest nearest{at.pixel, reach};
+  const auto add = [&](const std::vector<MapPoint>& points) {
+    for (const MapPoint& point : points)
+      nearest.add(point.track, view_pixel(at.camera, point.position, at.view_size_px));
+  };
+  add(inspection.initialization->points);
+  for (const PlanePatch& patch : plane_patches(inspection)) add(patch.points);
+  return nearest.index;
+}
+
+std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach) {
+  Nearest nearest{at.pixel, reach};
+  const auto& cameras = inspection.initialization->cameras;
+  for (int i = 0; i < std::ssize(cameras); ++i)
+    nearest.add(i, view_pixel(at.camera, cameras[i].p_wc, at.view_size_px));
+  return nearest.index;
+}
+
+std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at) {
+  if (!inspection.initialization->ok) return std::nullopt;
+  const Eigen::Matrix3d axes = view_axes(at.camera);
+  return intersect(inspection.initialization->plane,
+                   {axes, eye(at.camera)},
+                   axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px));
+}
+
+void draw_highlight_in_image(ImDrawList& list,
+                               const ScreenRect& rect,
+                               const FrameView& view,
+                               const ImageMapping& mapping,
+                               const Highlight& highlight) {
+  const Tracks& tracks = *view.inspection.tracks;
+  const int frame = view.in_window();
+  if (frame < 0 || frame >= tracks.frame_count()) return;
+  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  if (highlight.focus) draw_path(list, tracks, *highlight.focus, mapping, 1);
+  if (highlight.hovered && highlight.hovered != highlight.focus)
+    draw_path(list, tracks, *highlight.hovered, mapping, 0.7);
+  const auto ring = [&](int column, double radius, Role role) {
+    if (tracks.seen(frame, column))
+      draw_ring(list, to_screen(mapping, tracks.raw_px[frame].col(column)), radius, role);
+  };
+  for (const int column : highlight.picked)
+    ring(column, column == highlight.focus ? 10 : 8, Role::selected);
+  if (highlight.hovered) ring(*highlight.hovered, 11, Role::pointed_at);
+  list.PopClipRect();
+}
+
+void draw_highlight_in_scene(ImDrawList& list,
+                             const ScreenRect& rect,
+                             const FrameView& view,
+                             const OrbitCamera& camera,
+                             const Highlight& highlight) {
+  const SceneHighlight scene{list, rect, view, camera};
+  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  if (highlight.picked.size() == 2) scene.draw_distance(highlight.picked[0], highlight.picked[1]);
+  for (const int column : highlight.picked) {
+    const bool focus = column == highlight.focus;
+    scene.draw_point(column, focus ? 8 : 6, Role::selected, focus);
+  }
+  if (highlight.hovered) scene.draw_point(*highlight.hovered, 9, Role::pointed_at, true);
+  const int hovered = highlight.camera.value_or(-1);
+  if (hovered >= 0 && hovered < std::ssize(scene.cameras()))
+    if (const auto at = scene.at(scene.cameras()[hovered].p_wc))
+      draw_ring(list, *at, 9, Role::pointed_at);
+  list.PopClipRect();
+}
+
+std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b) {
+  const auto meters = known_scale(inspection);
+  const double distance = (b - a).norm();
+  return meters ? length_text(*meters * distance) : fmt::format("{:.3f} d", distance);
+}
+
+std::string pixel_text(const PixelReadout& readout) {
+  const auto& [inspection, frame, camera, bgr, raw_px, scale] = readout;
+  const bool inside = raw_px.x() >= -0.5 && raw_px.y() >= -0.5 && raw_px.x() < camera.width - 0.5 &&
+                      raw_px.y() < camera.height - 0.5;
+  if (!inside) return "";
+  std::string text = fmt::format("x {:.1f}  y {:.1f} px", raw_px.x(), raw_px.y());
+  text += color_text(bgr, raw_px);
+  if (inspection != nullptr)
+    text += plane_text(*inspection, frame - inspection->window->start, raw_px);
+  return text + fmt::format("   {:.0f} %", 100 * scale);
+}
+
+void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string& text) {
+  if (text.empty()) return;
+  const float s = overlay_scale();
+  const Vector2d size = text_size(Font::small, text);
+  const Vector2d corner = rect.min + Vector2d(0, rect.size.y());
+  const Vector2d at = (corner - Vector2d(0, size.y() + 6 * s)).array().round();
+  list.AddRectFilled(to_imgui(at),
+                     to_imgui({std::round(at.x() + size.x() + 16 * s), corner.y()}),
+                     imgui_color(Role::background, 0.8));
+  write_text(list, Font::small, at + Vector2d(8 * s, 3 * s), text);
+}
+
+void draw_pixel_grid(ImDrawList& list,
+                     const ScreenRect& rect,
+                     const ImageMapping& mapping,
+                     const Camera& camera) {
+  constexpr double kLeastScale = 8;
+  // Undistorted pixels are not squares.
+  if (mapping.scale < kLeastScale * overlay_scale() || mapping.undistorted != nullptr) return;
+  const ImU32 color = imgui_color(Role::text, 0.12);
+  const Vector2d first = to_image(mapping, rect.min);
+  const Vector2d last = to_image(mapping, rect.min + rect.size);
+  const int left = std::max(0, static_cast<int>(first.x()));
+  const int right = std::min(camera.width, static_cast<int>(last.x()) + 1);
+  const int top = std::max(0, static_cast<int>(first.y()));
+  const int bottom = std::min(camera.height, static_cast<int>(last.y()) + 1);
+  const auto line = [&](double u0, double v0, double u1, double v1) {
+    list.AddLine(
+        to_imgui(to_screen(mapping, {u0, v0})), to_imgui(to_screen(mapping, {u1, v1})), color);
+  };
+  for (int u = left; u <= right; ++u) line(u - 0.5, top - 0.5, u - 0.5, bottom - 0.5);
+  for (int v = top; v <= bottom; ++v) line(left - 0.5, v - 0.5, right - 0.5, v - 0.5);
+}
+
+}  // namespace gpo

@@ -1,0 +1,99 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Items under the mouse in image and scene.
+#pragma once
+
+#include "engine/inspection/inspection.h"
+#include "ui/look/orbit_camera.h"
+#include "ui/look/zoom.h"
+#include "ui/views/overlay/view_options.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+struct ImDrawList;
+
+namespace gpo {
+
+/// Items to highlight in all views.
+struct Highlight {
+  std::vector<int> picked;     ///< columns of tracks
+  std::optional<int> focus;    ///< of `picked`
+  std::optional<int> hovered;  ///< column of a track
+  std::optional<int> camera;   ///< hovered; frame of the window
+};
+
+/// Returns the column of the track nearest to a place on the screen, among those seen in the frame
+/// of the window; nullopt if none is within `reach` [screen px].
+std::optional<int> track_at(const Inspection& inspection,
+                            int frame_in_window,
+                            const ImageMapping& mapping,
+                            const Eigen::Vector2d& screen_px,
+                            double reach);
+
+/// A pixel of the scene, from the view's top-left corner.
+struct ScenePixel {
+  const OrbitCamera& camera;
+  Eigen::Vector2d view_size_px;
+  Eigen::Vector2d pixel;
+};
+
+/// Returns the column of the track whose map point is nearest; nullopt if none is within `reach`
+/// [px].
+std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach);
+
+/// Returns the frame of the window whose estimated camera center is nearest, in the same way.
+std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach);
+
+/// Intersects the ray through the pixel with the estimated plane; nullopt if it misses the plane or
+/// there is none.
+std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
+
+/// Draws rings around the tracks in the image, and their paths through the window.
+void draw_highlight_in_image(ImDrawList& list,
+                               const ScreenRect& rect,
+                               const FrameView& view,
+                               const ImageMapping& mapping,
+                               const Highlight& highlight);
+
+/// Draws rings around the points in the scene, rays from the focused or hovered one to the cameras
+/// that see it, the distance between two picked ones, and a ring around the hovered camera.
+void draw_highlight_in_scene(ImDrawList& list,
+                             const ScreenRect& rect,
+                             const FrameView& view,
+                             const OrbitCamera& camera,
+                             const Highlight& highlight);
+
+/// Formats the distance between two points of the estimate: in meters if the accelerometer
+/// determines the scale, otherwise in plane distances.
+std::string distance_text(const Inspection& inspection,
+                          const Eigen::Vector3d& a,
+                          const Eigen::Vector3d& b);
+
+/// A place in the image, and sources of its values.
+struct PixelReadout {
+  const Inspection* inspection;  ///< may be null
+  int frame;                     ///< counted in the recording
+  const Camera& camera;
+  const cv::Mat& bgr;      ///< CV_8UC3 of the frame; may be empty
+  Eigen::Vector2d raw_px;  ///< the center of the first pixel is (0, 0)
+  double scale;            ///< screen pixels per pixel
+};
+/// "x 312.4  y 201.8 px   gray 137   2.31 d away on plane 2 (wall)   250 %"; empty outside of the
+/// image. The plane is that of the nearest track, within 5 % of the image's width.
+std::string pixel_text(const PixelReadout& readout);
+
+/// Draws the text at the lower left corner.
+void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string& text);
+
+/// Draws lines between pixels if these are large enough on the screen.
+void draw_pixel_grid(ImDrawList& list,
+                     const ScreenRect& rect,
+                     const ImageMapping& mapping,
+                     const Camera& camera);
+
+}  // namespace gpo
